@@ -1,0 +1,71 @@
+"""The words of the box tasks: limbs, sides, kinds of surface, and which body parts count."""
+
+from enum import StrEnum
+
+
+class Limb(StrEnum):
+    """Which limb a task is done with; it is also the first word of every surface key."""
+
+    HAND = "hand"
+    FOOT = "foot"
+
+
+class Laterality(StrEnum):
+    """The participant's left (-x) or right (+x)."""
+
+    LEFT = "left"
+    RIGHT = "right"
+
+
+class SurfaceKind(StrEnum):
+    """What touching a surface means."""
+
+    PANEL = "panel"
+    SIDE = "side"
+    TARGET = "target"
+    START = "start"
+
+
+class Side(StrEnum):
+    """A wall of a box, seen by the participant (who faces -z).
+
+    Hand boxes have left, right, top, bottom and, where configured, a front rim: the edges around
+    the opening. Foot boxes have left, right, front (nearer to the participant, +z) and back (-z).
+    """
+
+    LEFT = "left"
+    RIGHT = "right"
+    TOP = "top"
+    BOTTOM = "bottom"
+    FRONT_RIM = "front_rim"
+    FRONT = "front"
+    BACK = "back"
+
+
+class Direction(StrEnum):
+    """Where the first task starts: by the writing hand, or the same for everybody.
+
+    By hand means: right-handed people go from right to left, left-handed people from left to right
+    (Karas 2020, appendix A.1).
+    """
+
+    BY_HAND = "by_hand"
+    LEFT_TO_RIGHT = "left_to_right"
+    RIGHT_TO_LEFT = "right_to_left"
+
+
+_FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
+_PHALANGES = ("Proximal", "Intermediate", "Distal")
+
+
+def hand_parts(hand: Laterality) -> frozenset[str]:
+    """The hand and its 15 finger bones, by their Unity HumanBodyBones names (16 names)."""
+    prefix = hand.value.capitalize()
+    fingers = {f"{prefix}{finger}{phalanx}" for finger in _FINGERS for phalanx in _PHALANGES}
+    return frozenset(fingers | {f"{prefix}Hand"})
+
+
+def foot_parts(foot: Laterality | None) -> frozenset[str]:
+    """Foot and toes of one foot; of both feet for None."""
+    feet = (Laterality.LEFT, Laterality.RIGHT) if foot is None else (foot,)
+    return frozenset(f"{f.value.capitalize()}{part}" for f in feet for part in ("Foot", "Toes"))

@@ -1,0 +1,108 @@
+"""What the place of a task is made of: boxes, target and start square as axis-aligned surfaces.
+
+A task is a row of boxes and one target. Each box has a *panel* to touch and *sides* to avoid:
+
+- hand boxes stand in front of the participant and open towards them (+z); the grey panel closes the
+  far end (-z);
+- foot boxes stand on the floor and open at the top; the panel is the floor plate.
+
+World frame: +x right, +y up, the participant faces -z, the origin lies on the floor at the centre
+of the start square; metres. Box numbers are places, 1..n from left to right. The number *displayed*
+at a box follows the current order and is the rules' business (`rules.displayed_numbers`).
+
+Sizes and places are ours: the thesis (Karas 2020, chapter 7) gives none.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from app.science.tasks.names import Direction, Laterality, Limb, Side, SurfaceKind
+
+Vector3 = tuple[float, float, float]
+
+
+class LayoutError(ValueError):
+    """The configured boxes cannot make a task; the message says which value and what is valid."""
+
+
+@dataclass(frozen=True)
+class BoxSpec:
+    """One box: its place in the row and its cavity (the space inside the walls).
+
+    `number`: 1..n from left (-x) to right. `center_m`: centre of the cavity, world frame.
+    `inner_size_m`: (width x, height y, depth z) of the cavity.
+    """
+
+    number: int
+    center_m: Vector3
+    inner_size_m: Vector3
+
+
+@dataclass(frozen=True)
+class BlockSpec:
+    """A solid block: the hand target cube, the foot target bar or the start square. World frame."""
+
+    center_m: Vector3
+    size_m: Vector3
+
+
+@dataclass(frozen=True)
+class Surface:
+    """One axis-aligned block that a body part can touch.
+
+    `key`: "hand/2/panel", "hand/2/left", "hand/2/front_rim/top", "hand/target", "foot/start".
+    `center_m`, `half_size_m`: world frame, metres. `box`: number of its box, None for target and
+    start. `side`: set for kind SIDE only.
+    """
+
+    key: str
+    kind: SurfaceKind
+    box: int | None
+    side: Side | None
+    center_m: Vector3
+    half_size_m: Vector3
+
+    @property
+    def unit(self) -> str:
+        """What turns red and is timed as one: the key, but for rim bars "hand/2/front_rim"."""
+        return "/".join(self.key.split("/")[:3])
+
+
+@dataclass(frozen=True)
+class TaskLayout:
+    """A validated task place; the same for every participant of a study version.
+
+    `reverse_after_task`: whether the order turns round after each completion. `counting_foot`: the
+    foot that counts in a foot task, None for either. `direction`: where the first order starts.
+    """
+
+    limb: Limb
+    surfaces: tuple[Surface, ...]
+    reverse_after_task: bool
+    counting_foot: Laterality | None = None
+    direction: Direction = Direction.BY_HAND
+
+    @cached_property
+    def by_key(self) -> dict[str, Surface]:
+        """Surfaces by their key."""
+        return {surface.key: surface for surface in self.surfaces}
+
+    @cached_property
+    def n_boxes(self) -> int:
+        """Number of boxes (panels) in the row."""
+        return sum(surface.kind is SurfaceKind.PANEL for surface in self.surfaces)
+
+    @property
+    def target_key(self) -> str:
+        """Key of the target that completes a task."""
+        return f"{self.limb}/target"
+
+    @property
+    def start_key(self) -> str | None:
+        """Key of the start square; None where there is no walk back (hand tasks)."""
+        key = f"{self.limb}/start"
+        return key if key in self.by_key else None
+
+    def panel_key(self, box: int) -> str:
+        """Key of a box's panel."""
+        return f"{self.limb}/{box}/panel"
