@@ -1,0 +1,30 @@
+"""Where the files live that are read but not imported: migrations, study configs, built pages.
+
+A checkout keeps migrations and study configs in top-level folders, where people look for them. A
+wheel has no top level of its own, so the build puts copies under `app/_bundled/`. The built pages
+are in `app/static/` in both.
+"""
+
+from pathlib import Path
+
+_APP = Path(__file__).resolve().parent
+
+
+def migrations_dir() -> Path:
+    """The Alembic folder: `env.py` and `versions/`."""
+    return _shipped("migrations")
+
+
+def study_configs_dir() -> Path:
+    """The studies and instruments that ship with the product, as YAML."""
+    return _shipped("study_configs")
+
+
+def static_dir() -> Path:
+    """The built pages; absent until the frontend was built once."""
+    return _APP / "static"
+
+
+def _shipped(name: str) -> Path:
+    bundled = _APP / "_bundled" / name
+    return bundled if bundled.is_dir() else _APP.parent / name
