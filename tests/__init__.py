@@ -1,0 +1,1 @@
+"""Tests mirror `app/`; see `support/` for what they stand on."""

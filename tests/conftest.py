@@ -1,0 +1,92 @@
+"""Fixtures every test may use: shared data, migrated databases, live servers.
+
+Nothing is started or migrated before a test asks for it, so a test of pure science stays fast.
+"""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.support import postgres, shared_run
+from tests.support.server import LiveServer
+from tests.support.sqlite import fresh_sqlite
+
+SHARED_DATA_VARIABLE = "REEMBODY_SHARED_DATA"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """`--long` also runs the tests marked `long`."""
+    parser.addoption("--long", action="store_true", help="also run the tests marked `long`")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Open what the processes of the run share; xdist's workers find it already there."""
+    if not _is_worker(config):
+        shared_run.open_run()
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Stop and remove what the run made, also after an interruption."""
+    if not _is_worker(config):
+        postgres.stop_cluster()
+        shared_run.close_run()
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Deselect the long tests unless they are asked for: not skipped, since nothing is missing."""
+    if config.getoption("--long"):
+        return
+    long = [item for item in items if item.get_closest_marker("long")]
+    if long:
+        config.hook.pytest_deselected(items=long)
+        items[:] = [item for item in items if not item.get_closest_marker("long")]
+
+
+def _is_worker(config: pytest.Config) -> bool:
+    return hasattr(config, "workerinput")
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The published data that tests compare with; they are not part of the repository."""
+    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
+    folder = Path(os.environ.get(SHARED_DATA_VARIABLE) or beside)
+    if not folder.is_dir():
+        pytest.skip(f"no shared data in {folder}; {SHARED_DATA_VARIABLE} can name the folder")
+    return folder
+
+
+@pytest.fixture
+def sqlite_url(tmp_path: Path) -> str:
+    """The address of a migrated, empty SQLite file."""
+    return fresh_sqlite(tmp_path / "reembody.sqlite")
+
+
+@pytest.fixture
+def postgres_url() -> Iterator[str]:
+    """The address of a migrated, empty PostgreSQL database."""
+    with postgres.fresh_postgres() as url:
+        yield url
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url(request: pytest.FixtureRequest) -> str:
+    """The address of a migrated, empty database: the test runs on both engines."""
+    fixture = {"sqlite": "sqlite_url", "postgresql": "postgres_url"}[request.param]
+    return str(request.getfixturevalue(fixture))
+
+
+@pytest.fixture
+def live_server(tmp_path: Path) -> Iterator[LiveServer]:
+    """The real server in a process of its own, on an empty data folder, for this test alone."""
+    with LiveServer(tmp_path / "live") as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def shared_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
+    """The real server for a whole module: its tests must not depend on what it was before."""
+    with LiveServer(tmp_path_factory.mktemp("live")) as server:
+        yield server

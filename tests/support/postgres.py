@@ -1,0 +1,166 @@
+"""A real PostgreSQL for the tests: one cluster for a whole test run, one database for each test.
+
+The first test that asks starts the cluster, in whichever xdist worker it runs; the others join it.
+A template database is migrated once and each test gets a copy of it, which is much faster than to
+migrate again. The cluster listens on a unix socket in a private folder only.
+"""
+
+import json
+import os
+import signal
+import sys
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import LiteralString
+
+import psycopg
+from psycopg import sql
+
+from tests.support.postgres_binaries import Account, runnable_binaries
+from tests.support.shared_run import once, owner_pid, run_folder
+
+STARTS_WITHIN_S = 60.0
+STOPS_WITHIN_S = 30.0
+TEMPLATE = "migrated"
+# A test database never has to survive a power loss, and syncing is most of the time it would take.
+SETTINGS = {
+    "fsync": "off",
+    "full_page_writes": "off",
+    "synchronous_commit": "off",
+    "max_connections": "100",
+    "shared_buffers": "64MB",
+    "listen_addresses": "",
+    "timezone": "UTC",
+}
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """A running PostgreSQL; `folder` holds its socket, its data and its log."""
+
+    folder: Path
+
+    def url(self, database: str) -> str:
+        """The address of a database, as SQLAlchemy reads it."""
+        return f"postgresql+psycopg://postgres@/{database}?host={self.folder}"
+
+    def execute(self, statement: LiteralString, database: str | None = None) -> None:
+        """Run a statement outside of any transaction; `{}` in it becomes the database's name."""
+        query = sql.SQL(statement).format(*[sql.Identifier(database)] if database else [])
+        with psycopg.connect(
+            host=str(self.folder), user="postgres", dbname="postgres", autocommit=True
+        ) as connection:
+            connection.execute(query)
+
+
+@contextmanager
+def fresh_postgres() -> Iterator[str]:
+    """The address of a migrated, empty database that is dropped afterwards."""
+    cluster = migrated_cluster()
+    database = f"test_{uuid.uuid4().hex}"
+    cluster.execute(f"CREATE DATABASE {{}} TEMPLATE {TEMPLATE}", database)
+    try:
+        yield cluster.url(database)
+    finally:
+        cluster.execute("DROP DATABASE {} WITH (FORCE)", database)
+
+
+def migrated_cluster() -> Cluster:
+    """The cluster of this run with its migrated template; started by whoever asks first."""
+    cluster = running_cluster()
+    with once("postgres-template") as mark:
+        if mark:
+            from app.database import migrate
+
+            cluster.execute("CREATE DATABASE {}", TEMPLATE)
+            migrate(cluster.url(TEMPLATE))
+            # A template can be copied only while nobody is connected to it. No test has a database
+            # yet, so whatever is connected is a left-over of migrating.
+            cluster.execute("ALTER DATABASE {} ALLOW_CONNECTIONS false", TEMPLATE)
+            cluster.execute(
+                "SELECT pg_terminate_backend(pid) FROM pg_stat_activity "
+                "WHERE datname IS NOT NULL AND pid <> pg_backend_pid()"
+            )
+            mark.touch()
+    return cluster
+
+
+def running_cluster() -> Cluster:
+    """The cluster of this run, without anything of ours in it."""
+    folder = run_folder() / "postgres"
+    with once("postgres") as mark:
+        if mark:
+            keeper_pid = _start(folder)
+            mark.write_text(json.dumps({"keeper_pid": keeper_pid}))
+    return Cluster(folder)
+
+
+def stop_cluster() -> None:
+    """End the cluster of this run if there is one; the controller calls it last."""
+    mark = run_folder() / "postgres.done"
+    if not mark.exists():
+        return
+    try:
+        os.kill(json.loads(mark.read_text())["keeper_pid"], signal.SIGTERM)
+    except ProcessLookupError:
+        return
+    _wait_for(run_folder() / "postgres" / "stopped", STOPS_WITHIN_S)
+
+
+def _start(folder: Path) -> int:
+    """Make and start a cluster in `folder`; returns the pid of its keeper."""
+    account = Account.for_postgres()
+    folder.mkdir(mode=0o700)
+    programs = folder / "programs"
+    programs.mkdir()
+    account.own(folder)
+    binaries = runnable_binaries(account, programs)
+    data = folder / "data"
+    made = account.run(
+        [
+            str(binaries / "initdb"),
+            *("--pgdata", str(data), "--username", "postgres", "--auth", "trust"),
+            *("--encoding", "UTF8", "--locale", "C", "--no-sync"),
+        ],
+        cwd=folder,
+    )
+    if made.returncode != 0:
+        raise RuntimeError(f"initdb from {binaries} failed:\n{made.stdout}{made.stderr}")
+    settings = [f"--{name}={value}" for name, value in SETTINGS.items()]
+    server = [str(binaries / "postgres"), "-D", str(data), "-k", str(folder), *settings]
+    keeper = [str(owner_pid()), str(account.uid), str(account.gid), str(folder), *server]
+    script = Path(__file__).with_name("postgres_keeper.py")
+    # In a session of its own, so that Ctrl-C reaches the tests and not their database.
+    pid = os.posix_spawn(
+        sys.executable,
+        [sys.executable, "-P", str(script), *keeper],
+        os.environ,
+        setsid=True,
+    )
+    _wait_until_it_answers(Cluster(folder))
+    return pid
+
+
+def _wait_until_it_answers(cluster: Cluster) -> None:
+    deadline = time.monotonic() + STARTS_WITHIN_S
+    while True:
+        try:
+            cluster.execute("SELECT 1")
+        except psycopg.OperationalError:
+            stopped = (cluster.folder / "stopped").exists()
+            if stopped or time.monotonic() > deadline:
+                log = (cluster.folder / "postgres.log").read_text(errors="replace")
+                raise RuntimeError(f"PostgreSQL did not start; its log:\n{log[-2000:]}") from None
+            time.sleep(0.05)
+        else:
+            return
+
+
+def _wait_for(path: Path, timeout_s: float) -> None:
+    deadline = time.monotonic() + timeout_s
+    while not path.exists() and time.monotonic() < deadline:
+        time.sleep(0.05)

@@ -1,0 +1,91 @@
+"""Runs PostgreSQL for as long as the test run lives, and not a moment longer.
+
+A process of its own: it ends PostgreSQL when told to (SIGTERM) and when the test run is gone,
+however that happened, so that a killed run leaves no server behind. It writes `stopped` into its
+folder as the last thing it does.
+
+Arguments: the owner's pid, the account (uid, gid), the folder, then PostgreSQL's command line.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from types import FrameType
+
+import psutil
+
+LOOKS_EVERY_S = 0.5
+FAST_SHUTDOWN_S = 10.0
+
+
+class Told(Exception):  # noqa: N818  # a request, not an error
+    """SIGTERM came."""
+
+
+def keep(owner: psutil.Process, server: subprocess.Popen[bytes]) -> None:
+    """Wait until the server ends, the owner is gone, or SIGTERM comes."""
+    try:
+        while alive(owner):
+            try:
+                server.wait(LOOKS_EVERY_S)
+            except subprocess.TimeoutExpired:
+                continue
+            return
+    except Told:
+        return
+
+
+def alive(owner: psutil.Process) -> bool:
+    """A process that ended but was not collected yet does not count."""
+    try:
+        return owner.is_running() and owner.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
+
+
+def shut_down(server: subprocess.Popen[bytes]) -> None:
+    """PostgreSQL's fast shutdown; its immediate one if that takes too long."""
+    for request in (signal.SIGINT, signal.SIGQUIT, signal.SIGKILL):
+        if server.poll() is not None:
+            return
+        server.send_signal(request)
+        try:
+            server.wait(FAST_SHUTDOWN_S)
+        except subprocess.TimeoutExpired:
+            continue
+
+
+def on_term(_number: int, _frame: FrameType | None) -> None:
+    """Wake `keep`."""
+    raise Told
+
+
+def main(arguments: list[str]) -> None:
+    """Start PostgreSQL, keep it, shut it down."""
+    owner, uid, gid, folder, *command = arguments
+    place = Path(folder)
+    signal.signal(signal.SIGTERM, on_term)
+    with (place / "postgres.log").open("ab") as log:
+        server = subprocess.Popen(
+            command,
+            cwd=place,
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=log,
+            user=int(uid),
+            group=int(gid),
+            extra_groups=[] if os.geteuid() == 0 else None,
+            start_new_session=True,
+        )
+    try:
+        keep(psutil.Process(int(owner)), server)
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        shut_down(server)
+        (place / "stopped").touch()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,164 @@
+"""The real server, as a process that tests can talk to, kill and start again.
+
+It is started as an operator starts it (`reembody serve`), so the tests go through argument parsing,
+settings, migrations and the network, and a `kill()` is the crash that it looks like.
+"""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import httpx2
+
+ADMIN_PASSWORD = "only-for-this-test-run"
+STARTS_WITHIN_S = 60.0
+STOPS_WITHIN_S = 20.0
+REEMBODY = (str(Path(sys.executable).with_name("reembody")),)
+
+
+class LiveServer:
+    """A server on a free port of the loopback, with its data in `folder`.
+
+    The port and the data stay the same over `kill()`, `stop()` and `start()`. `environment` adds
+    `REEMBODY_*` variables (such as `REEMBODY_DATABASE_URL`); none of the caller's get through.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        *,
+        environment: Mapping[str, str] | None = None,
+        arguments: Sequence[str] = (),
+        command: Sequence[str] = REEMBODY,
+    ) -> None:
+        self.data_dir = folder / "data"
+        self.port = free_port()
+        self._log_file = folder / "server.log"
+        self._command = [*command, "serve", "--port", str(self.port), *arguments]
+        self._environment = dict(environment or {})
+        self._process: subprocess.Popen[bytes] | None = None
+
+    @property
+    def url(self) -> str:
+        """`http://localhost:PORT`: browsers count this name, not every address, as secure."""
+        return f"http://localhost:{self.port}"
+
+    @property
+    def pid(self) -> int:
+        """The process id of the running server."""
+        if self._process is None:
+            raise RuntimeError("the server is not running: call start() first")
+        return self._process.pid
+
+    @property
+    def log(self) -> str:
+        """Everything it wrote to standard output and error, over all its starts."""
+        return self._log_file.read_text(errors="replace") if self._log_file.exists() else ""
+
+    def start(self) -> Self:
+        """Start it and wait until it answers; raises `RuntimeError` with its log if it does not."""
+        if self._process is not None:
+            raise RuntimeError(f"the server already runs as process {self._process.pid}")
+        self.data_dir.mkdir(parents=True, exist_ok=True)
+        with self._log_file.open("ab") as log:
+            self._process = subprocess.Popen(
+                self._command,
+                env=self._full_environment(),
+                cwd=self.data_dir.parent,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+        try:
+            self._wait_until_it_answers(self._process)
+        except BaseException:
+            self.kill()
+            raise
+        return self
+
+    def stop(self) -> None:
+        """Ask it to end, as a service manager does; kill it if it does not."""
+        self._end(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """SIGKILL: the server gets no chance to do anything."""
+        self._end(signal.SIGKILL)
+
+    def restart(self) -> Self:
+        """Start it again on the same port and data, stopping it first if it runs."""
+        self.stop()
+        return self.start()
+
+    def client(self) -> httpx2.Client:
+        """A client of this server, not signed in; close it, or use it with `with`."""
+        return httpx2.Client(base_url=self.url, timeout=30.0)
+
+    def __enter__(self) -> Self:
+        return self.start()
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop()
+
+    def _full_environment(self) -> dict[str, str]:
+        inherited = {
+            name: value for name, value in os.environ.items() if not name.startswith("REEMBODY_")
+        }
+        return {
+            **inherited,
+            "PYTHONUNBUFFERED": "1",
+            "REEMBODY_DATA_DIR": str(self.data_dir),
+            "REEMBODY_ADMIN_PASSWORD": ADMIN_PASSWORD,
+            **self._environment,
+        }
+
+    def _wait_until_it_answers(self, process: subprocess.Popen[bytes]) -> None:
+        deadline = time.monotonic() + STARTS_WITHIN_S
+        with self.client() as client:
+            while time.monotonic() < deadline:
+                if process.poll() is not None:
+                    raise RuntimeError(
+                        f"{' '.join(self._command)} ended with exit code {process.returncode}; "
+                        f"its log:\n{self.log[-4000:]}"
+                    )
+                try:
+                    if client.get("/api/health").is_success:
+                        return
+                except httpx2.TransportError:
+                    pass
+                time.sleep(0.05)
+        raise RuntimeError(
+            f"{self.url}/api/health did not answer within {STARTS_WITHIN_S:g} s; "
+            f"its log:\n{self.log[-4000:]}"
+        )
+
+    def _end(self, request: signal.Signals) -> None:
+        process, self._process = self._process, None
+        if process is None:
+            return
+        process.send_signal(request)
+        try:
+            process.wait(STOPS_WITHIN_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def free_port() -> int:
+    """A port of the loopback that nobody listens on now."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+    return port

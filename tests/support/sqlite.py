@@ -1,0 +1,28 @@
+"""A migrated SQLite file for each test, copied from one that was migrated once in the run."""
+
+import shutil
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+from tests.support.shared_run import once, run_folder
+
+
+def fresh_sqlite(path: Path) -> str:
+    """Make `path` a migrated, empty database; returns its address."""
+    shutil.copyfile(_template(), path)
+    return f"sqlite:///{path}"
+
+
+def _template() -> Path:
+    template = run_folder() / "template.sqlite"
+    with once("sqlite-template") as mark:
+        if mark:
+            from app.database import migrate
+
+            migrate(f"sqlite:///{template}")
+            # Everything into the one file that is copied.
+            with closing(sqlite3.connect(template)) as connection:
+                connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+            mark.touch()
+    return template
