@@ -1,0 +1,158 @@
+"""The HIERARCHY section: a nested list of joints, each with an offset and channels."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from app.adapters.bvh.clip import BvhError, BvhLimits
+
+_AXES = ("X", "Y", "Z")
+CHANNEL_NAMES = tuple(f"{axis}{kind}" for kind in ("position", "rotation") for axis in _AXES)
+_CANONICAL = {name.lower(): name for name in CHANNEL_NAMES}
+
+
+@dataclass
+class Hierarchy:
+    """Joints collected while reading; lengths in the file's units."""
+
+    names: list[str] = field(default_factory=list)
+    parents: list[int] = field(default_factory=list)
+    offsets: list[tuple[float, float, float]] = field(default_factory=list)
+    channels: list[tuple[str, ...]] = field(default_factory=list)
+    end_sites: list[tuple[int, tuple[float, float, float]]] = field(default_factory=list)
+    motion_line: int = 0
+
+
+class _Words:
+    """The words of a text with the line each stands on."""
+
+    def __init__(self, lines: list[str]) -> None:
+        self._words: Iterator[tuple[str, int]] = (
+            (word, number) for number, line in enumerate(lines, 1) for word in line.split()
+        )
+        self.line = 0
+        self._kept: str | None = None
+
+    def next(self, wanted: str) -> str:
+        """Return the next word."""
+        if self._kept is not None:
+            word, self._kept = self._kept, None
+            return word
+        found = next(self._words, None)
+        if found is None:
+            raise BvhError(self.line, f"the text ends where {wanted} is expected.")
+        word, self.line = found
+        return word
+
+    def give_back(self, word: str) -> None:
+        self._kept = word
+
+    def expect(self, literal: str) -> None:
+        word = self.next(repr(literal))
+        if word.upper() != literal:
+            raise BvhError(self.line, f"expected {literal!r}, got {word!r}.")
+
+    def number(self, wanted: str) -> float:
+        word = self.next(wanted)
+        return read_number(word, self.line, wanted)
+
+    def name(self) -> tuple[str, int]:
+        """Return the words up to the opening brace, for names may hold spaces, and their line."""
+        words, line = [], self.line
+        while (word := self.next("a joint name and '{'")) != "{":
+            words.append(word)
+            line = self.line
+        self.give_back("{")
+        return " ".join(words), line
+
+
+def read_number(word: str, line: int, wanted: str) -> float:
+    """Read a finite number or say where it is none."""
+    try:
+        value = float(word)
+    except ValueError:
+        raise BvhError(line, f"expected {wanted}, got {word!r}.") from None
+    if not math.isfinite(value):
+        raise BvhError(line, f"{wanted} is {word}, only finite numbers are valid.")
+    return value
+
+
+def read_hierarchy(lines: list[str], limits: BvhLimits) -> Hierarchy:
+    """Read up to and including the word MOTION.
+
+    Raises:
+        BvhError: with the line, where the grammar or a limit is broken.
+    """
+    words, tree = _Words(lines), Hierarchy()
+    words.expect("HIERARCHY")
+    words.expect("ROOT")
+    _read_joint(words, tree, [], limits)
+    word = words.next("'MOTION'")
+    if word.upper() == "ROOT":
+        raise BvhError(words.line, "a second ROOT: one skeleton per file can be read, split it.")
+    if word.upper() != "MOTION":
+        raise BvhError(words.line, f"expected 'MOTION', got {word!r}.")
+    tree.motion_line = words.line
+    return tree
+
+
+def _read_joint(words: _Words, tree: Hierarchy, above: list[int], limits: BvhLimits) -> None:
+    """Read joints without recursion, so that depth cannot exhaust the stack."""
+    open_joints = list(above)
+    _open_joint(words, tree, open_joints, limits)
+    while open_joints:
+        word = words.next("'JOINT', 'End Site' or '}'")
+        match word.upper():
+            case "}":
+                open_joints.pop()
+            case "JOINT":
+                _open_joint(words, tree, open_joints, limits)
+            case "END":
+                words.expect("SITE")
+                words.expect("{")
+                words.expect("OFFSET")
+                tree.end_sites.append((open_joints[-1], _read_offset(words)))
+                words.expect("}")
+            case _:
+                raise BvhError(words.line, f"expected JOINT, End Site or '}}', got {word!r}.")
+
+
+def _open_joint(words: _Words, tree: Hierarchy, open_joints: list[int], limits: BvhLimits) -> None:
+    name, line = words.name()
+    if not name or name in tree.names:
+        problem = "a joint has no name" if not name else f"a second joint is called {name!r}"
+        raise BvhError(line, f"{problem}: every joint needs a name of its own.")
+    if len(open_joints) >= limits.depth:
+        raise BvhError(words.line, f"joints are nested deeper than {limits.depth}.")
+    if len(tree.names) >= limits.joints:
+        raise BvhError(words.line, f"more than {limits.joints} joints.")
+    words.expect("{")
+    words.expect("OFFSET")
+    tree.offsets.append(_read_offset(words))
+    words.expect("CHANNELS")
+    tree.channels.append(_read_channels(words))
+    tree.parents.append(open_joints[-1] if open_joints else -1)
+    open_joints.append(len(tree.names))
+    tree.names.append(name)
+
+
+def _read_offset(words: _Words) -> tuple[float, float, float]:
+    x, y, z = (words.number(f"the {axis} offset") for axis in _AXES)
+    return (x, y, z)
+
+
+def _read_channels(words: _Words) -> tuple[str, ...]:
+    count = words.next("the number of channels")
+    if count not in {"0", "1", "2", "3", "4", "5", "6"}:
+        raise BvhError(words.line, f"{count!r} channels: a joint has 0 to 6.")
+    found: list[str] = []
+    for _ in range(int(count)):
+        word = words.next("a channel name")
+        channel = _CANONICAL.get(word.lower())
+        if channel is None or channel in found:
+            problem = "unknown" if channel is None else "repeated"
+            raise BvhError(
+                words.line, f"{problem} channel {word!r}: valid are {', '.join(CHANNEL_NAMES)}."
+            )
+        found.append(channel)
+    return tuple(found)
