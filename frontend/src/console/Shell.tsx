@@ -1,0 +1,111 @@
+/** Header and routes of the signed-in console. */
+import {
+  ActionIcon,
+  Button,
+  Menu,
+  useComputedColorScheme,
+  useMantineColorScheme,
+} from "@mantine/core";
+import type { Account } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { Mark } from "@shared/ui/Mark";
+import { useQueryClient } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { Link, Route, Router, Switch } from "wouter";
+import { useHashLocation } from "wouter/use-hash-location";
+import { signOut } from "./account";
+import { useTexts } from "./i18n";
+import { StudiesPage } from "./pages/Studies";
+import classes from "./Shell.module.css";
+
+export function Shell({ account }: { readonly account: Account }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Router hook={useHashLocation}>
+      <button type="button" className={classes.skip} onClick={focusMain}>
+        {t("app.skip")}
+      </button>
+      <header className={classes.header}>
+        <Link href="/" className={classes.brand ?? ""}>
+          <Mark size={26} />
+          {t("app.name")}
+        </Link>
+        <div className={classes.tools}>
+          <LanguageButton />
+          <AppearanceButton />
+          <AccountMenu account={account} />
+        </div>
+      </header>
+      <main className={classes.main} id="main" tabIndex={-1}>
+        <Switch>
+          <Route>
+            <StudiesPage />
+          </Route>
+        </Switch>
+      </main>
+    </Router>
+  );
+}
+
+/** The address after `#` belongs to the router, so skipping moves the focus itself. */
+function focusMain(): void {
+  document.getElementById("main")?.focus();
+}
+
+function LanguageButton(): JSX.Element {
+  const { t, language, setLanguage } = useTexts();
+  return (
+    <Button
+      variant="subtle"
+      color="gray"
+      size="compact-sm"
+      lang={language === "en" ? "de" : "en"}
+      onClick={() => setLanguage(language === "en" ? "de" : "en")}
+    >
+      {t("app.language")}
+    </Button>
+  );
+}
+
+function AppearanceButton(): JSX.Element {
+  const { t } = useTexts();
+  const { setColorScheme } = useMantineColorScheme();
+  const scheme = useComputedColorScheme("light");
+  const other = scheme === "light" ? "dark" : "light";
+  return (
+    <ActionIcon
+      variant="subtle"
+      color="gray"
+      size="lg"
+      aria-label={t(`app.theme.${other}`)}
+      onClick={() => setColorScheme(other)}
+    >
+      <Icon name={other === "dark" ? "moon" : "sun"} />
+    </ActionIcon>
+  );
+}
+
+function AccountMenu({ account }: { readonly account: Account }): JSX.Element {
+  const { t } = useTexts();
+  const queries = useQueryClient();
+  return (
+    <Menu position="bottom-end" width={260}>
+      <Menu.Target>
+        <Button
+          variant="subtle"
+          color="gray"
+          size="compact-sm"
+          rightSection={<Icon name="down" size={14} />}
+        >
+          {account.username}
+        </Button>
+      </Menu.Target>
+      <Menu.Dropdown>
+        <Menu.Label>
+          {t("app.signedInAs", { name: account.username, role: account.role })}
+        </Menu.Label>
+        <Menu.Item onClick={() => void signOut(queries)}>{t("app.logout")}</Menu.Item>
+      </Menu.Dropdown>
+    </Menu>
+  );
+}

@@ -1,0 +1,23 @@
+/** The console's wording around errors, and a notice that uses it. */
+import { ErrorNotice, type ErrorTexts } from "@shared/ui/ErrorNotice";
+import type { JSX } from "react";
+import { useTexts } from "./i18n";
+
+export function useErrorTexts(): ErrorTexts {
+  const { t } = useTexts();
+  return {
+    unreachable: t("error.unreachable"),
+    unreachableRemedy: t("error.unreachableRemedy"),
+    unexpected: t("error.unexpected"),
+    retry: t("error.retry"),
+  };
+}
+
+interface FailureProps {
+  readonly error: unknown;
+  readonly onRetry?: () => void;
+}
+
+export function Failure({ error, onRetry }: FailureProps): JSX.Element {
+  return <ErrorNotice error={error} texts={useErrorTexts()} onRetry={onRetry} />;
+}

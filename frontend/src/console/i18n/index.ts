@@ -1,0 +1,19 @@
+import {
+  createTranslations,
+  type KeyOf,
+  preferredLanguage,
+  type Texts,
+  useTranslations,
+} from "@shared/i18n/i18n";
+import { de } from "./de";
+import { en } from "./en";
+
+export type Key = KeyOf<typeof en>;
+
+const REMEMBERED = "reembody.console.language";
+const wanted = [localStorage.getItem(REMEMBERED) ?? [], navigator.languages].flat();
+
+export const translations = createTranslations({ en, de }, preferredLanguage(wanted));
+translations.on("languageChanged", (language) => localStorage.setItem(REMEMBERED, language));
+
+export const useTexts = (): Texts<Key> => useTranslations<Key>();

@@ -1,0 +1,49 @@
+/** How quantities are written for people: always with their unit, in the language of the page. */
+import type { Milliseconds, Seconds } from "./units";
+
+/** `0:07`, `1:00`, `12:30`: minutes and whole seconds, cut off and not rounded, as clocks do. */
+export function clockFace(time: Seconds): string {
+  const whole = Math.max(0, Math.floor(time + 1e-6));
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
+}
+
+/** `45 s`, `2 min`, `1 h 5 min`: a length of time in words short enough for a table. */
+export function duration(time: Seconds): string {
+  const whole = Math.round(time);
+  if (whole < 60) return `${whole} s`;
+  const minutes = Math.floor(whole / 60);
+  if (minutes < 60) return whole % 60 === 0 ? `${minutes} min` : `${minutes} min ${whole % 60} s`;
+  return minutes % 60 === 0
+    ? `${Math.floor(minutes / 60)} h`
+    : `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
+}
+
+/** `125 ms`. */
+export const latency = (value: Milliseconds): string => `${value} ms`;
+
+/** A number with at most `digits` decimals in the language's own notation. */
+export function number(value: number, language: string, digits = 2): string {
+  return new Intl.NumberFormat(language, { maximumFractionDigits: digits }).format(value);
+}
+
+/** Date and time of day in the reader's own time zone, from UTC ISO 8601. */
+export function dateTime(iso: string, language: string): string {
+  return new Intl.DateTimeFormat(language, { dateStyle: "medium", timeStyle: "short" }).format(
+    new Date(iso),
+  );
+}
+
+/** Time of day with seconds, for logs. */
+export function timeOfDay(iso: string, language: string): string {
+  return new Intl.DateTimeFormat(language, { timeStyle: "medium" }).format(new Date(iso));
+}
+
+/** `10 s ago` as a relative time; `now` is given so that the text can be tested. */
+export function ago(iso: string, now: Date, language: string): string {
+  const passed = Math.round((now.getTime() - new Date(iso).getTime()) / 1000);
+  const relative = new Intl.RelativeTimeFormat(language, { numeric: "auto", style: "short" });
+  if (Math.abs(passed) < 60) return relative.format(-passed, "second");
+  if (Math.abs(passed) < 3600) return relative.format(-Math.round(passed / 60), "minute");
+  if (Math.abs(passed) < 86_400) return relative.format(-Math.round(passed / 3600), "hour");
+  return relative.format(-Math.round(passed / 86_400), "day");
+}

@@ -1,0 +1,57 @@
+/**
+ * Two languages, each a flat table of texts. The German table has the type of the English one, so a
+ * missing text does not compile.
+ */
+import { createInstance, type i18n } from "i18next";
+import { initReactI18next, useTranslation } from "react-i18next";
+
+export type Language = "en" | "de";
+export const LANGUAGES: readonly Language[] = ["en", "de"];
+export const LANGUAGE_NAMES: Readonly<Record<string, string>> = { en: "English", de: "Deutsch" };
+
+type Table = Readonly<Record<string, string>>;
+type Plural<Key> = Key extends `${infer Stem}_${"one" | "other"}` ? Stem : Key;
+type Values = Readonly<Record<string, string | number>>;
+
+/** The keys of a table as they are asked for: plural forms by their stem. */
+export type KeyOf<Texts extends Table> = Plural<keyof Texts & string>;
+export type Translate<Key extends string> = (key: Key, values?: Values) => string;
+
+export function createTranslations(tables: Record<Language, Table>, language: Language): i18n {
+  const instance = createInstance();
+  void instance.use(initReactI18next).init({
+    lng: language,
+    fallbackLng: "en",
+    keySeparator: false,
+    nsSeparator: false,
+    interpolation: { escapeValue: false }, // React escapes
+    initAsync: false,
+    resources: { en: { translation: tables.en }, de: { translation: tables.de } },
+  });
+  return instance;
+}
+
+export interface Texts<Key extends string> {
+  readonly t: Translate<Key>;
+  readonly language: Language;
+  readonly setLanguage: (language: Language) => void;
+}
+
+/** The texts of the page; each page family calls it with its own keys. */
+export function useTranslations<Key extends string>(): Texts<Key> {
+  const { t, i18n } = useTranslation();
+  return {
+    t: (key, values) => t(key as string, { ...values }),
+    language: i18n.language === "de" ? "de" : "en",
+    setLanguage: (language) => void i18n.changeLanguage(language),
+  };
+}
+
+/** The browser's language if we speak it, else English. */
+export function preferredLanguage(wanted: readonly string[]): Language {
+  for (const tag of wanted) {
+    const known = LANGUAGES.find((language) => tag.toLowerCase().startsWith(language));
+    if (known !== undefined) return known;
+  }
+  return "en";
+}

@@ -1,0 +1,52 @@
+/** Text that exists in several languages, as studies and instruments write it. */
+export type Text = Readonly<Record<string, string>>;
+
+/** The text in `language`, else in English, else in whatever language there is. */
+export function inLanguage(text: Text | string | null | undefined, language: string): string {
+  if (text === null || text === undefined) return "";
+  if (typeof text === "string") return text;
+  return text[language] ?? text.en ?? Object.values(text)[0] ?? "";
+}
+
+/** Paragraphs of a longer text: blank lines separate them, lines starting with `- ` are points. */
+export type Paragraph =
+  | { readonly kind: "prose"; readonly text: string }
+  | { readonly kind: "heading"; readonly text: string }
+  | { readonly kind: "points"; readonly points: readonly string[] };
+
+const POINT = /^\s*[-*]\s+/;
+const HEADING = /^#+\s+/;
+
+/** Split a text into paragraphs, points and headings; nothing in it is ever read as HTML. */
+export function paragraphs(text: string): readonly Paragraph[] {
+  return text
+    .split(/\n\s*\n/)
+    .map((part) => part.trim())
+    .filter((part) => part !== "")
+    .flatMap(paragraph);
+}
+
+function paragraph(part: string): readonly Paragraph[] {
+  const lines = part.split("\n");
+  const first = lines[0] ?? "";
+  if (HEADING.test(first)) {
+    const rest = lines.slice(1).join("\n").trim();
+    const heading: Paragraph = { kind: "heading", text: first.replace(HEADING, "") };
+    return rest === "" ? [heading] : [heading, ...paragraph(rest)];
+  }
+  const start = lines.findIndex((line) => POINT.test(line));
+  if (start === -1) return [{ kind: "prose", text: lines.map((line) => line.trim()).join(" ") }];
+  const points: Paragraph = { kind: "points", points: joinPoints(lines.slice(start)) };
+  const before = lines.slice(0, start).join(" ").trim();
+  return before === "" ? [points] : [{ kind: "prose", text: before }, points];
+}
+
+/** A line that does not start a point continues the one before it. */
+function joinPoints(lines: readonly string[]): readonly string[] {
+  const points: string[] = [];
+  for (const line of lines) {
+    if (POINT.test(line)) points.push(line.replace(POINT, "").trim());
+    else points.push(`${points.pop() ?? ""} ${line.trim()}`.trim());
+  }
+  return points;
+}

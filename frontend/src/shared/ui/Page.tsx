@@ -1,0 +1,62 @@
+/** What every page starts with: theme, data cache, notices. */
+import { createTheme, MantineProvider, mergeThemeOverrides } from "@mantine/core";
+import { Notifications } from "@mantine/notifications";
+import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
+import type { i18n } from "i18next";
+import { type JSX, type ReactNode, StrictMode, useEffect } from "react";
+import { createRoot } from "react-dom/client";
+import { I18nextProvider } from "react-i18next";
+import { ApiError } from "../api/errors";
+import { theme } from "../theme/theme";
+import "@mantine/core/styles.css";
+import "@mantine/notifications/styles.css";
+import "../theme/tokens.css";
+
+const queries = new QueryClient({
+  defaultOptions: {
+    queries: {
+      staleTime: 10_000,
+      // An answer of the server stays the same when asked again; only a lost line is worth a retry.
+      retry: (count, error) => !(error instanceof ApiError) && count < 2,
+    },
+  },
+});
+
+interface PageProps {
+  readonly translations: i18n;
+  readonly children: ReactNode;
+  /** Multiplies every size; the tablet is read at arm's length. */
+  readonly scale?: number;
+}
+
+function Page({ translations, children, scale = 1 }: PageProps): JSX.Element {
+  useEffect(() => {
+    const follow = (language: string) => {
+      document.documentElement.lang = language;
+    };
+    follow(translations.language);
+    translations.on("languageChanged", follow);
+    return () => translations.off("languageChanged", follow);
+  }, [translations]);
+  return (
+    <StrictMode>
+      <MantineProvider
+        theme={mergeThemeOverrides(theme, createTheme({ scale }))}
+        defaultColorScheme="auto"
+      >
+        <I18nextProvider i18n={translations}>
+          <QueryClientProvider client={queries}>
+            <Notifications position="bottom-right" autoClose={5000} />
+            {children}
+          </QueryClientProvider>
+        </I18nextProvider>
+      </MantineProvider>
+    </StrictMode>
+  );
+}
+
+export function mountPage(page: PageProps): void {
+  const root = document.getElementById("root");
+  if (root === null) throw new Error("The page has no element #root to draw into.");
+  createRoot(root).render(<Page {...page} />);
+}

@@ -1,0 +1,20 @@
+/** The tablet's wording around errors: said to a participant, not to an engineer. */
+import { ErrorNotice, type ErrorTexts } from "@shared/ui/ErrorNotice";
+import type { JSX } from "react";
+import { useTexts } from "./i18n";
+
+interface FailureProps {
+  readonly error: unknown;
+  readonly onRetry?: () => void;
+}
+
+export function Failure({ error, onRetry }: FailureProps): JSX.Element {
+  const { t } = useTexts();
+  const texts: ErrorTexts = {
+    unreachable: t("error.unreachable"),
+    unreachableRemedy: t("error.unreachableRemedy"),
+    unexpected: t("error.unexpected"),
+    retry: t("error.retry"),
+  };
+  return <ErrorNotice error={error} texts={texts} onRetry={onRetry} />;
+}

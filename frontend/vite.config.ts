@@ -1,0 +1,48 @@
+import { existsSync, readdirSync } from "node:fs";
+import { resolve } from "node:path";
+import react from "@vitejs/plugin-react";
+import { defineConfig, type Plugin } from "vitest/config";
+
+const source = resolve(import.meta.dirname, "src");
+
+/** Every folder of `src` that holds an index.html is a page of its own: console, tablet, ... */
+const pages = readdirSync(source).filter((name) => existsSync(resolve(source, name, "index.html")));
+
+/** The server answers `/` with the console and `/tablet` with the tablet; so does the dev server. */
+function servePagesLikeTheServer(): Plugin {
+  return {
+    name: "serve-pages-like-the-server",
+    configureServer(server) {
+      server.middlewares.use((request, _response, next) => {
+        const [path, query] = (request.url ?? "/").split("?");
+        const page = path === "/" ? "console" : pages.find((name) => path === `/${name}`);
+        if (page !== undefined) request.url = `/${page}/index.html${query ? `?${query}` : ""}`;
+        next();
+      });
+    },
+  };
+}
+
+export default defineConfig({
+  root: source,
+  cacheDir: resolve(import.meta.dirname, "node_modules/.vite"),
+  publicDir: resolve(import.meta.dirname, "public"),
+  plugins: [react(), servePagesLikeTheServer()],
+  resolve: {
+    alias: { "@shared": resolve(source, "shared"), "@charts": resolve(source, "charts") },
+  },
+  build: {
+    outDir: resolve(import.meta.dirname, "../app/static"),
+    emptyOutDir: true,
+    manifest: true,
+    // The content security policy allows scripts from 'self' only: nothing may be inlined.
+    assetsInlineLimit: 0,
+    modulePreload: { polyfill: false },
+    chunkSizeWarningLimit: 1500,
+    rolldownOptions: {
+      input: Object.fromEntries(pages.map((name) => [name, resolve(source, name, "index.html")])),
+    },
+  },
+  server: { port: 5173, proxy: { "/api": "http://127.0.0.1:8000" } },
+  test: { root: source, include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
+});
