@@ -1,29 +1,117 @@
-"""The hand and foot box tasks: place, contacts, rules and summaries."""
+"""The hand and foot box tasks: place, contacts, rules and summaries.
 
-from app.science.tasks.layout import (
-    BlockSpec,
-    BoxSpec,
+    layout = build_layout(...)                        the place, the same for everybody
+    run = TaskRun(TaskRules(layout, writing_hand), part_names)
+    run.command(CommandKind.START, time_s)
+    run.frame(time_s, *touching_and_near(SurfaceArrays.of(layout), segments_m, radii_m, margin_m))
+    run.state, run.events, run.intervals, run.summary()
+
+`TaskRun` is a convenience; underneath, `advance(state, step)` is pure. The same rules run in the
+headset; both are held to the vectors in `tests/vectors/tasks`.
+"""
+
+from app.science.tasks.clock import ActiveClock, ClockError
+from app.science.tasks.contacts import (
+    SurfaceArrays,
+    segment_box_distance_m,
+    touching,
+    touching_and_near,
+    touching_frames,
+)
+from app.science.tasks.layout import build_layout
+from app.science.tasks.names import (
     Direction,
     Laterality,
-    LayoutError,
     Limb,
     Side,
-    Surface,
     SurfaceKind,
-    TaskLayout,
-    build_layout,
+    foot_parts,
+    hand_parts,
 )
+from app.science.tasks.rules import advance
+from app.science.tasks.run import TaskRun
+from app.science.tasks.state import (
+    Command,
+    CommandKind,
+    Contact,
+    ContactChange,
+    EventKind,
+    TaskEvent,
+    TaskRuleError,
+    TaskRules,
+    TaskState,
+)
+from app.science.tasks.summaries import (
+    Completion,
+    PhaseSummary,
+    completions,
+    part_side_time_s,
+    red_spans,
+    side_red_time_s,
+    summarise,
+    union,
+)
+from app.science.tasks.surfaces import (
+    BlockSpec,
+    BoxSpec,
+    LayoutError,
+    Surface,
+    TaskLayout,
+    Vector3,
+    side_unit,
+)
+from app.science.tasks.tracker import ContactInterval, ContactTracker
+from app.science.tasks.verification import rederive, replay
+from app.science.tasks.views import Colour, current_goal, displayed_numbers, surface_state
 
 __all__ = [
+    "ActiveClock",
     "BlockSpec",
     "BoxSpec",
+    "ClockError",
+    "Colour",
+    "Command",
+    "CommandKind",
+    "Completion",
+    "Contact",
+    "ContactChange",
+    "ContactInterval",
+    "ContactTracker",
     "Direction",
+    "EventKind",
     "Laterality",
     "LayoutError",
     "Limb",
+    "PhaseSummary",
     "Side",
     "Surface",
+    "SurfaceArrays",
     "SurfaceKind",
+    "TaskEvent",
     "TaskLayout",
+    "TaskRuleError",
+    "TaskRules",
+    "TaskRun",
+    "TaskState",
+    "Vector3",
+    "advance",
     "build_layout",
+    "completions",
+    "current_goal",
+    "displayed_numbers",
+    "foot_parts",
+    "hand_parts",
+    "part_side_time_s",
+    "red_spans",
+    "rederive",
+    "replay",
+    "segment_box_distance_m",
+    "side_red_time_s",
+    "side_unit",
+    "summarise",
+    "surface_state",
+    "touching",
+    "touching_and_near",
+    "touching_frames",
+    "union",
 ]

@@ -74,7 +74,7 @@ def build_layout(
     `sides`: None means all four walls and no rim. `start_square`: required for feet (the walk back
     ends there), refused for hands. `counting_foot`: None lets either foot count.
 
-    Raises LayoutError for sizes that are not positive, numbers that are not 1..n from left to right,
+    Raises LayoutError for sizes that are not positive, numbers that are not 1..n left to right,
     sides the limb does not have, overlapping boxes or blocks, and a foot box below the floor.
     """
     check_positive("wall_thickness_m", wall_thickness_m)

@@ -65,7 +65,13 @@ class Surface:
     @property
     def unit(self) -> str:
         """What turns red and is timed as one: the key, but for rim bars "hand/2/front_rim"."""
-        return "/".join(self.key.split("/")[:3])
+        return side_unit(self.key) or self.key
+
+
+def side_unit(key: str) -> str | None:
+    """The side a surface key belongs to, with the rim bars of a box as one; None for no side."""
+    words = key.split("/")
+    return "/".join(words[:3]) if len(words) > 2 and words[2] != "panel" else None
 
 
 @dataclass(frozen=True)

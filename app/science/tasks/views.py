@@ -1,0 +1,54 @@
+"""What to show of a state: the goal, the colours and the numbers."""
+
+from enum import StrEnum
+
+from app.science.tasks.names import SurfaceKind
+from app.science.tasks.state import TaskState
+
+
+class Colour(StrEnum):
+    """The four meanings a surface can show; palettes decide how they look."""
+
+    GREY = "grey"
+    GREEN = "green"
+    WHITE = "white"
+    RED = "red"
+
+
+def current_goal(state: TaskState) -> str | None:
+    """Key of the surface to touch next: a panel, the target, or the start square of a walk back.
+
+    Before the start it is the first panel, during a pause what it will be; None once frozen.
+    """
+    layout = state.rules.layout
+    if state.frozen:
+        return None
+    if state.walk_back_since_s is not None:
+        return layout.start_key
+    if state.n_green < len(state.order):
+        return layout.panel_key(state.order[state.n_green])
+    return layout.target_key
+
+
+def surface_state(state: TaskState) -> dict[str, Colour]:
+    """Colour of every surface: panels grey or green, sides white or red, target green, start white.
+
+    Sides are white while the clock stands: colours show what is being counted.
+    """
+    layout, red = state.rules.layout, state.red_units()
+    green = {layout.panel_key(box) for box in state.order[: state.n_green]}
+    fixed = {SurfaceKind.TARGET: Colour.GREEN, SurfaceKind.START: Colour.WHITE}
+    colours: dict[str, Colour] = {}
+    for surface in layout.surfaces:
+        if surface.kind is SurfaceKind.PANEL:
+            colours[surface.key] = Colour.GREEN if surface.key in green else Colour.GREY
+        elif surface.kind is SurfaceKind.SIDE:
+            colours[surface.key] = Colour.RED if surface.unit in red else Colour.WHITE
+        else:
+            colours[surface.key] = fixed[surface.kind]
+    return colours
+
+
+def displayed_numbers(state: TaskState) -> dict[int, int]:
+    """The number shown at each box: its place in the current order, 1 for the first to touch."""
+    return {box: place for place, box in enumerate(state.order, start=1)}
