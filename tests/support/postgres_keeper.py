@@ -8,6 +8,7 @@ Arguments: the owner's pid, the account (uid, gid), the folder, then PostgreSQL'
 """
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -79,12 +80,16 @@ def main(arguments: list[str]) -> None:
             extra_groups=[] if os.geteuid() == 0 else None,
             start_new_session=True,
         )
+    run = psutil.Process(int(owner))
     try:
-        keep(psutil.Process(int(owner)), server)
+        keep(run, server)
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         shut_down(server)
         (place / "stopped").touch()
+        if not alive(run):
+            # Killed before it could tidy up: what it shared is ours to remove.
+            shutil.rmtree(place.parent, ignore_errors=True)
 
 
 if __name__ == "__main__":

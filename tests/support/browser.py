@@ -1,0 +1,146 @@
+"""Headless Chromium, and pages whose errors fail the test.
+
+A page that works while its console fills with errors does not work: every context made here reports
+console errors and uncaught exceptions to one `PageWatch`, and the test fails at its end unless it
+said beforehand that it expects them.
+"""
+
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, sync_playwright
+
+from tests.support.chromium_binary import axe_script, find_chromium
+from tests.support.node import NODE
+
+ColorScheme = Literal["light", "dark"]
+DESKTOP = (1280, 800)
+ARGUMENTS = (
+    # Chromium's own sandbox does not work for root, nor inside most containers.
+    "--no-sandbox",
+    # No look-ups of its makers' hosts: on a closed network they fail slowly, on an open one they
+    # do not belong in a test.
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-quic",
+    "--disable-sync",
+    "--no-first-run",
+    # WebGL 2 in software, for the headset's page.
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--ignore-gpu-blocklist",
+)
+
+
+@contextmanager
+def launched_browser() -> Iterator[Browser]:
+    """A headless Chromium for the time of the block."""
+    chromium = find_chromium()
+    # Playwright's own Node needs a library that bare machines lack.
+    os.environ.setdefault("PLAYWRIGHT_NODEJS_PATH", str(NODE))
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=chromium.executable,
+            args=list(ARGUMENTS),
+            env={**os.environ, **chromium.environment},
+        )
+        try:
+            yield browser
+        finally:
+            browser.close()
+
+
+@dataclass
+class PageWatch:
+    """Collects what the pages of one test complain about."""
+
+    problems: list[str] = field(default_factory=list)
+    _allowed: list[re.Pattern[str]] = field(default_factory=list)
+
+    def allow(self, pattern: str) -> None:
+        """Expect problems that contain this regular expression, e.g. `status of 409`."""
+        self._allowed.append(re.compile(pattern))
+
+    def attach(self, context: BrowserContext) -> None:
+        """Watch every page the context has or gets."""
+        context.on("console", self._on_console)
+        context.on("weberror", lambda error: self.problems.append(f"uncaught: {error.error}"))
+
+    def unexpected(self) -> list[str]:
+        """The problems that were not allowed."""
+        return [
+            problem
+            for problem in self.problems
+            if not any(pattern.search(problem) for pattern in self._allowed)
+        ]
+
+    def _on_console(self, message: ConsoleMessage) -> None:
+        if message.type == "error":
+            address = message.location.get("url", "")
+            self.problems.append(f"console: {message.text} ({address})")
+
+
+@dataclass(frozen=True)
+class ContextFactory:
+    """Makes contexts (one is one person's browser: own cookies, own storage) and closes them."""
+
+    browser: Browser
+    watch: PageWatch
+
+    def __call__(
+        self,
+        size: tuple[int, int] = DESKTOP,
+        color_scheme: ColorScheme = "light",
+        locale: str = "en-US",
+        **options: Any,  # Playwright's own, such as base_url or has_touch
+    ) -> BrowserContext:
+        """A watched context; `size` is width x height in CSS pixels."""
+        width, height = size
+        context = self.browser.new_context(
+            viewport={"width": width, "height": height},
+            color_scheme=color_scheme,
+            locale=locale,
+            **options,
+        )
+        self.watch.attach(context)
+        return context
+
+
+@contextmanager
+def watched_contexts(browser: Browser, watch: PageWatch) -> Iterator[ContextFactory]:
+    """A factory whose contexts are closed, and whose pages' errors are raised, at the end."""
+    before = set(browser.contexts)
+    try:
+        yield ContextFactory(browser, watch)
+    finally:
+        for context in browser.contexts:
+            if context not in before:
+                context.close()
+    unexpected = watch.unexpected()
+    assert not unexpected, "the pages reported errors:\n" + "\n".join(unexpected)
+
+
+def take_screenshot(page: Page, folder: Path, name: str) -> Path:
+    """Save the whole page as `folder/name.png`, without moving parts."""
+    path = folder / f"{name}.png"
+    page.screenshot(path=path, full_page=True, animations="disabled")
+    return path
+
+
+def accessibility_violations(page: Page) -> list[str]:
+    """What axe-core calls serious or critical on the page as it is now, one line each."""
+    # Evaluated, not added as an element, so that the page's content security policy stays on.
+    page.evaluate(axe_script().read_text(encoding="utf-8"))
+    result = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+    return [
+        f"{violation['id']} ({violation['impact']}): {violation['help']}: "
+        + "; ".join(" ".join(map(str, node["target"])) for node in violation["nodes"])
+        for violation in result["violations"]
+        if violation["impact"] in {"serious", "critical"}
+    ]

@@ -1,0 +1,96 @@
+"""Finds a Chromium without asking for an installation.
+
+In this order: the program `$CHROMIUM`, a system one, the npm package `@sparticuz/chromium`, which
+carries Chromium's headless shell with the libraries and fonts a bare machine lacks. The package is
+installed once into `.cache/` of the checkout. (Playwright's own download is not used: it fetches
+from a host of its own, which closed networks do not reach.)
+"""
+
+import hashlib
+import os
+import shutil
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tests.support.node import npm_ci, run_node
+from tests.support.shared_run import locked
+
+SYSTEM = ("/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome")
+REPOSITORY = Path(__file__).resolve().parents[2]
+PACKAGE = Path(__file__).resolve().parent / "chromium"
+
+
+@dataclass(frozen=True)
+class Chromium:
+    """A program and what it needs in its environment."""
+
+    executable: Path
+    environment: dict[str, str] = field(default_factory=dict)
+
+
+def find_chromium() -> Chromium:
+    """The first that exists; raises `FileNotFoundError` if `$CHROMIUM` names nothing."""
+    chosen = os.environ.get("CHROMIUM")
+    if chosen:
+        if not Path(chosen).is_file():
+            raise FileNotFoundError(
+                f"CHROMIUM names {chosen}, which is not a file: unset it to let the tests choose"
+            )
+        return Chromium(Path(chosen))
+    for program in map(Path, SYSTEM):
+        if program.is_file():
+            return Chromium(program)
+    return packaged_chromium()
+
+
+def packaged_chromium() -> Chromium:
+    """Chromium from the npm package, unpacked on first use."""
+    unpacked = installed_packages() / "unpacked"
+    executable = unpacked / "chromium"
+    libraries = unpacked / "al2023" / "lib"
+    inherited = os.environ.get("LD_LIBRARY_PATH")
+    return Chromium(
+        executable,
+        {
+            "LD_LIBRARY_PATH": f"{libraries}:{inherited}" if inherited else str(libraries),
+            "FONTCONFIG_PATH": str(unpacked / "fonts"),
+        },
+    )
+
+
+def axe_script() -> Path:
+    """The accessibility checker axe-core: the frontend's, else our own."""
+    frontend = REPOSITORY / "frontend" / "node_modules" / "axe-core" / "axe.min.js"
+    if frontend.is_file():
+        return frontend
+    return installed_packages() / "node_modules" / "axe-core" / "axe.min.js"
+
+
+def installed_packages() -> Path:
+    """The folder in `.cache/` with the packages installed and Chromium unpacked.
+
+    Its name is the hash of the lock file: another version gets another folder.
+    """
+    key = hashlib.sha256((PACKAGE / "package-lock.json").read_bytes()).hexdigest()[:16]
+    cache = REPOSITORY / ".cache" / "chromium"
+    folder = cache / key
+    with locked(cache / "install.lock"):
+        if not (folder / "done").exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(PACKAGE, folder)
+            npm_ci(folder)
+            _unpack(folder)
+            (folder / "done").touch()
+    return folder
+
+
+def _unpack(folder: Path) -> None:
+    unpacked = folder / "unpacked"
+    unpacked.mkdir()
+    environment = {
+        # The package unpacks into the temporary folder, and its libraries only if it believes
+        # that it runs where they are missing.
+        "TMPDIR": str(unpacked),
+        "AWS_LAMBDA_JS_RUNTIME": "nodejs24.x",
+    }
+    run_node("unpack.mjs", cwd=folder, environment=environment)

