@@ -21,6 +21,10 @@ NOT_SOURCES = {"node_modules", "dist", "coverage"}
 SHOWN_LINES = 40
 
 
+class PagesError(Exception):
+    """The pages could not be built; the message carries the end of what npm said."""
+
+
 class PagesBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its parameter is hatchling's own
     """Hatchling calls `initialize` before it collects the files of any target."""
 
@@ -32,7 +36,11 @@ class PagesBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its param
         if version == "editable" and os.environ.get("REEMBODY_SKIP_FRONTEND"):
             say("the pages are left as they are (REEMBODY_SKIP_FRONTEND is set)")
             return
-        build_pages(root / "frontend", root / "app" / "static")
+        try:
+            build_pages(root / "frontend", root / "app" / "static")
+        except PagesError as error:
+            # The reader wants npm's words, not the build backend's stack.
+            raise SystemExit(f"reembody: {error}") from None
 
 
 def build_pages(frontend: Path, static: Path) -> None:
@@ -49,7 +57,7 @@ def build_pages(frontend: Path, static: Path) -> None:
     say("building the pages")
     npm(frontend, "run", "build")
     if not (static.is_dir() and any(static.iterdir())):
-        raise RuntimeError(f"`npm run build` in {frontend} succeeded but left nothing in {static}")
+        raise PagesError(f"`npm run build` in {frontend} succeeded but left nothing in {static}")
     stamp.write_text(wanted + "\n")
 
 
@@ -110,7 +118,7 @@ def npm(cwd: Path, *arguments: str) -> None:
     )
     if result.returncode != 0:
         end = "\n".join(result.stdout.splitlines()[-SHOWN_LINES:])
-        raise RuntimeError(
+        raise PagesError(
             f"`npm {' '.join(arguments)}` in {cwd} failed with exit code {result.returncode}. "
             f"Its last lines:\n{end}\nMend the frontend (or the network) and run this again."
         )
