@@ -79,9 +79,17 @@ def is_unit(q: FloatArray, tolerance: float = 1e-3) -> npt.NDArray[np.bool_]:
 
 def rotate(q: FloatArray, vectors: FloatArray) -> FloatArray:
     """Turn vectors, shape (..., 3), by unit quaternions (..., 4): v + 2w(u x v) + 2 u x (u x v)."""
-    u = q[..., 1:]
-    twice_cross = 2.0 * np.cross(u, vectors)
-    return vectors + q[..., :1] * twice_cross + np.cross(u, twice_cross)
+    w, x, y, z = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    vx, vy, vz = vectors[..., 0], vectors[..., 1], vectors[..., 2]
+    cx, cy, cz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
+    return np.stack(
+        (
+            vx + w * cx + y * cz - z * cy,
+            vy + w * cy + z * cx - x * cz,
+            vz + w * cz + x * cy - y * cx,
+        ),
+        axis=-1,
+    )
 
 
 def shortest(q: FloatArray, reference: FloatArray | None = None) -> FloatArray:

@@ -1,5 +1,6 @@
 """The body: joints, proportions, forward kinematics, and movement brought onto them."""
 
+from app.science.skeleton.joint_map import CMU_JOINTS
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
 from app.science.skeleton.kinematics import (
     BodySegments,
@@ -9,13 +10,18 @@ from app.science.skeleton.kinematics import (
     forward_kinematics,
 )
 from app.science.skeleton.model import Skeleton, SkeletonError, build_skeleton
+from app.science.skeleton.movement import Movement, largest_step_rad, loop, resample
+from app.science.skeleton.retarget import CaptureClip, retarget
 
 __all__ = [
+    "CMU_JOINTS",
     "JOINT_COUNT",
     "JOINT_INDEX",
     "JOINT_NAMES",
     "PARENTS",
     "BodySegments",
+    "CaptureClip",
+    "Movement",
     "Pose",
     "Skeleton",
     "SkeletonError",
@@ -23,4 +29,8 @@ __all__ = [
     "body_part_segments",
     "build_skeleton",
     "forward_kinematics",
+    "largest_step_rad",
+    "loop",
+    "resample",
+    "retarget",
 ]

@@ -1,0 +1,70 @@
+"""Feet that stand flat: a correction of how a capture's feet were measured.
+
+Captures disagree by up to 20 degrees about the pitch of a standing foot, as their markers sat
+differently on the shoe. A standing foot is flat, and it stands when its ankle is lowest. So each
+foot, and its toes, is turned by one constant pitch that makes it flat in those frames.
+"""
+
+import numpy as np
+import numpy.typing as npt
+
+from app.science.rotations import FloatArray, from_rotation_vector, multiply, rotate
+from app.science.skeleton.joints import JOINT_INDEX
+from app.science.skeleton.model import Skeleton
+
+_STANDING_SHARE = 0.1
+# Beyond this the frames show no flat foot (dancing on the toes), and nothing is corrected.
+_LARGEST_CORRECTION_RAD = np.radians(25.0)
+
+
+def flat_soles(world: FloatArray, skeleton: Skeleton, root_m: FloatArray) -> FloatArray:
+    """Return world_from_joint rotations (N, 22, 4) with feet and toes flat where they stand.
+
+    Args:
+        world: (N, 22, 4) world_from_joint.
+        skeleton: gives the pitch of a flat foot, from ankle to toes.
+        root_m: (N, 3) hips, with the height they have over the floor up to a constant.
+    """
+    result = world.copy()
+    for side in ("Left", "Right"):
+        standing = _lowest_frames(_ankle_height(world, skeleton, root_m, side))
+        for part in ("Foot", "Toes"):
+            joint = JOINT_INDEX[f"{side}{part}"]
+            bone = skeleton.ends_m[joint]
+            pitch = float(np.median(_pitch(rotate(world[standing, joint], bone))))
+            correction = float(_pitch(bone)) - pitch
+            if abs(correction) <= _LARGEST_CORRECTION_RAD:
+                turn = from_rotation_vector(np.array((correction, 0.0, 0.0)))
+                result[:, joint] = multiply(world[:, joint], turn)
+    return result
+
+
+def ground_height(world: FloatArray, skeleton: Skeleton, root_m: FloatArray) -> float:
+    """Return the height of the floor the capture's lower foot stands on, flat; see `flat_soles`.
+
+    The lowest point of all would be a toe in the swing, which a stiff model pushes too low.
+    """
+    heights = [_ankle_height(world, skeleton, root_m, side) for side in ("Left", "Right")]
+    ankle = min(float(np.median(height[_lowest_frames(height)])) for height in heights)
+    return ankle - skeleton.ankle_height_m
+
+
+def _ankle_height(
+    world: FloatArray, skeleton: Skeleton, root_m: FloatArray, side: str
+) -> FloatArray:
+    height = root_m[:, 1].copy()
+    outer = world[:, 0]
+    for part in ("UpperLeg", "LowerLeg", "Foot"):
+        joint = JOINT_INDEX[f"{side}{part}"]
+        height += rotate(outer, skeleton.offsets_m[joint])[:, 1]
+        outer = world[:, joint]
+    return height
+
+
+def _lowest_frames(height: FloatArray) -> npt.NDArray[np.intp]:
+    count = max(1, round(_STANDING_SHARE * len(height)))
+    return np.argsort(height)[:count]
+
+
+def _pitch(direction: FloatArray) -> FloatArray:
+    return np.asarray(np.arcsin(direction[..., 1] / np.linalg.norm(direction, axis=-1)))
