@@ -1,0 +1,54 @@
+"""What all parts of a study file share: frozen strict models, texts, keys and durations."""
+
+from collections.abc import Mapping
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic_core import PydanticCustomError
+
+TEXT_MARK = "x-text"
+"""Marks, in the JSON schema, the mappings that must hold every declared language."""
+
+_KEY = r"^[a-z][a-z0-9_]{0,39}$"
+_MAX_DURATION_S = 86_400.0
+
+Text = Annotated[Mapping[str, str], Field(min_length=1, json_schema_extra={TEXT_MARK: True})]
+"""Language code -> wording for participants and operators."""
+
+Key = Annotated[
+    str,
+    StringConstraints(pattern=_KEY),
+    Field(description="lower-case letters, digits and _, beginning with a letter, at most 40"),
+]
+Duration = Annotated[float, Field(gt=0, le=_MAX_DURATION_S, description="seconds, above 0")]
+Pause = Annotated[float, Field(ge=0, le=_MAX_DURATION_S, description="seconds; 0 for none")]
+Length = Annotated[float, Field(gt=0, le=10, description="metres, above 0")]
+Point = Annotated[
+    tuple[float, float, float],
+    Field(description="[x, y, z] in metres: x to the right, y up, -z ahead, from the start square"),
+]
+
+
+class Strict(BaseModel):
+    """A frozen value that takes nothing unknown and converts nothing silently."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+class Provenance(Strict):
+    """Where a study comes from, under which licence, and how far that was checked."""
+
+    source: str
+    licence: str
+    verified: str
+    notes: tuple[str, ...] = ()
+
+
+def refusal(
+    message: str, *, value: object = None, valid: object = None, remedy: str = ""
+) -> PydanticCustomError:
+    """The error that a validator raises: what happened, the value, what is valid, what to do."""
+    context: dict[str, Any] = {
+        "said": message, "value": value, "valid": valid, "remedy": remedy,
+    }  # fmt: skip
+    return PydanticCustomError("refused", "{said}", context)

@@ -1,0 +1,79 @@
+"""The one factor of a study, its levels, and the orders in which people meet them."""
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field
+
+from app.protocol.common import Key, Strict, Text, refusal
+
+MAX_LATENCY_MS = 10_000.0
+MAX_PERMUTED = 6
+
+
+def _latency(value: float) -> float:
+    if value < 0:
+        raise refusal(
+            f"The latency is negative ({value:g} ms): the body would move before the participant.",
+            value=value,
+            valid=f"0 to {MAX_LATENCY_MS:g} ms",
+            remedy="Give the latency to add, 0 for none.",
+        )
+    if value > MAX_LATENCY_MS:
+        raise refusal(
+            f"The latency of {value:g} ms is longer than any body can be steered with.",
+            value=value,
+            valid=f"0 to {MAX_LATENCY_MS:g} ms",
+            remedy="Give milliseconds, not microseconds.",
+        )
+    return value
+
+
+LatencyMs = Annotated[
+    float, AfterValidator(_latency), Field(description="added latency in milliseconds, 0 or more")
+]
+
+
+class Condition(Strict):
+    """One level of the factor: the latency that is added to every delayed body part's target."""
+
+    key: Key
+    latency_ms: LatencyMs
+    label: Text
+
+
+def _told_apart(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
+    for index, condition in enumerate(conditions):
+        for earlier in conditions[:index]:
+            if condition.key == earlier.key:
+                raise refusal(
+                    f"Two conditions have the key {condition.key!r}.",
+                    value=condition.key,
+                    valid="a key of its own for each condition",
+                    remedy="Rename one of them.",
+                )
+            if condition.latency_ms == earlier.latency_ms:
+                raise refusal(
+                    f"The conditions {earlier.key!r} and {condition.key!r} both add "
+                    f"{condition.latency_ms:g} ms, so no analysis can tell them apart.",
+                    value=condition.latency_ms,
+                    valid="a latency of its own for each condition",
+                    remedy="Change or remove one of them.",
+                )
+    return conditions
+
+
+Conditions = Annotated[tuple[Condition, ...], Field(min_length=1), AfterValidator(_told_apart)]
+
+
+class Orders(Strict):
+    """Counterbalancing: how many times each order is used, and what happens afterwards.
+
+    `replicates`: initial blocks of the ledger; one block holds every order once. `seed`: decides
+    how the rows are mixed within each block. `when_full`: "grow" adds whole blocks, "closed" takes
+    nobody more.
+    """
+
+    design: Literal["all_permutations"]
+    replicates: Annotated[int, Field(ge=1, le=1000)]
+    seed: Annotated[int, Field(ge=0)]
+    when_full: Literal["grow", "closed"]

@@ -1,0 +1,151 @@
+"""What must fit together across a study file: references, languages, and the size of the design.
+
+These checks read the plain tree and skip what has another shape than expected (its own problem is
+reported elsewhere). So they run even when a value somewhere else is wrong, and a person sees all
+problems of a file at once.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+
+from app.protocol.common import TEXT_MARK
+from app.protocol.conditions import MAX_PERMUTED
+from app.protocol.schema import Schema, marked_places
+from app.protocol.source import Path, Plain
+from app.protocol.study import SCREEN_TEXTS
+from app.protocol.titles import DEFAULT_LANGUAGES
+from app.science.instruments import DefinitionProblem, Instrument
+from app.science.instruments.texts import text_problems
+
+
+def cross_problems(
+    tree: Plain, schema: Schema, instruments: Mapping[str, Instrument]
+) -> Iterator[DefinitionProblem]:
+    """Every problem that lies between two places of a study file."""
+    if not isinstance(tree, dict):
+        return
+    languages = [one for one in _list(tree.get("languages")) if isinstance(one, str)]
+    yield from _texts(tree, schema, languages)
+    yield from _screens(tree)
+    yield from _references(tree, instruments, languages)
+    yield from _titles(tree, languages)
+    yield from _rows(tree)
+
+
+def _texts(tree: Plain, schema: Schema, languages: list[str]) -> Iterator[DefinitionProblem]:
+    for path, text in marked_places(schema, tree, TEXT_MARK):
+        if isinstance(text, dict):
+            wordings = {key: words for key, words in text.items() if isinstance(words, str)}
+            spoken = [one for one in languages if one not in text or one in wordings]
+            yield from text_problems(path, wordings, spoken)
+
+
+def _screens(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
+    texts = tree.get("texts")
+    for key in SCREEN_TEXTS:
+        if isinstance(texts, dict) and key not in texts:
+            yield DefinitionProblem(
+                ("texts", key),
+                f"The text {key!r} is missing; devices show it outside of the steps.",
+                None,
+                list(SCREEN_TEXTS),
+                "Add it in every language.",
+            )
+
+
+def _steps(tree: dict[str, Plain]) -> Iterator[tuple[Path, dict[str, Plain]]]:
+    """Every step and phase that is a mapping, with its path."""
+    procedure = _dict(tree.get("procedure"))
+    places: tuple[tuple[Path, Plain], ...] = (
+        (("procedure", "before"), procedure.get("before")),
+        (("procedure", "block", "phases"), _dict(procedure.get("block")).get("phases")),
+        (("procedure", "after"), procedure.get("after")),
+    )
+    for path, steps in places:
+        for index, step in enumerate(_list(steps)):
+            if isinstance(step, dict):
+                yield (*path, index), step
+
+
+def _references(
+    tree: dict[str, Plain], instruments: Mapping[str, Instrument], languages: list[str]
+) -> Iterator[DefinitionProblem]:
+    texts = tree.get("texts")
+    for path, step in _steps(tree):
+        text = step.get("text")
+        if isinstance(text, str) and isinstance(texts, dict) and text not in texts:
+            yield DefinitionProblem(
+                (*path, "text"),
+                f"There is no text {text!r}.",
+                text,
+                sorted(texts),
+                f"Add it under texts, or use one of: {', '.join(sorted(texts))}.",
+            )
+        for field in ("instrument", "questionnaire"):
+            key = step.get(field)
+            if isinstance(key, str):
+                yield from _instrument((*path, field), key, instruments, languages)
+
+
+def _instrument(
+    path: Path, key: str, instruments: Mapping[str, Instrument], languages: list[str]
+) -> Iterator[DefinitionProblem]:
+    if key not in instruments:
+        known = ", ".join(sorted(instruments)) or "none is loaded"
+        yield DefinitionProblem(
+            path,
+            f"There is no instrument {key!r}.",
+            key,
+            sorted(instruments),
+            f"Add its file to the instruments, or use one of: {known}.",
+        )
+        return
+    spoken = instruments[key].languages
+    for language in languages:
+        if language not in spoken:
+            yield DefinitionProblem(
+                path,
+                f"The instrument {key!r} has no wording in the study's language {language!r}.",
+                key,
+                list(spoken),
+                f"Translate the instrument, or take {language} out of the study's languages.",
+            )
+
+
+def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[DefinitionProblem]:
+    """Built-in titles speak two languages; a study in a third brings its own."""
+    foreign = [language for language in languages if language not in DEFAULT_LANGUAGES]
+    for path, step in _steps(tree):
+        fields = ("title", "questionnaire_title") if "limb" in step else ("title",)
+        for field in fields:
+            if foreign and step.get(field) is None:
+                yield DefinitionProblem(
+                    (*path, field),
+                    f"There is no built-in title in the language {foreign[0]!r}.",
+                    None,
+                    sorted(DEFAULT_LANGUAGES),
+                    f"Give this step a {field} in every language.",
+                )
+
+
+def _rows(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
+    n_conditions = len(_list(tree.get("conditions")))
+    if _dict(tree.get("orders")).get("design") == "all_permutations" and (
+        n_conditions > MAX_PERMUTED
+    ):
+        rows = math.factorial(n_conditions) if n_conditions < 20 else "far too many"
+        yield DefinitionProblem(
+            ("orders", "design"),
+            f"All orders of {n_conditions} conditions are {rows} rows for each replicate.",
+            n_conditions,
+            f"at most {MAX_PERMUTED} conditions ({math.factorial(MAX_PERMUTED)} rows)",
+            "Use fewer conditions.",
+        )
+
+
+def _dict(value: Plain) -> dict[str, Plain]:
+    return value if isinstance(value, dict) else {}
+
+
+def _list(value: Plain) -> list[Plain]:
+    return value if isinstance(value, list) else []

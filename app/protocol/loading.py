@@ -1,0 +1,133 @@
+"""From the text of a file to a value with a content hash; all problems of the file at once.
+
+The hash is taken over the *validated* content as canonical JSON, defaults written out. So comments,
+key order, quoting and 60 for 60.0 make no difference, and what is stored stays complete even if a
+later release changes a default.
+"""
+
+import copy
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Generic, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from app.protocol.canonical import canonical_json, sha256_of
+from app.protocol.cross import cross_problems
+from app.protocol.errors import ConfigError, ConfigProblem
+from app.protocol.explain import explain, locate, remove
+from app.protocol.schema import Schema
+from app.protocol.source import Plain, Source, read_source
+from app.protocol.study import StudyProtocol
+from app.science.instruments import Instrument
+
+_Value = TypeVar("_Value")
+
+
+@dataclass(frozen=True)
+class LoadedStudy:
+    """A study with the SHA-256 of its content; `canonical_json` is what the hash was taken over."""
+
+    protocol: StudyProtocol
+    content_hash: str
+    canonical_json: str
+
+
+@dataclass(frozen=True)
+class LoadedInstrument:
+    """An instrument with the SHA-256 of its content."""
+
+    instrument: Instrument
+    content_hash: str
+    canonical_json: str
+
+
+def load_study(text: str, *, instruments: Mapping[str, Instrument]) -> LoadedStudy:
+    """Read a study file (YAML). `instruments`: those it may refer to, by key.
+
+    Raises ConfigError with every problem of the file.
+    """
+    source = read_source(text)
+    found = [locate(one, source) for one in cross_problems(source.tree, _STUDY.schema, instruments)]
+    protocol = _validated(_STUDY, source, found)
+    canonical = canonical_json(_STUDY.adapter.dump_python(protocol, mode="json"))
+    return LoadedStudy(protocol, sha256_of(canonical), canonical)
+
+
+def load_instrument(text: str) -> LoadedInstrument:
+    """Read an instrument file (YAML). Raises ConfigError with every problem of the file."""
+    instrument = _validated(_INSTRUMENT, read_source(text), [])
+    canonical = canonical_json(_INSTRUMENT.adapter.dump_python(instrument, mode="json"))
+    return LoadedInstrument(instrument, sha256_of(canonical), canonical)
+
+
+def parse_study_json(canonical_json: str) -> StudyProtocol:
+    """The study that was stored as canonical JSON. Raises ConfigError if it is not one."""
+    return _parsed(_STUDY, canonical_json)
+
+
+def parse_instrument_json(canonical_json: str) -> Instrument:
+    """The instrument that was stored as canonical JSON. Raises ConfigError if it is not one."""
+    return _parsed(_INSTRUMENT, canonical_json)
+
+
+class _Kind(Generic[_Value]):
+    """A kind of file: how its content becomes a value, and the schema that explains problems."""
+
+    def __init__(self, adapter: TypeAdapter[_Value]) -> None:
+        self.adapter = adapter
+
+    @cached_property
+    def schema(self) -> Schema:
+        return self.adapter.json_schema()
+
+    def validate(self, tree: Plain) -> _Value:
+        # By way of JSON: there a list may become a tuple and a word an enum, and still nothing
+        # else is converted.
+        return self.adapter.validate_json(json.dumps(tree))
+
+
+_STUDY = _Kind(TypeAdapter(StudyProtocol))
+_INSTRUMENT = _Kind(TypeAdapter(Instrument))
+
+
+def _validated(kind: _Kind[_Value], source: Source, found: list[ConfigProblem]) -> _Value:
+    problems = [*source.problems, *found]
+    if not isinstance(source.tree, dict):
+        message = "The file is not a mapping of settings."
+        remedy = "Begin with lines like key: my-study."
+        raise ConfigError([*problems, ConfigProblem("", 1, 1, message, remedy=remedy)])
+    try:
+        value = kind.validate(source.tree)
+    except ValidationError as error:
+        problems += explain(error, kind.schema, source)
+        problems += _behind_unknown_keys(kind, error, source)
+        raise ConfigError(problems) from error
+    if problems:
+        raise ConfigError(problems)
+    return value
+
+
+def _behind_unknown_keys(
+    kind: _Kind[_Value], error: ValidationError, source: Source
+) -> Iterable[ConfigProblem]:
+    """Problems that show only once unknown keys are gone, such as formulas with unknown names."""
+    unknown = [one["loc"] for one in error.errors() if one["type"] == "extra_forbidden"]
+    if len(unknown) != error.error_count():
+        return
+    cleaned = copy.deepcopy(source.tree)
+    for place in unknown:
+        remove(cleaned, place)
+    try:
+        kind.validate(cleaned)
+    except ValidationError as later:
+        yield from explain(later, kind.schema, source)
+
+
+def _parsed(kind: _Kind[_Value], text: str) -> _Value:
+    try:
+        return kind.adapter.validate_json(text)
+    except ValidationError as error:
+        raise ConfigError(explain(error, kind.schema, Source())) from error

@@ -1,0 +1,44 @@
+"""Counterbalancing: every order of the conditions, and the rows of the ledger that hold them.
+
+All n! orders together are balanced by construction: each condition stands equally often at each
+position, and each ordered pair of neighbours occurs equally often. A *block* of the ledger holds
+every order once; its rows are mixed, so that nobody can tell which order comes next. Blocks are
+drawn independently from the study's seed: adding one never changes those that exist.
+"""
+
+from itertools import permutations
+from typing import NamedTuple
+
+import numpy as np
+
+from app.protocol.study import StudyProtocol
+
+Sequence = tuple[str, ...]
+"""One order of the conditions, by their keys."""
+
+
+class LedgerRow(NamedTuple):
+    """One slot: an order, and which replicate of it this is (from 1)."""
+
+    sequence: Sequence
+    replicate: int
+
+
+def sequences(protocol: StudyProtocol) -> tuple[Sequence, ...]:
+    """All n! orders, sorted by the place of their conditions in the study file."""
+    return tuple(permutations(condition.key for condition in protocol.conditions))
+
+
+def ledger_block(protocol: StudyProtocol, block_index: int) -> tuple[LedgerRow, ...]:
+    """The n! rows of one block, in the order in which they are given out.
+
+    `block_index` counts from 0 and is the replicate less one. The rows depend on nothing but the
+    conditions' keys, the seed and the index (PCG64 seeded with SeedSequence([seed, block_index])).
+    Raises ValueError for a negative index.
+    """
+    if block_index < 0:
+        raise ValueError(f"Block {block_index} does not exist. Blocks count from 0.")
+    orders = sequences(protocol)
+    seeds = np.random.SeedSequence([protocol.orders.seed, block_index])
+    rng = np.random.Generator(np.random.PCG64(seeds))
+    return tuple(LedgerRow(orders[at], block_index + 1) for at in rng.permutation(len(orders)))

@@ -1,0 +1,137 @@
+"""From a study and one order of its conditions to the steps of a session.
+
+The plan is what a session walks through: setup steps, then for each condition its phases, each
+followed by its questionnaire, then the closing steps. It never changes during a session.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from app.protocol.common import Text
+from app.protocol.conditions import Condition
+from app.protocol.errors import PlanError
+from app.protocol.procedure import (
+    ClosingStep,
+    FormStep,
+    FreeRoamStep,
+    SetupStep,
+    TaskPhase,
+)
+from app.protocol.study import StudyProtocol
+from app.protocol.titles import title_of
+from app.science.tasks.layout import Limb
+
+StepKind = Literal[
+    "consent",
+    "form",
+    "instructions",
+    "height",
+    "materialise",
+    "free_roam",
+    "task",
+    "questionnaire",
+    "debrief",
+]
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a session.
+
+    `index` counts from 0; `key` is unique ("form.demographics", "block2.hand",
+    "block2.hand.karas2020"). `block` counts from 1 and, like `condition`, is None outside the
+    blocks. `latency_ms` is also set for free movement. `text` names a text of the study.
+    """
+
+    index: int
+    key: str
+    kind: StepKind
+    title: Text
+    block: int | None = None
+    condition: str | None = None
+    latency_ms: float | None = None
+    limb: Limb | None = None
+    preparation_s: float | None = None
+    duration_s: float | None = None
+    freeze_s: float | None = None
+    instrument: str | None = None
+    text: str | None = None
+
+
+def compile_plan(
+    protocol: StudyProtocol, sequence: Sequence[str], *, block_limb_flip: bool = False
+) -> tuple[Step, ...]:
+    """All steps of a session in which the conditions come in the order `sequence` (their keys).
+
+    With `limb_order: alternate` every other block has its phases turned round: the even ones (2, 4,
+    ...), or with `block_limb_flip` the odd ones, so that a caller can balance it over people. With
+    `limb_order: fixed` the flip has no effect. Raises PlanError unless `sequence` names each
+    condition exactly once.
+    """
+    known = [condition.key for condition in protocol.conditions]
+    if sorted(sequence) != sorted(known):
+        raise PlanError(
+            f"The order {list(sequence)} does not fit the study. "
+            f"Name each of {', '.join(known)} exactly once."
+        )
+    steps = [_simple(step) for step in protocol.procedure.before]
+    for block, key in enumerate(sequence, start=1):
+        phases = protocol.procedure.block.phases
+        turned = block % 2 == (1 if block_limb_flip else 0)
+        if protocol.procedure.block.limb_order == "alternate" and turned:
+            phases = phases[::-1]
+        steps.extend(_block(block, protocol.condition(key), phases))
+    steps.extend(_simple(step) for step in protocol.procedure.after)
+    return tuple(_numbered(steps))
+
+
+def _simple(step: SetupStep | ClosingStep) -> Step:
+    """A step outside the blocks."""
+    title = title_of(step.step, step.title)
+    if isinstance(step, FormStep):
+        key = f"form.{step.instrument}"
+        return Step(0, key, "form", title, instrument=step.instrument)
+    plain = Step(0, step.step, step.step, title, text=step.text)
+    if isinstance(step, FreeRoamStep):
+        return replace(plain, latency_ms=step.latency_ms, duration_s=step.duration_s)
+    return plain
+
+
+def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Iterator[Step]:
+    for phase in phases:
+        key = f"block{block}.{phase.limb}"
+        task = Step(
+            0,
+            key,
+            "task",
+            title_of(phase.limb, phase.title),
+            block=block,
+            condition=condition.key,
+            latency_ms=condition.latency_ms,
+            limb=phase.limb,
+            preparation_s=phase.preparation_s,
+            duration_s=phase.duration_s,
+            freeze_s=phase.freeze_s,
+            text=phase.text,
+        )
+        yield task
+        yield replace(
+            task,
+            key=f"{key}.{phase.questionnaire}",
+            kind="questionnaire",
+            title=title_of("questionnaire", phase.questionnaire_title),
+            preparation_s=None,
+            duration_s=None,
+            freeze_s=None,
+            instrument=phase.questionnaire,
+            text=None,
+        )
+
+
+def _numbered(steps: Sequence[Step]) -> Iterator[Step]:
+    """Give each step its index, and a repeated step a key of its own: consent, consent.2."""
+    seen: dict[str, int] = {}
+    for index, step in enumerate(steps):
+        count = seen[step.key] = seen.get(step.key, 0) + 1
+        yield replace(step, index=index, key=step.key if count == 1 else f"{step.key}.{count}")

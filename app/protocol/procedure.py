@@ -1,0 +1,124 @@
+"""What happens in a session, step by step: before the blocks, in each block, and after them.
+
+A *block* is one condition; its *phases* are done one after the other, each followed by its
+questionnaire. `text` names one of the study's texts; `title` replaces the built-in step title.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field
+
+from app.protocol.common import Duration, Key, Pause, Strict, Text, refusal
+from app.protocol.conditions import LatencyMs
+from app.science.tasks.layout import Limb
+
+
+class ConsentStep(Strict):
+    """The participant reads the consent text and agrees, or the session ends."""
+
+    step: Literal["consent"]
+    text: Key
+    title: Text | None = None
+
+
+class FormStep(Strict):
+    """The participant fills in an instrument."""
+
+    step: Literal["form"]
+    instrument: Key
+    title: Text | None = None
+
+
+class InstructionsStep(Strict):
+    """The participant reads a text and can ask."""
+
+    step: Literal["instructions"]
+    text: Key
+    title: Text | None = None
+
+
+class HeightStep(Strict):
+    """The local avatar is matched to the participant's height; stated and matched are stored."""
+
+    step: Literal["height"]
+    text: Key | None = None
+    title: Text | None = None
+
+
+class MaterialiseStep(Strict):
+    """The participant stands inside the local avatar in T-pose and presses the grip buttons."""
+
+    step: Literal["materialise"]
+    text: Key | None = None
+    title: Text | None = None
+
+
+class FreeRoamStep(Strict):
+    """The participant gets used to the body for a while, with a latency of its own."""
+
+    step: Literal["free_roam"]
+    duration_s: Duration
+    latency_ms: LatencyMs
+    text: Key | None = None
+    title: Text | None = None
+
+
+class DebriefStep(Strict):
+    """The participant is told what the study was about."""
+
+    step: Literal["debrief"]
+    text: Key
+    title: Text | None = None
+
+
+SetupStep = Annotated[
+    ConsentStep | FormStep | InstructionsStep | HeightStep | MaterialiseStep | FreeRoamStep,
+    Field(discriminator="step"),
+]
+ClosingStep = Annotated[FormStep | InstructionsStep | DebriefStep, Field(discriminator="step")]
+
+
+class TaskPhase(Strict):
+    """One timed task. `duration_s` is active time: pauses and walks back do not count.
+
+    `preparation_s`: countdown before it; `freeze_s`: scene and body stand still after it.
+    """
+
+    limb: Limb
+    preparation_s: Pause
+    duration_s: Duration
+    freeze_s: Pause
+    questionnaire: Key
+    text: Key | None = None
+    title: Text | None = None
+    questionnaire_title: Text | None = None
+
+
+def _each_limb_once(phases: tuple[TaskPhase, ...]) -> tuple[TaskPhase, ...]:
+    limbs = [phase.limb for phase in phases]
+    if len(set(limbs)) < len(limbs):
+        raise refusal(
+            "A limb has two phases in one block.",
+            value=[str(limb) for limb in limbs],
+            valid="hand and foot, each at most once",
+            remedy="Keep one phase for each limb.",
+        )
+    return phases
+
+
+class Block(Strict):
+    """The phases of one condition.
+
+    `limb_order`: "fixed" as listed; "alternate" turns the order round in every other block.
+    """
+
+    limb_order: Literal["fixed", "alternate"]
+    phases: Annotated[tuple[TaskPhase, ...], Field(min_length=1), AfterValidator(_each_limb_once)]
+
+
+class Procedure(Strict):
+    """A whole session."""
+
+    before: tuple[SetupStep, ...]
+    block: Block
+    after: tuple[ClosingStep, ...]

@@ -1,0 +1,238 @@
+"""A configuration file as a tree of plain values that still knows where everything stood.
+
+The text is read as a stream of YAML events, and each limit is checked on the event itself: nothing
+is ever expanded, and a file that is too deep or too long costs no more than its first excess.
+"""
+
+from dataclasses import dataclass, field
+
+import yaml
+
+from app.protocol.errors import ConfigError, ConfigProblem
+from app.protocol.scalars import scalar_problem, scalar_value
+
+MAX_BYTES = 256 * 1024
+MAX_NODES = 20_000
+MAX_DEPTH = 12
+
+Path = tuple[str | int, ...]
+Plain = None | bool | int | float | str | list["Plain"] | dict[str, "Plain"]
+
+_CORE_TAGS = frozenset(f"tag:yaml.org,2002:{kind}" for kind in ("map", "seq", "str"))
+_ONE_WAY = "Write the value out at each place where it is needed."
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A place in the text, counted from 1."""
+
+    line: int
+    column: int
+
+
+@dataclass
+class Source:
+    """The values of a file, with the place of each value and of each key.
+
+    `problems` are those that did not stop the reading, such as a doubled key; `refused` are the
+    places of values that were left empty because of one.
+    """
+
+    tree: Plain = None
+    values: dict[Path, Mark] = field(default_factory=dict)
+    keys: dict[Path, Mark] = field(default_factory=dict)
+    problems: list[ConfigProblem] = field(default_factory=list)
+    refused: set[Path] = field(default_factory=set)
+
+    def place(self, path: Path, *, of_key: bool = False) -> Mark:
+        """Where the value (or its key) stands; for a missing one, where its parent stands."""
+        marks = self.keys if of_key else self.values
+        while path and path not in marks:
+            path, marks = path[:-1], self.values
+        return marks.get(path, Mark(0, 0))
+
+
+def read_source(text: str) -> Source:
+    """Read one YAML document of mappings, lists and scalars.
+
+    Scalars follow the core schema of YAML 1.2: only true and false are booleans, so that `no`, `on`
+    and dates stay text. Raises ConfigError for broken YAML, for anchors, aliases and tags, and for
+    files over the limits; problems that leave the tree readable are collected in the result.
+    """
+    size = len(text.encode("utf-8", "surrogatepass"))
+    if size > MAX_BYTES:
+        raise ConfigError(
+            [
+                ConfigProblem(
+                    "",
+                    1,
+                    1,
+                    f"The file has {size} bytes, more than {MAX_BYTES}.",
+                    size,
+                    f"<= {MAX_BYTES}",
+                    "Shorten it: a study file is settings and texts, never data.",
+                )
+            ]
+        )
+    try:
+        return _Builder(text).build()
+    except yaml.MarkedYAMLError as error:
+        raise _syntax_error(error) from error
+    except yaml.reader.ReaderError as error:
+        before = text[: error.position]
+        line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
+        message = f"The character U+{ord(str(error.character)):04X} cannot be part of a file."
+        raise ConfigError(
+            [ConfigProblem("", line, column, message, remedy="Remove it.")]
+        ) from error
+
+
+def path_text(path: Path) -> str:
+    """A path as people write it: conditions[1].latency_ms."""
+    parts = (f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
+    return "".join(parts).removeprefix(".")
+
+
+def _syntax_error(error: yaml.MarkedYAMLError) -> ConfigError:
+    mark = error.problem_mark or error.context_mark
+    line, column = (0, 0) if mark is None else (mark.line + 1, mark.column + 1)
+    said = ", ".join(part for part in (error.context, error.problem) if part)
+    return ConfigError(
+        [
+            ConfigProblem(
+                "",
+                line,
+                column,
+                f"This is not readable YAML: {said}.",
+                remedy="Check indentation, colons and quotes here and in the line before.",
+            )
+        ]
+    )
+
+
+class _Builder:
+    """Builds the tree from events; recursion is as deep as the file, so at most MAX_DEPTH."""
+
+    def __init__(self, text: str) -> None:
+        self._events = yaml.parse(text, Loader=yaml.SafeLoader)
+        self._source = Source()
+        self._nodes = 0
+
+    def build(self) -> Source:
+        """Read the one document of the stream."""
+        next(self._events)
+        if isinstance(event := next(self._events), yaml.StreamEndEvent):
+            raise self._refusal(event, (), "The file is empty.", "Give a mapping of settings.")
+        self._source.tree = self._node(next(self._events), ())
+        next(self._events)
+        if not isinstance(event := next(self._events), yaml.StreamEndEvent):
+            raise self._refusal(
+                event, (), "There is a second document.", "Keep one document: remove the '---'."
+            )
+        return self._source
+
+    def _node(self, event: yaml.Event, path: Path) -> Plain:
+        self._check(event, path)
+        self._source.values[path] = _mark(event)
+        if isinstance(event, yaml.ScalarEvent):
+            return self._scalar(event, path)
+        if len(path) >= MAX_DEPTH:
+            raise self._refusal(
+                event,
+                path,
+                f"This is nested more than {MAX_DEPTH} levels deep.",
+                "No setting lies that deep: check the brackets and the indentation.",
+            )
+        return (
+            self._sequence(path) if isinstance(event, yaml.SequenceStartEvent) else self._map(path)
+        )
+
+    def _sequence(self, path: Path) -> list[Plain]:
+        values: list[Plain] = []
+        while not isinstance(event := next(self._events), yaml.SequenceEndEvent):
+            values.append(self._node(event, (*path, len(values))))
+        return values
+
+    def _map(self, path: Path) -> dict[str, Plain]:
+        values: dict[str, Plain] = {}
+        while not isinstance(event := next(self._events), yaml.MappingEndEvent):
+            key = self._key(event, path)
+            inner = (*path, key)
+            if key in values:
+                self._duplicate(event, inner)
+            else:
+                self._source.keys[inner] = _mark(event)
+            kept = self._source.values.get(inner)
+            value = self._node(next(self._events), inner)
+            if kept is None:
+                values[key] = value
+            else:
+                self._source.values[inner] = kept
+        return values
+
+    def _key(self, event: yaml.Event, path: Path) -> str:
+        self._check(event, path)
+        if not isinstance(event, yaml.ScalarEvent):
+            raise self._refusal(event, path, "A key is not text.", "Write keys as plain words.")
+        if event.value == "<<" and event.style is None:
+            raise self._refusal(event, path, "Merge keys (<<) are not allowed.", _ONE_WAY)
+        problem = scalar_problem(event.value, plain=False)
+        if problem is not None:
+            raise self._refusal(event, path, problem.message, problem.remedy)
+        return str(event.value)
+
+    def _duplicate(self, event: yaml.Event, path: Path) -> None:
+        first = self._source.keys[path].line
+        self._add(
+            event, path, f"The key {path[-1]!r} is there twice; first in line {first}.",
+            "Keep one of the two.",
+        )  # fmt: skip
+
+    def _scalar(self, event: yaml.ScalarEvent, path: Path) -> Plain:
+        # `implicit` says whether the words may be read as a number; quoted ones may not.
+        plain = bool(event.implicit[0]) and event.tag is None
+        problem = scalar_problem(event.value, plain=plain)
+        if problem is not None:
+            self._add(event, path, problem.message, problem.remedy, event.value[:80])
+            self._source.refused.add(path)
+            return None
+        return scalar_value(event.value) if plain else str(event.value)
+
+    def _check(self, event: yaml.Event, path: Path) -> None:
+        """Refuse what could make a file mean more than it says, before it is built."""
+        self._nodes += 1
+        if self._nodes > MAX_NODES:
+            raise self._refusal(
+                event, path, f"The file has more than {MAX_NODES} values.", "Shorten it."
+            )
+        if isinstance(event, yaml.AliasEvent):
+            raise self._refusal(
+                event, path, f"Aliases (*{event.anchor}) are not allowed.", _ONE_WAY
+            )
+        anchor, tag = getattr(event, "anchor", None), getattr(event, "tag", None)
+        if anchor is not None:
+            raise self._refusal(event, path, f"Anchors (&{anchor}) are not allowed.", _ONE_WAY)
+        if tag is not None and tag not in _CORE_TAGS:
+            raise self._refusal(
+                event, path, f"The tag {tag!r} is not allowed.", "Write the plain value instead."
+            )
+
+    def _add(
+        self, event: yaml.Event, path: Path, message: str, remedy: str, value: object = None
+    ) -> None:
+        mark = _mark(event)
+        self._source.problems.append(
+            ConfigProblem(
+                path_text(path), mark.line, mark.column, message, value=value, remedy=remedy
+            )
+        )
+
+    def _refusal(self, event: yaml.Event, path: Path, message: str, remedy: str) -> ConfigError:
+        mark = _mark(event)
+        problem = ConfigProblem(path_text(path), mark.line, mark.column, message, remedy=remedy)
+        return ConfigError([*self._source.problems, problem])
+
+
+def _mark(event: yaml.Event) -> Mark:
+    start = event.start_mark
+    return Mark(0, 0) if start is None else Mark(start.line + 1, start.column + 1)

@@ -1,0 +1,107 @@
+"""A study as a value: everything that decides what happens to a participant, and nothing else."""
+
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, Field, StringConstraints
+
+from app.protocol.appearance import Appearance
+from app.protocol.canonical import canonical_json, sha256_of
+from app.protocol.common import Key, Provenance, Strict, Text, refusal
+from app.protocol.conditions import Condition, Conditions, Orders
+from app.protocol.procedure import FormStep, Procedure
+from app.protocol.tasks import Tasks
+from app.science.skeleton.joints import JOINT_NAMES
+
+SCREEN_TEXTS = ("waiting", "freeze", "walk_back")
+"""Texts that every study needs, because devices show them outside of any step."""
+
+
+def _languages(languages: tuple[str, ...]) -> tuple[str, ...]:
+    if len(set(languages)) < len(languages):
+        raise refusal("A language is named twice.", value=list(languages), remedy="Name it once.")
+    return languages
+
+
+def _joints(parts: tuple[str, ...]) -> tuple[str, ...]:
+    unknown = [part for part in parts if part not in JOINT_NAMES]
+    if unknown:
+        raise refusal(
+            f"{unknown[0]!r} is not a body part that can go undelayed.",
+            value=unknown[0],
+            valid=list(JOINT_NAMES),
+            remedy="Use the names of Unity's HumanBodyBones, as in Hips.",
+        )
+    return parts
+
+
+Language = Annotated[
+    str,
+    StringConstraints(pattern=r"^[a-z]{2,3}(-[A-Z]{2})?$"),
+    Field(description="a language code such as en or de"),
+]
+
+
+class Blinding(Strict):
+    """Who must not know the condition. The participant is never told.
+
+    `operator`: the console then hides the condition and its order until the session is over.
+    """
+
+    operator: bool
+
+
+class LatencySettings(Strict):
+    """How the added latency acts on the remote avatar.
+
+    `undelayed_parts`: parts whose target is never delayed; in the thesis the hips, which guards
+    balance. `bypass_at_zero`: 0 ms means that no buffer is used at all.
+    """
+
+    undelayed_parts: Annotated[tuple[str, ...], AfterValidator(_joints)] = ("Hips",)
+    bypass_at_zero: bool
+
+
+class StudyProtocol(Strict):
+    """A study: conditions, orders, procedure, task places, appearance and texts."""
+
+    key: Annotated[
+        str,
+        StringConstraints(pattern=r"^[a-z][a-z0-9_-]{0,79}$"),
+        Field(description="lower-case letters, digits, - and _, at most 80"),
+    ]
+    title: Text
+    description: Text
+    provenance: Provenance
+    languages: Annotated[tuple[Language, ...], Field(min_length=1), AfterValidator(_languages)]
+    avatar: Literal["delayed_copy"]
+    conditions: Conditions
+    orders: Orders
+    procedure: Procedure
+    on_disconnect: Literal["pause", "continue"]
+    blinding: Blinding
+    latency: LatencySettings
+    tasks: Tasks
+    appearance: Appearance
+    texts: dict[Key, Text]
+
+    def condition(self, key: str) -> Condition:
+        """The condition with that key; KeyError if there is none."""
+        return next(condition for condition in self.conditions if condition.key == key)
+
+    @property
+    def instrument_keys(self) -> tuple[str, ...]:
+        """Keys of all instruments the study asks, in order of first use."""
+        steps = (*self.procedure.before, *self.procedure.after)
+        forms = [step.instrument for step in steps if isinstance(step, FormStep)]
+        asked = [phase.questionnaire for phase in self.procedure.block.phases]
+        return tuple(dict.fromkeys([*forms, *asked]))
+
+    @property
+    def design_hash(self) -> str:
+        """SHA-256 over what decides balance: conditions (without their labels) and orders.
+
+        Versions of a study with the same design hash can share one ledger.
+        """
+        conditions = [{"key": one.key, "latency_ms": one.latency_ms} for one in self.conditions]
+        design = {"conditions": conditions, "orders": self.orders.model_dump(mode="json")}
+        return sha256_of(canonical_json(design))

@@ -1,0 +1,155 @@
+"""The places of the box tasks, as a study fixes them for everybody (only the avatar is scaled).
+
+World frame: origin on the floor at the centre of the start square, +x right, +y up, the participant
+faces -z; metres.
+"""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from app.protocol.common import Length, Point, Strict, refusal
+from app.science.tasks.layout import (
+    BlockSpec,
+    BoxSpec,
+    Direction,
+    Laterality,
+    LayoutError,
+    Limb,
+    Side,
+    TaskLayout,
+    build_layout,
+)
+
+_MAX_BOXES = 12
+
+Size = Annotated[tuple[Length, Length, Length], Field(description="[width, height, depth] in m")]
+
+
+class SolidBlock(Strict):
+    """A target or the start square: its centre and its size along x, y, z."""
+
+    center_m: Point
+    size_m: Size
+
+    def spec(self) -> BlockSpec:
+        """The block as the task geometry takes it."""
+        return BlockSpec(self.center_m, self.size_m)
+
+
+class HandBox(Strict):
+    """A box at chest height, open towards the participant; sizes are those of its cavity."""
+
+    number: int
+    center_m: Point
+    inner_size_m: Size
+
+
+class FootBox(Strict):
+    """A box on the floor, open at the top. Its length (along z) is the same for all foot boxes."""
+
+    number: int
+    center_m: Point
+    inner_width_m: Length
+    inner_height_m: Length
+
+
+class HandTask(Strict):
+    """Touch each back panel with the writing hand, then the target; then the other way round.
+
+    `sides`: which walls (and "front_rim") exist and turn red when touched. `direction`: where the
+    first order starts; "by_hand" means on the side of the writing hand.
+    """
+
+    boxes: Annotated[tuple[HandBox, ...], Field(min_length=1, max_length=_MAX_BOXES)]
+    target: SolidBlock
+    wall_thickness_m: Length
+    panel_thickness_m: Length
+    sides: tuple[Side, ...]
+    direction: Direction
+    reverse_after_task: bool
+
+    def layout(self) -> TaskLayout:
+        """The surfaces of the task. Raises LayoutError; a loaded study never does."""
+        boxes = tuple(BoxSpec(box.number, box.center_m, box.inner_size_m) for box in self.boxes)
+        return build_layout(
+            Limb.HAND,
+            boxes,
+            self.target.spec(),
+            wall_thickness_m=self.wall_thickness_m,
+            panel_thickness_m=self.panel_thickness_m,
+            sides=self.sides,
+            direction=self.direction,
+            reverse_after_task=self.reverse_after_task,
+        )
+
+    @model_validator(mode="after")
+    def _is_buildable(self) -> Self:
+        _try(self)
+        return self
+
+
+class FootTask(Strict):
+    """Step into each box, then onto the target bar; walk back to the start square, go on.
+
+    The boxes are `base_length_m` times `length_factor` long: the factor is what expert feedback
+    added (Karas 2020, chapter 7.2), kept apart so that both numbers stay visible.
+    """
+
+    boxes: Annotated[tuple[FootBox, ...], Field(min_length=1, max_length=_MAX_BOXES)]
+    base_length_m: Length
+    length_factor: Annotated[float, Field(gt=0, le=3)]
+    target: SolidBlock
+    start_square: SolidBlock
+    wall_thickness_m: Length
+    panel_thickness_m: Length
+    sides: tuple[Side, ...]
+    direction: Direction
+    reverse_after_task: bool
+    counting_foot: Literal["either", "left", "right"]
+
+    @property
+    def length_m(self) -> float:
+        """Inner length of each box along z, metres."""
+        return self.base_length_m * self.length_factor
+
+    def layout(self) -> TaskLayout:
+        """The surfaces of the task. Raises LayoutError; a loaded study never does."""
+        boxes = tuple(
+            BoxSpec(
+                box.number, box.center_m, (box.inner_width_m, box.inner_height_m, self.length_m)
+            )
+            for box in self.boxes
+        )
+        either = self.counting_foot == "either"
+        return build_layout(
+            Limb.FOOT,
+            boxes,
+            self.target.spec(),
+            start_square=self.start_square.spec(),
+            wall_thickness_m=self.wall_thickness_m,
+            panel_thickness_m=self.panel_thickness_m,
+            sides=self.sides,
+            direction=self.direction,
+            reverse_after_task=self.reverse_after_task,
+            counting_foot=None if either else Laterality(self.counting_foot),
+        )
+
+    @model_validator(mode="after")
+    def _is_buildable(self) -> Self:
+        _try(self)
+        return self
+
+
+class Tasks(Strict):
+    """Both task places."""
+
+    hand: HandTask
+    foot: FootTask
+
+
+def _try(task: HandTask | FootTask) -> None:
+    try:
+        task.layout()
+    except LayoutError as error:
+        raise refusal(f"The boxes cannot be built: {error}") from error

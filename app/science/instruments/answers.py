@@ -1,0 +1,114 @@
+"""Whether answers fit their items, for forms (every problem at once) and for scoring (numbers)."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.science.instruments.errors import AnswerError, shortened
+from app.science.instruments.item_definition import DEFAULT_TEXT_LENGTH
+from app.science.instruments.model import Instrument, Item
+
+_NUMBERS = (int, float, np.integer, np.floating)
+
+
+@dataclass(frozen=True)
+class AnswerProblem:
+    """Why one answer cannot be taken."""
+
+    item: str
+    message: str
+    value: object
+    valid: str
+    remedy: str
+
+
+def validate_answers(
+    instrument: Instrument, answers: Mapping[str, object]
+) -> tuple[AnswerProblem, ...]:
+    """Every problem of a filled-in form, in the order of the items; empty if it can be stored.
+
+    `answers`: item key -> number, text, True/False, choice key; None or absent for no answer.
+    Whole numbers may come as floats (3.0).
+    """
+    problems: list[AnswerProblem] = []
+    for item in instrument.items:
+        value = answers.get(item.key)
+        valid = valid_answers(instrument, item)
+        if value is None or (isinstance(value, str) and not value.strip()):
+            if item.required:
+                message = "An answer is missing."
+                problems.append(
+                    AnswerProblem(item.key, message, value, valid, "Answer this question.")
+                )
+        elif not fits(instrument, item, value):
+            message = f"The answer {shortened(value)!r} is not possible here."
+            problems.append(AnswerProblem(item.key, message, value, valid, f"Give {valid}."))
+    known = ", ".join(instrument.by_key)
+    problems.extend(
+        AnswerProblem(str(key), "There is no such question.", answers[key], known, "Leave it out.")
+        for key in answers
+        if key not in instrument.by_key
+    )
+    return tuple(problems)
+
+
+def fits(instrument: Instrument, item: Item, value: object) -> bool:
+    """Whether a value that is not missing is a possible answer to the item."""
+    if item.type == "text":
+        limit = DEFAULT_TEXT_LENGTH if item.max_length is None else item.max_length
+        return isinstance(value, str) and len(value) <= limit and "\0" not in value
+    if item.type == "choice":
+        return value in [choice.key for choice in item.choices]
+    if item.type == "boolean":
+        return isinstance(value, bool | np.bool_)
+    if isinstance(value, bool) or not isinstance(value, _NUMBERS) or not math.isfinite(value):
+        return False
+    low, high = _limits(instrument, item)
+    number = float(value)
+    return (item.type == "number" or number.is_integer()) and low <= number <= high
+
+
+def valid_answers(instrument: Instrument, item: Item) -> str:
+    """What can be answered to an item, in words: "a whole number from 1 to 7"."""
+    if item.type == "text":
+        return f"text of at most {item.max_length or DEFAULT_TEXT_LENGTH} characters"
+    if item.type == "choice":
+        return "one of " + ", ".join(choice.key for choice in item.choices)
+    if item.type == "boolean":
+        return "true or false"
+    low, high = _limits(instrument, item)
+    words = "a number" if item.type == "number" else "a whole number"
+    if math.isfinite(low) and math.isfinite(high):
+        words += f" from {low:g} to {high:g}"
+    elif math.isfinite(low):
+        words += f" of at least {low:g}"
+    elif math.isfinite(high):
+        words += f" of at most {high:g}"
+    return words if item.unit is None else f"{words} {item.unit}"
+
+
+def as_number(
+    instrument: Instrument, item: Item, value: object, *, row: int | None = None
+) -> float:
+    """An answer as a raw number for the formulas; NaN if missing, 1 and 0 for yes and no.
+
+    Raises AnswerError for a value that is not a possible answer; `row` is passed on to it.
+    """
+    if value is None or (isinstance(value, _NUMBERS) and math.isnan(value)):
+        return math.nan
+    # Tables have no booleans of their own: there a yes is a 1.
+    if item.type == "boolean" and not isinstance(value, bool) and value in (0, 1):
+        value = bool(value)
+    if not item.is_numeric or not fits(instrument, item, value):
+        raise AnswerError(item.key, value, valid_answers(instrument, item), row=row)
+    return float(value)  # type: ignore[arg-type]  # `fits` has shown that it is a number
+
+
+def _limits(instrument: Instrument, item: Item) -> tuple[float, float]:
+    if item.type == "likert" and instrument.scale is not None:
+        return instrument.scale.minimum, instrument.scale.maximum
+    low = -math.inf if item.minimum is None else item.minimum
+    high = math.inf if item.maximum is None else item.maximum
+    return low, high
