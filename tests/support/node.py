@@ -1,5 +1,6 @@
 """The Node that the development requirements bring, so that no machine needs one of its own."""
 
+import hashlib
 import os
 import subprocess
 from collections.abc import Mapping
@@ -38,3 +39,16 @@ def run_node(*arguments: str, cwd: Path, environment: Mapping[str, str] | None =
 def npm_ci(folder: Path) -> None:
     """Install exactly what `folder`'s lock file says, running no script of any package."""
     run_node(str(NPM), "ci", "--ignore-scripts", "--no-audit", "--no-fund", cwd=folder)
+
+
+def install_packages(folder: Path) -> None:
+    """`npm_ci`, unless `node_modules` already holds what the lock file says.
+
+    The mark is the one that the build of the pages leaves (`hatch_build.py`).
+    """
+    lock = hashlib.sha256((folder / "package-lock.json").read_bytes()).hexdigest()
+    mark = folder / "node_modules" / ".lock-hash"
+    if not (mark.is_file() and mark.read_text().strip() == lock):
+        npm_ci(folder)
+        mark.parent.mkdir(exist_ok=True)
+        mark.write_text(lock + "\n")

@@ -1,0 +1,10 @@
+"""The migrations and the models describe the same tables."""
+
+from alembic import command
+
+from app.database import alembic_config
+
+
+def test_migrations_lead_to_the_models(database_url: str) -> None:
+    """Alembic finds nothing left to do on a migrated database, on either engine."""
+    command.check(alembic_config(database_url))

@@ -1,0 +1,80 @@
+"""What is packed is all that runs: pages, migrations and study configs included."""
+
+import shutil
+import subprocess
+import tarfile
+import zipfile
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the sdist, and the wheel made from the sdist."""
+    folder = tmp_path_factory.mktemp("built")
+    uv = shutil.which("uv") or str(REPOSITORY / ".uv" / "bin" / "uv")
+    result = subprocess.run(
+        [uv, "build", "--quiet", "--out-dir", str(folder), str(REPOSITORY)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert result.returncode == 0, result.stderr
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(built: Path) -> set[str]:
+    """The names of the wheel's files."""
+    (path,) = built.glob("*.whl")
+    with zipfile.ZipFile(path) as archive:
+        return set(archive.namelist())
+
+
+@pytest.fixture(scope="module")
+def sdist(built: Path) -> set[str]:
+    """The names of the sdist's files, without its top folder."""
+    (path,) = built.glob("*.tar.gz")
+    with tarfile.open(path) as archive:
+        return {member.name.partition("/")[2] for member in archive if member.isfile()}
+
+
+def files(folder: str, pattern: str) -> set[str]:
+    """The repository's files below `folder`, relative to it."""
+    top = REPOSITORY / folder
+    return {path.relative_to(top).as_posix() for path in top.rglob(pattern) if path.is_file()}
+
+
+def test_the_wheel_brings_the_built_pages(wheel: set[str]) -> None:
+    """Every file of the built pages is in the wheel."""
+    pages = {f"app/static/{name}" for name in files("app/static", "*")}
+    assert any(name.endswith(".html") for name in pages)
+    assert pages - wheel == set()
+
+
+@pytest.mark.parametrize(
+    ("folder", "pattern"), [("migrations", "*.py"), ("study_configs", "*.y*ml")]
+)
+def test_the_wheel_brings_what_is_read_but_not_imported(
+    wheel: set[str], folder: str, pattern: str
+) -> None:
+    """Migrations and study configs are where `app.resources` looks in an installation."""
+    wanted = {f"app/_bundled/{folder}/{name}" for name in files(folder, pattern)}
+    assert wanted
+    assert wanted - wheel == set()
+
+
+def test_the_sdist_brings_the_pages_and_their_sources(sdist: set[str]) -> None:
+    """From an sdist the pages can be rebuilt, and need not be."""
+    assert {"frontend/package.json", "frontend/package-lock.json", "hatch_build.py"} <= sdist
+    assert "app/static/.build-hash" in sdist
+
+
+def test_no_package_brings_what_is_made_on_the_spot(wheel: set[str], sdist: set[str]) -> None:
+    """Environments, caches, installed packages and studies' data stay where they are."""
+    made = (".venv/", ".uv/", ".cache/", "data/", ".ci/")
+    assert [name for name in wheel | sdist if name.startswith(made)] == []
+    assert [name for name in wheel | sdist if "node_modules" in name] == []

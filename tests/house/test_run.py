@@ -1,0 +1,185 @@
+"""`./run` sets up what changed and nothing else, from anywhere, and says so on standard error.
+
+A stand-in for uv records what it is asked to do, so these tests need no network and no time.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+INPUTS = (
+    "run",
+    "pyproject.toml",
+    "hatch_build.py",
+    "requirements.lock",
+    "requirements-dev.lock",
+)
+UV = """#!{python}
+import os, pathlib, sys
+here = pathlib.Path({folder!r})
+with (here / "uv.log").open("a") as log:
+    print(*sys.argv[1:3], pathlib.Path(sys.argv[-1]).name, file=log)
+print("noise of uv")
+if (here / "broken").exists():
+    sys.exit("uv: no network")
+if sys.argv[1] == "venv":
+    programs = pathlib.Path(sys.argv[-1]) / "bin"
+    programs.mkdir(parents=True)
+    for name in ("python", "reembody"):
+        program = programs / name
+        program.write_text('#!/bin/sh\\nprintf "%s|" {{0}} "$PWD" "$@"\\n'.format(name))
+        program.chmod(0o755)
+"""
+
+
+@dataclass(frozen=True)
+class Checkout:
+    """A folder with `run` and its inputs, and a stand-in for uv."""
+
+    folder: Path
+    tools: Path
+
+    def run(self, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        """Call `./run`."""
+        path = f"{self.tools}{os.pathsep}{os.defpath}"
+        return subprocess.run(
+            [self.folder / "run", *arguments],
+            cwd=cwd or self.folder,
+            env={"PATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    def uv_calls(self) -> list[str]:
+        """What uv was asked since the last call of this."""
+        log = self.tools / "uv.log"
+        calls = log.read_text().splitlines() if log.exists() else []
+        log.unlink(missing_ok=True)
+        return calls
+
+
+def append(path: Path, line: str) -> None:
+    """Add a line to a file, which may be new."""
+    with path.open("a") as file:
+        file.write(f"\n{line}\n")
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Checkout:
+    """A fresh checkout below a folder with spaces and quotes in its name."""
+    folder = tmp_path / "it's a folder"
+    tools = tmp_path / "tools"
+    folder.mkdir()
+    tools.mkdir()
+    for name in INPUTS:
+        shutil.copy(REPOSITORY / name, folder / name)
+    uv = tools / "uv"
+    uv.write_text(UV.format(python=sys.executable, folder=str(tools)))
+    uv.chmod(0o755)
+    return Checkout(folder, tools)
+
+
+def test_the_second_call_sets_nothing_up(checkout: Checkout) -> None:
+    """Setting up is idempotent: what is current is left alone, silently."""
+    first = checkout.run("score")
+    assert first.returncode == 0, first.stderr
+    assert checkout.uv_calls() == [
+        "venv --quiet .venv",
+        "pip install requirements.lock",
+        f"pip install {checkout.folder.name}",
+    ]
+    again = checkout.run("score")
+    assert checkout.uv_calls() == []
+    assert again.stderr == ""
+    assert again.stdout == first.stdout
+
+
+def test_standard_output_and_folder_are_the_commands_own(
+    checkout: Checkout, tmp_path: Path
+) -> None:
+    """Arguments pass through unchanged, relative paths stay relative to the caller."""
+    result = checkout.run("score", "two words", "*", cwd=tmp_path)
+    assert result.stdout == f"reembody|{tmp_path}|score|two words|*|"
+    assert "installing requirements.lock" in result.stderr
+
+
+@pytest.mark.parametrize("arguments", [[], ["serve"]])
+def test_serving_is_the_default(checkout: Checkout, arguments: list[str]) -> None:
+    """`./run` alone is `./run serve`."""
+    assert checkout.run(*arguments).stdout == f"reembody|{checkout.folder}|serve|"
+
+
+def test_options_alone_belong_to_serving(checkout: Checkout) -> None:
+    """`./run --port 9000` is `./run serve --port 9000`, while `--help` is the program's own."""
+    assert checkout.run("--port", "9000").stdout.endswith("|serve|--port|9000|")
+    assert checkout.run("--help").stdout.endswith("|--help|")
+
+
+def test_tests_get_the_development_requirements(checkout: Checkout) -> None:
+    """They contain all that running needs, so running afterwards installs nothing."""
+    assert checkout.run("test", "-k", "x").stdout.endswith("|-m|tests.support.stages|-k|x|")
+    assert "pip install requirements-dev.lock" in checkout.uv_calls()
+    checkout.run("score")
+    assert checkout.uv_calls() == []
+
+
+@pytest.mark.parametrize(
+    ("changed", "call"),
+    [
+        ("requirements.lock", "pip install requirements.lock"),
+        ("pyproject.toml", "pip install it's a folder"),
+        ("hatch_build.py", "pip install it's a folder"),
+        ("frontend/src/page.ts", "pip install it's a folder"),
+    ],
+)
+def test_a_changed_input_repeats_its_own_step(checkout: Checkout, changed: str, call: str) -> None:
+    """Each step knows what it depends on."""
+    checkout.run("score")
+    checkout.uv_calls()
+    path = checkout.folder / changed
+    path.parent.mkdir(parents=True, exist_ok=True)
+    append(path, "# changed")
+    checkout.run("score")
+    assert checkout.uv_calls() == [call]
+
+
+def test_an_interrupted_step_is_repeated(checkout: Checkout) -> None:
+    """A failure ends the call with uv's words, runs nothing, and is not taken for done."""
+    checkout.run("score")
+    append(checkout.folder / "requirements.lock", "# changed")
+    (checkout.tools / "broken").touch()
+    failed = checkout.run("score")
+    assert failed.returncode != 0
+    assert failed.stdout == ""
+    assert "uv: no network" in failed.stderr
+    (checkout.tools / "broken").unlink()
+    checkout.uv_calls()
+    assert checkout.run("score").returncode == 0
+    assert checkout.uv_calls() == ["pip install requirements.lock"]
+
+
+def test_a_moved_folder_is_installed_again(checkout: Checkout, tmp_path: Path) -> None:
+    """The project is installed by reference to its folder, which must follow it."""
+    checkout.run("score")
+    checkout.uv_calls()
+    moved = Checkout(checkout.folder.rename(tmp_path / "elsewhere"), checkout.tools)
+    assert moved.run("score").returncode == 0
+    assert moved.uv_calls() == ["pip install elsewhere"]
+
+
+def test_without_uv_and_pip_the_remedy_is_named(checkout: Checkout) -> None:
+    """A machine with neither learns what to install."""
+    python = checkout.tools / "python3"
+    python.write_text("#!/bin/sh\nexit 1\n")
+    python.chmod(0o755)
+    (checkout.tools / "uv").unlink()
+    result = checkout.run("score")
+    assert result.returncode == 1
+    assert "install one of them" in result.stderr
