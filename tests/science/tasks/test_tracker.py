@@ -1,0 +1,90 @@
+"""Frames become changes, with hysteresis, and refused frames leave no trace."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.science.tasks import (
+    CommandKind,
+    Contact,
+    ContactChange,
+    ContactTracker,
+    Laterality,
+    TaskRuleError,
+    TaskRules,
+    TaskRun,
+)
+from app.science.tasks.contacts import Bools
+from tests.science.tasks.vector_files import layout
+
+PLACE = layout("hand")
+KEYS = tuple(surface.key for surface in PLACE.surfaces)
+PARTS = ("RightHand", "LeftHand")
+
+
+def table(*contacts: tuple[str, str]) -> Bools:
+    """A (S, P) table with these contacts."""
+    touches = np.zeros((len(KEYS), len(PARTS)), dtype=np.bool_)
+    for surface, part in contacts:
+        touches[KEYS.index(surface), PARTS.index(part)] = True
+    return touches
+
+
+def started() -> TaskRun:
+    """A run that starts at 0 s."""
+    run = TaskRun(TaskRules(PLACE, Laterality.RIGHT), PARTS)
+    run.command(CommandKind.START, 0.0)
+    return run
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=40), st.integers(0, 2**16))
+def test_a_margin_only_joins_contacts(touches: list[bool], seed: int) -> None:
+    """With a margin there are never more intervals, and each raw contact lies within one."""
+    near = np.random.default_rng(seed).random(len(touches)) < 0.5
+    raw, held = started(), started()
+    for index, touch in enumerate(touches):
+        now = table(("hand/1/left", "RightHand")) if touch else table()
+        raw.frame(index + 1.0, now)
+        held.frame(index + 1.0, now, now | (table(("hand/1/left", "RightHand")) & near[index]))
+    for run in (raw, held):
+        run.command(CommandKind.FREEZE, 100.0)
+    assert len(held.intervals) <= len(raw.intervals)
+    for short in raw.intervals:
+        assert any(i.begin_s <= short.begin_s and short.end_s <= i.end_s for i in held.intervals)
+
+
+def test_near_alone_begins_nothing() -> None:
+    """The margin holds a contact but never makes one."""
+    run = started()
+    run.frame(1.0, table(), table(("hand/1/left", "RightHand")))
+    assert run.state.held == frozenset()
+
+
+def test_changes_name_surface_and_part() -> None:
+    """What begins and what ends is told apart."""
+    tracker = ContactTracker(KEYS, PARTS)
+    state = TaskRules(PLACE, Laterality.RIGHT).initial()
+    change = tracker.observe(1.0, table(("hand/1/left", "RightHand")))
+    assert change == ContactChange(1.0, (Contact("hand/1/left", "RightHand"),), ())
+    tracker.settle(state)
+    change = tracker.observe(2.0, table(("hand/target", "LeftHand")))
+    assert change.begins == (Contact("hand/target", "LeftHand"),)
+    assert change.ends == (Contact("hand/1/left", "RightHand"),)
+
+
+def test_a_refused_frame_leaves_no_trace() -> None:
+    """After a frame from the past the same contact can still begin."""
+    run = started()
+    run.frame(2.0, table(("hand/1/left", "LeftHand")))
+    both = table(("hand/1/left", "LeftHand"), ("hand/4/panel", "RightHand"))
+    with pytest.raises(TaskRuleError):
+        run.frame(1.0, both)
+    events = run.frame(3.0, both)
+    assert [event.surface for event in events] == ["hand/4/panel"]
+
+
+def test_tables_of_another_shape_are_refused() -> None:
+    """The refusal names the expected and the given shape."""
+    with pytest.raises(ValueError, match=r"Expected near of shape \(21, 2\).*got \(2, 21\)"):
+        ContactTracker(KEYS, PARTS).observe(0.0, table(), table().T)
