@@ -15,7 +15,9 @@ NPM = Path(ROOT_DIR) / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
 def node_environment() -> dict[str, str]:
     """This process's environment, in which `node` by name is the wheel's."""
     path = f"{NODE.parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}"
-    return {**os.environ, "PATH": path, "npm_config_update_notifier": "false"}
+    # Logs are read as text, also where CI makes tools believe in colours.
+    plain = {"NO_COLOR": "1", "npm_config_update_notifier": "false"}
+    return {**os.environ, "PATH": path, **plain}
 
 
 def run_node(*arguments: str, cwd: Path, environment: Mapping[str, str] | None = None) -> str:
