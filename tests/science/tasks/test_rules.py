@@ -34,6 +34,7 @@ from tests.science.tasks.vector_files import layout
 
 NAMES = st.sampled_from(LAYOUTS)
 TWO_TASKS: Moves = [(1, "goal", 0, 0)] * 24
+CHOSEN_BY_NAME = (EventKind.SIDE_RED, EventKind.SIDE_WHITE, EventKind.WALK_BACK_ENDED)
 PROGRESS = (EventKind.PANEL_GREEN, EventKind.TASK_COMPLETED)
 
 
@@ -60,8 +61,8 @@ def mirrored(step: ContactChange | Command) -> ContactChange | Command:
 
 
 def essence(event: TaskEvent) -> tuple[object, ...]:
-    """An event without the part of a side, which is chosen by name."""
-    part = None if event.kind in (EventKind.SIDE_RED, EventKind.SIDE_WHITE) else event.part
+    """An event without its part where that is the first of several by name."""
+    part = None if event.kind in CHOSEN_BY_NAME else event.part
     return (event.kind, event.time_s, event.active_s, event.task, event.surface, part)
 
 
