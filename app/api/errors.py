@@ -1,0 +1,78 @@
+"""One handler: every refusal reaches every client in the same shape."""
+
+import logging
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from sqlalchemy.exc import OperationalError
+from starlette.exceptions import HTTPException
+
+from app.errors import InvalidInput, NotAllowed, NotDurable, NotFound, ReembodyError
+
+log = logging.getLogger(__name__)
+
+
+def error_response(error: ReembodyError) -> JSONResponse:
+    """The JSON of an error with its status."""
+    return JSONResponse({"error": _jsonable(error.as_json())}, status_code=error.status)
+
+
+def install_error_handler(app: FastAPI) -> None:
+    """Translate every error of ours, and the framework's, into one shape."""
+
+    @app.exception_handler(ReembodyError)
+    def ours(_: Request, error: ReembodyError) -> JSONResponse:
+        return error_response(error)
+
+    @app.exception_handler(RequestValidationError)
+    def validation(_: Request, error: RequestValidationError) -> JSONResponse:
+        details = [
+            {
+                "path": ".".join(str(part) for part in problem["loc"][1:]),
+                "message": problem["msg"],
+                "value": problem.get("input"),
+            }
+            for problem in error.errors()
+        ]
+        return error_response(
+            InvalidInput(
+                "the request does not fit",
+                remedy="Mend the fields named below; nothing was stored.",
+                details=details,
+            )
+        )
+
+    @app.exception_handler(OperationalError)
+    def database(_: Request, error: OperationalError) -> JSONResponse:
+        log.error("the database refused", exc_info=error)
+        return error_response(
+            NotDurable(
+                "the record cannot be written just now; nothing was promised",
+                remedy="Check the disk of the server, then try again.",
+            )
+        )
+
+    @app.exception_handler(HTTPException)
+    def framework(_: Request, error: HTTPException) -> JSONResponse:
+        if error.status_code == NotFound.status:
+            return error_response(NotFound("there is nothing at this address"))
+        if error.status_code == NotAllowed.status:
+            return error_response(NotAllowed(str(error.detail)))
+        body = {"error": {"code": "http", "message": str(error.detail), "remedy": ""}}
+        return JSONResponse(body, status_code=error.status_code, headers=error.headers)
+
+
+def _jsonable(value: Any) -> Any:
+    """Values as JSON can carry them: NaN and bytes become text."""
+    if isinstance(value, Mapping):
+        return {str(key): _jsonable(one) for key, one in value.items()}
+    if isinstance(value, str | int | bool) or value is None:
+        return value
+    if isinstance(value, float):
+        return value if value == value and abs(value) != float("inf") else str(value)
+    if isinstance(value, Sequence) and not isinstance(value, bytes | bytearray):
+        return [_jsonable(one) for one in value]
+    return str(value)[:500]

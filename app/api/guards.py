@@ -1,0 +1,106 @@
+"""What stands before every route: size limit, same-origin check, response headers.
+
+Cookies are SameSite=Strict already; the origin check is the second lock for requests that change
+something, and the first for WebSockets, which no cookie rule of the browser covers.
+"""
+
+from collections.abc import Mapping
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.api.errors import error_response
+from app.errors import NotAllowed, ReembodyError, TooLarge
+
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+SECURITY_HEADERS: Mapping[str, str] = {
+    "content-security-policy": (
+        "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+        "img-src 'self' data: blob:; font-src 'self' data:; connect-src 'self'; "
+        "worker-src 'self' blob:; object-src 'none'; base-uri 'none'; form-action 'self'; "
+        "frame-ancestors 'none'"
+    ),
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+}
+
+
+class Guards:
+    """ASGI middleware around the whole application."""
+
+    def __init__(self, app: ASGIApp, *, max_body_bytes: int) -> None:
+        self._app = app
+        self._max_body_bytes = max_body_bytes
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Check, then pass on."""
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        try:
+            self._check(scope, Headers(scope=scope))
+        except ReembodyError as error:
+            if scope["type"] == "websocket":
+                await send({"type": "websocket.close", "code": 4403, "reason": error.message})
+            else:
+                await error_response(error)(scope, receive, send)
+            return
+        if scope["type"] == "websocket":
+            await self._app(scope, receive, send)
+        else:
+            await self._app(scope, _Limited(receive, self._max_body_bytes), _headed(scope, send))
+
+    def _check(self, scope: Scope, headers: Headers) -> None:
+        declared = headers.get("content-length", "0")
+        if declared.isdigit() and int(declared) > self._max_body_bytes:
+            raise _too_large(int(declared), self._max_body_bytes)
+        if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
+            return
+        site, origin = headers.get("sec-fetch-site"), headers.get("origin")
+        foreign_site = site not in (None, "same-origin", "none")
+        foreign_origin = origin is not None and urlsplit(origin).netloc != headers.get("host")
+        if foreign_site or foreign_origin:
+            raise NotAllowed(
+                "this request comes from another site",
+                value=origin,
+                remedy="Open the page on the address of this server.",
+            )
+
+
+class _Limited:
+    """Counts a body that does not say its length."""
+
+    def __init__(self, receive: Receive, limit: int) -> None:
+        self._receive, self._limit, self._seen = receive, limit, 0
+
+    async def __call__(self) -> Message:
+        message = await self._receive()
+        if message["type"] == "http.request":
+            self._seen += len(message.get("body", b""))
+            if self._seen > self._limit:
+                raise _too_large(self._seen, self._limit)
+        return message
+
+
+def _too_large(size: int, limit: int) -> TooLarge:
+    return TooLarge(
+        "the request is too large",
+        value=size,
+        valid=f"at most {limit} bytes",
+        remedy="Send less at once.",
+    )
+
+
+def _headed(scope: Scope, send: Send) -> Send:
+    async def send_with_headers(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            for name, value in SECURITY_HEADERS.items():
+                headers.setdefault(name, value)
+            if scope["path"].startswith("/api/"):
+                headers.setdefault("cache-control", "no-store")
+        await send(message)
+
+    return send_with_headers

@@ -1,0 +1,56 @@
+"""Every route of the application, in one place."""
+
+import asyncio
+
+from fastapi import APIRouter, WebSocket
+from pydantic import BaseModel
+from sqlalchemy import text
+
+from app import __version__
+from app.features.accounts.endpoints import router as accounts
+from app.features.analysis.endpoints import router as analysis
+from app.features.context import AppContext
+from app.features.dependencies import Context
+from app.features.devices.endpoints import router as devices
+from app.features.exports.endpoints import router as exports
+from app.features.headset.socket import serve_headset
+from app.features.participants.endpoints import router as participants
+from app.features.sessions.endpoints import router as sessions
+from app.features.studies.endpoints import router as studies
+from app.features.tablet.endpoints import router as tablet
+from app.features.telemetry.writer import TelemetryWriter
+
+
+class Health(BaseModel):
+    """Whether the server and its database answer."""
+
+    status: str
+    version: str
+    database: str
+
+
+def build_router() -> APIRouter:
+    """The routes under /api."""
+    router = APIRouter(prefix="/api")
+    for part in (accounts, studies, participants, sessions, devices, tablet, analysis, exports):
+        router.include_router(part)
+    router.add_api_route("/health", get_health, methods=["GET"], tags=["health"])
+    router.add_api_websocket_route("/vr/stream", vr_stream)
+    return router
+
+
+def get_health(context: Context) -> Health:
+    """Whether the server and its database answer."""
+    with context.database.reading() as db:
+        db.execute(text("SELECT 1"))
+    return Health(status="ok", version=__version__, database=context.database.engine.dialect.name)
+
+
+async def vr_stream(socket: WebSocket) -> None:
+    """The headset's socket; see docs/protocol.md."""
+    context: AppContext = socket.app.state.context
+    writer: TelemetryWriter = socket.app.state.writer
+    try:
+        await serve_headset(socket, context, writer)
+    except asyncio.CancelledError:
+        return

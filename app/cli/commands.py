@@ -1,0 +1,70 @@
+"""Every command, each a few lines: parse, call, print."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+app = typer.Typer(
+    help="Runs, watches and analyses VR re-embodiment studies.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+UNUSABLE = 2
+
+
+@app.command()
+def serve(
+    port: Annotated[int | None, typer.Option(help="Port to listen on.")] = None,
+    host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
+) -> None:
+    """Serve the product on this machine."""
+    from app.cli.serving import serve_forever
+
+    serve_forever(host=host, port=port)
+
+
+@app.command()
+def score(
+    answers: Annotated[Path, typer.Argument(help="CSV with item columns; others are ids.")],
+    instrument: Annotated[str, typer.Option(help="Key of the instrument.")],
+) -> None:
+    """Score a table of answers; writes ids and scores as CSV to standard output."""
+    from app.cli.scoring import score_file
+
+    try:
+        sys.stdout.write(score_file(answers, instrument))
+    except (ValueError, OSError) as error:
+        fail(str(error))
+
+
+@app.command()
+def openapi() -> None:
+    """Print the interface as OpenAPI JSON."""
+    from app.main import create_app
+    from app.settings import Settings
+
+    json.dump(create_app(Settings(database_url="sqlite://")).openapi(), sys.stdout, indent=2)
+
+
+@app.command()
+def token(
+    account: Annotated[str, typer.Option(help="User name.")] = "admin",
+    hours: Annotated[float, typer.Option(help="How long it is valid.")] = 12.0,
+) -> None:
+    """Print a bearer token for scripts."""
+    from app.cli.tokens import new_token
+
+    try:
+        print(new_token(account, hours))
+    except LookupError as error:
+        fail(str(error))
+
+
+def fail(message: str) -> None:
+    """Say what is wrong and leave with the status for unusable input."""
+    print(f"reembody: {message}", file=sys.stderr)
+    raise typer.Exit(UNUSABLE)

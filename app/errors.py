@@ -1,0 +1,138 @@
+"""Everything that can go wrong on purpose, on one screen.
+
+ReembodyError                     something was refused; carries value, valid and remedy
+├── InvalidInput          422     the request is understood but its content cannot be used
+│   └── InvalidConfig     422     a study or instrument file has problems, each with its place
+├── NotSignedIn           401     no valid login, token or pairing
+├── NotAllowed            403     signed in, but this is not theirs to do
+├── NotFound              404     nothing by that name (or not for this reader)
+├── Conflict              409     the request clashes with what is already recorded
+│   ├── StaleVersion      409     somebody else acted first; look again, then decide
+│   └── NotNow            409     the session is in a step where this cannot be done
+├── Gone                  410     a pairing code was used or has expired
+├── TooLarge              413     more bytes than this interface takes
+├── TooManyAttempts       429     slow down; says for how long
+└── NotDurable            503     the record cannot be written now, so nothing was promised
+
+Each error says what happened (`message`), the offending `value`, what is `valid`, and what to do
+next (`remedy`). Science and configuration raise their own plain errors; services translate them
+into these. One handler (`app.api.errors`) turns them into the same JSON for every route.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+
+class ReembodyError(Exception):
+    """Something was refused, with the reason and the way out."""
+
+    code: ClassVar[str] = "error"
+    status: ClassVar[int] = 500
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        value: object = None,
+        valid: object = None,
+        remedy: str = "",
+        details: Sequence[Mapping[str, object]] = (),
+    ) -> None:
+        super().__init__(message)
+        self.message = message
+        self.value = value
+        self.valid = valid
+        self.remedy = remedy
+        self.details = tuple(dict(detail) for detail in details)
+
+    def as_json(self) -> dict[str, object]:
+        """The error as every client sees it."""
+        return {
+            "code": self.code,
+            "message": self.message,
+            "value": self.value,
+            "valid": self.valid,
+            "remedy": self.remedy,
+            "details": list(self.details),
+        }
+
+
+class InvalidInput(ReembodyError):
+    """The request is understood but its content cannot be used."""
+
+    code = "invalid_input"
+    status = 422
+
+
+class InvalidConfig(InvalidInput):
+    """A study or instrument file has problems; `details` lists each with path, line and column."""
+
+    code = "invalid_config"
+
+
+class NotSignedIn(ReembodyError):
+    """No valid login, token or pairing came with the request."""
+
+    code = "not_signed_in"
+    status = 401
+
+
+class NotAllowed(ReembodyError):
+    """The caller is known, but this is not theirs to do."""
+
+    code = "not_allowed"
+    status = 403
+
+
+class NotFound(ReembodyError):
+    """Nothing by that name, or nothing this reader may know of."""
+
+    code = "not_found"
+    status = 404
+
+
+class Conflict(ReembodyError):
+    """The request clashes with what is already recorded."""
+
+    code = "conflict"
+    status = 409
+
+
+class StaleVersion(Conflict):
+    """Somebody else acted first: the caller decided on a state that has passed."""
+
+    code = "stale"
+
+
+class NotNow(Conflict):
+    """The session is in a step or status where this cannot be done."""
+
+    code = "not_now"
+
+
+class Gone(ReembodyError):
+    """A single-use thing was used already or has expired."""
+
+    code = "gone"
+    status = 410
+
+
+class TooLarge(ReembodyError):
+    """More bytes than this interface takes."""
+
+    code = "too_large"
+    status = 413
+
+
+class TooManyAttempts(ReembodyError):
+    """Too many attempts in a short time; the remedy says how long to wait."""
+
+    code = "too_many_attempts"
+    status = 429
+
+
+class NotDurable(ReembodyError):
+    """The record cannot be written now, so nothing was promised."""
+
+    code = "not_durable"
+    status = 503

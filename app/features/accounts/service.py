@@ -1,0 +1,115 @@
+"""Logging in, and knowing who asks.
+
+Passwords are argon2id hashes. A login is a random token of 256 bits; the database keeps its
+SHA-256, so a stolen database opens nothing, and every login can be revoked.
+"""
+
+import hashlib
+import secrets
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from argon2 import PasswordHasher
+from argon2.exceptions import VerificationError
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import InvalidInput, NotSignedIn
+from app.models import Account, LoginToken
+
+_HASHER = PasswordHasher()
+# Verified when the user name is unknown, so that the answer takes as long as for a known one.
+_NOBODY = _HASHER.hash(secrets.token_urlsafe(16))
+
+
+@dataclass(frozen=True)
+class Login:
+    """A fresh login: the token leaves here once, in clear."""
+
+    account: Account
+    token: str
+    expires_at: datetime
+
+
+def hash_token(token: str) -> str:
+    """What is stored of a random token."""
+    return hashlib.sha256(token.encode()).hexdigest()
+
+
+def create_account(
+    db: Session, *, username: str, password: str, role: str, now: datetime
+) -> Account:
+    """Add an account; raises InvalidInput if the name is taken."""
+    if db.scalar(select(Account).where(Account.username == username)):
+        raise InvalidInput(
+            f"the user name {username!r} is taken", value=username, remedy="Choose another."
+        )
+    account = Account(
+        username=username, role=role, password_hash=_HASHER.hash(password), created_at=now
+    )
+    db.add(account)
+    db.flush()
+    return account
+
+
+def ensure_admin(db: Session, *, password: str | None, now: datetime) -> str | None:
+    """Make the first account where there is none; the random password to print, if one was made."""
+    if db.scalar(select(Account).limit(1)):
+        return None
+    chosen = password or secrets.token_urlsafe(12)
+    create_account(db, username="admin", password=chosen, role="admin", now=now)
+    return None if password else chosen
+
+
+def log_in(db: Session, *, username: str, password: str, now: datetime, hours: float) -> Login:
+    """Check a password and open a login; the same NotSignedIn whatever was wrong."""
+    account = db.scalar(
+        select(Account).where(Account.username == username, Account.disabled_at.is_(None))
+    )
+    try:
+        _HASHER.verify(account.password_hash if account else _NOBODY, password)
+    except VerificationError:
+        account = None
+    if account is None:
+        raise NotSignedIn(
+            "user name and password do not match",
+            remedy="Check both; the first start printed the admin's password in its terminal.",
+        )
+    return issue_token(db, account, purpose="browser", now=now, hours=hours)
+
+
+def issue_token(
+    db: Session, account: Account, *, purpose: str, now: datetime, hours: float
+) -> Login:
+    """A new token for an account; `purpose` is browser or script."""
+    token = secrets.token_urlsafe(32)
+    expires_at = now + timedelta(hours=hours)
+    db.add(
+        LoginToken(
+            token_hash=hash_token(token),
+            account_id=account.id,
+            purpose=purpose,
+            created_at=now,
+            expires_at=expires_at,
+        )
+    )
+    db.flush()
+    return Login(account, token, expires_at)
+
+
+def account_of_token(db: Session, token: str, now: datetime) -> Account:
+    """Whose login this is; raises NotSignedIn when it is unknown, expired or revoked."""
+    row = db.get(LoginToken, hash_token(token))
+    if row is None or row.revoked_at is not None or row.expires_at <= now:
+        raise NotSignedIn("the login has ended", remedy="Log in again.")
+    account = db.get(Account, row.account_id)
+    if account is None or account.disabled_at is not None:
+        raise NotSignedIn("the account is closed", remedy="Ask the administrator of the lab.")
+    return account
+
+
+def revoke_token(db: Session, token: str, now: datetime) -> None:
+    """End a login; unknown tokens are ignored."""
+    row = db.get(LoginToken, hash_token(token))
+    if row is not None and row.revoked_at is None:
+        row.revoked_at = now

@@ -1,0 +1,5 @@
+"""Dashboards over HTTP."""
+
+from fastapi import APIRouter
+
+router = APIRouter(tags=["analysis"])

@@ -1,0 +1,21 @@
+"""What a running application is made of; built once in `create_app`, handed to every request."""
+
+from dataclasses import dataclass
+
+from app.clock import Clock
+from app.database import Database
+from app.features.live import Hub
+from app.features.rate_limit import RateLimiter
+from app.settings import Settings
+
+
+@dataclass(frozen=True)
+class AppContext:
+    """The parts that services need, by name."""
+
+    settings: Settings
+    database: Database
+    clock: Clock
+    hub: Hub
+    login_limiter: RateLimiter
+    pairing_limiter: RateLimiter

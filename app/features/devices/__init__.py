@@ -1,0 +1,1 @@
+"""Pairing tablets and headsets."""

@@ -1,0 +1,82 @@
+"""Pairing devices over HTTP."""
+
+import io
+
+import segno
+from fastapi import APIRouter, Request, Response
+
+from app.features.dependencies import TABLET_COOKIE, Context, SignedIn, Writing
+from app.features.devices.schemas import NewPairing, PairedView, PairingView, PairRequest
+from app.features.devices.service import new_code, pair, revoke
+from app.features.sessions.service import session_by_id
+
+router = APIRouter(tags=["devices"])
+TABLET_COOKIE_DAYS = 2
+
+
+@router.post("/sessions/{session_id}/pairings", status_code=201)
+def post_pairing(
+    session_id: str, wish: NewPairing, request: Request, db: Writing, context: Context, _: SignedIn
+) -> PairingView:
+    """Show a new code for a device of this session; an older unused code stops working."""
+    session = session_by_id(db, session_id)
+    made = new_code(
+        db,
+        session_id=session.id,
+        kind=wish.device,
+        now=context.clock.utc_now(),
+        minutes=context.settings.pairing_minutes,
+    )
+    path = "tablet" if wish.device == "tablet" else "vr"
+    url = f"{str(request.base_url).rstrip('/')}/{path}?code={made.code}"
+    return PairingView(
+        device=wish.device,
+        code=made.code,
+        url=url,
+        qr_svg=_qr_svg(url),
+        expires_at=made.expires_at,
+    )
+
+
+@router.post("/devices/pair")
+def post_pair(
+    request_body: PairRequest, request: Request, response: Response, db: Writing, context: Context
+) -> PairedView:
+    """Use a code up. Guessing is slowed down."""
+    caller = request.client.host if request.client else "unknown"
+    context.pairing_limiter.attempt(caller)
+    paired = pair(db, code=request_body.code, name=request_body.name, now=context.clock.utc_now())
+    context.pairing_limiter.succeed(caller)
+    device = paired.device
+    context.hub.publish_after_commit(db, device.session_id)
+    if device.kind == "tablet":
+        response.set_cookie(
+            TABLET_COOKIE,
+            paired.token,
+            max_age=TABLET_COOKIE_DAYS * 86_400,
+            httponly=True,
+            samesite="strict",
+            secure=request.url.scheme == "https",
+        )
+    return PairedView(
+        device="tablet" if device.kind == "tablet" else "headset",
+        session_id=device.session_id,
+        token=paired.token if device.kind == "headset" else None,
+    )
+
+
+@router.delete("/sessions/{session_id}/devices/{device_id}", status_code=204)
+def delete_device(
+    session_id: str, device_id: str, db: Writing, context: Context, _: SignedIn
+) -> None:
+    """Unpair a device: its token stops working at once."""
+    revoke(db, session_id=session_id, device_id=device_id, now=context.clock.utc_now())
+    context.hub.publish_after_commit(db, session_id)
+
+
+def _qr_svg(url: str) -> str:
+    buffer = io.BytesIO()
+    segno.make(url, error="m").save(
+        buffer, kind="svg", xmldecl=False, svgns=True, border=2, scale=1, omitsize=True
+    )
+    return buffer.getvalue().decode()

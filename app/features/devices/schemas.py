@@ -1,0 +1,43 @@
+"""Pairing over HTTP."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+DeviceKind = Literal["tablet", "headset"]
+
+
+class NewPairing(BaseModel):
+    """A wish to pair a device."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    device: DeviceKind
+
+
+class PairingView(BaseModel):
+    """A code to type or scan; it works once, until `expires_at`."""
+
+    device: DeviceKind
+    code: str
+    url: str
+    qr_svg: str
+    expires_at: datetime
+
+
+class PairRequest(BaseModel):
+    """A code, typed or scanned."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    code: str = Field(min_length=4, max_length=20)
+    name: str = Field(default="", max_length=80)
+
+
+class PairedView(BaseModel):
+    """A paired device. Only headsets see their token; a tablet holds it in a cookie."""
+
+    device: DeviceKind
+    session_id: str
+    token: str | None

@@ -1,0 +1,109 @@
+"""Telling the pages and headsets of a session that something changed.
+
+A subscriber holds one slot per topic, not a queue: a slow reader misses intermediate news and gets
+the newest, so nobody who does not read can make the server hold more. The record does not depend on
+this; it is in the database before anything is published.
+"""
+
+import asyncio
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+from sqlalchemy import event
+from sqlalchemy.orm import Session
+
+
+@dataclass(eq=False)
+class Subscription:
+    """One reader's newest unread news, by topic."""
+
+    loop: asyncio.AbstractEventLoop
+    _news: dict[str, Any] = field(default_factory=dict)
+    _arrived: asyncio.Event = field(default_factory=asyncio.Event)
+
+    def offer(self, topic: str, value: Any) -> None:
+        """Leave news from any thread; replaces what was unread on the same topic."""
+        try:
+            self.loop.call_soon_threadsafe(self._put, topic, value)
+        except RuntimeError:  # the loop is closing: this reader is gone
+            return
+
+    def _put(self, topic: str, value: Any) -> None:
+        self._news[topic] = value
+        self._arrived.set()
+
+    async def next(self, timeout_s: float) -> dict[str, Any]:
+        """All unread news, waiting up to `timeout_s`; empty when nothing came."""
+        try:
+            await asyncio.wait_for(self._arrived.wait(), timeout_s)
+        except TimeoutError:
+            return {}
+        self._arrived.clear()
+        news, self._news = self._news, {}
+        return news
+
+
+@dataclass(eq=False)
+class Hub:
+    """Who listens to which session, and which headsets are connected now."""
+
+    _subscribers: dict[str, set[Subscription]] = field(default_factory=dict)
+    _headsets: dict[str, int] = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    @contextmanager
+    def subscribe(self, session_id: str) -> Iterator[Subscription]:
+        """Listen to a session from within a running event loop."""
+        subscription = Subscription(asyncio.get_running_loop())
+        with self._lock:
+            self._subscribers.setdefault(session_id, set()).add(subscription)
+        try:
+            yield subscription
+        finally:
+            with self._lock:
+                readers = self._subscribers.get(session_id, set())
+                readers.discard(subscription)
+                if not readers:
+                    self._subscribers.pop(session_id, None)
+
+    def publish(self, session_id: str, topic: str, value: Any = None) -> None:
+        """Offer news to every reader of a session, from any thread."""
+        with self._lock:
+            readers = tuple(self._subscribers.get(session_id, ()))
+        for reader in readers:
+            reader.offer(topic, value)
+
+    def publish_after_commit(self, db: Session, session_id: str) -> None:
+        """Publish "session changed" once this transaction is on disk, and only then."""
+        after_commit(db, lambda: self.publish(session_id, "session"))
+
+    def headset_joined(self, session_id: str) -> None:
+        """A headset's socket is open."""
+        with self._lock:
+            self._headsets[session_id] = self._headsets.get(session_id, 0) + 1
+
+    def headset_left(self, session_id: str) -> None:
+        """A headset's socket has closed."""
+        with self._lock:
+            left = self._headsets.get(session_id, 0) - 1
+            if left > 0:
+                self._headsets[session_id] = left
+            else:
+                self._headsets.pop(session_id, None)
+
+    def headset_connected(self, session_id: str) -> bool:
+        """Whether a headset's socket is open now."""
+        with self._lock:
+            return session_id in self._headsets
+
+
+def after_commit(db: Session, action: Callable[[], None]) -> None:
+    """Run `action` once this transaction is on disk; never, if it is rolled back."""
+
+    def run(_session: Session) -> None:
+        action()
+
+    event.listen(db, "after_commit", run, once=True)

@@ -1,0 +1,77 @@
+"""The counterbalancing ledger over HTTP."""
+
+from collections import Counter
+from collections.abc import Sequence
+
+from fastapi import APIRouter
+
+from app.features.dependencies import Reading, SignedIn
+from app.features.participants.service import SlotView, ledger_of, planned_slots
+from app.features.sessions.schemas import Kind
+from app.features.studies.schemas import AttemptView, LedgerView, SequenceRow, SlotRow
+from app.features.studies.service import newest_version, protocol_of, study_by_key
+
+router = APIRouter(tags=["participants"])
+
+
+@router.get("/studies/{key}/ledger")
+def get_ledger(key: str, db: Reading, _: SignedIn, kind: Kind = "people") -> LedgerView:
+    """Every slot with its attempts; before the first join, the slots as they will be."""
+    version = newest_version(db, study_by_key(db, key))
+    protocol = protocol_of(version)
+    latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
+    slots = ledger_of(db, version, kind)
+    rows = [_row(view, latency_ms) for view in slots] or [
+        SlotRow(
+            index=index,
+            block=index // max(1, len(planned_slots(protocol)) // protocol.orders.replicates),
+            replicate=replicate,
+            sequence=[latency_ms[condition] for condition in sequence],
+            state="free",
+            attempts=[],
+        )
+        for index, (sequence, replicate) in enumerate(planned_slots(protocol))
+    ]
+    blinded = protocol.blinding.operator
+    return LedgerView(
+        kind=kind,
+        seed=protocol.orders.seed,
+        when_full=protocol.orders.when_full,
+        started=bool(slots),
+        sequences=None if blinded else _sequences(rows),
+        slots=[row.model_copy(update={"sequence": None}) for row in rows] if blinded else rows,
+    )
+
+
+def _row(view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
+    return SlotRow(
+        index=view.slot.position,
+        block=view.slot.block,
+        replicate=view.slot.replicate,
+        sequence=[latency_ms[condition] for condition in view.slot.sequence],
+        state=view.state,
+        attempts=[
+            AttemptView(
+                session_id=session.id,
+                participant_code=participant.code,
+                outcome=attempt.outcome,
+                opened_at=attempt.opened_at,
+                closed_at=attempt.closed_at,
+            )
+            for attempt, session, participant in view.attempts
+        ],
+    )
+
+
+def _sequences(rows: Sequence[SlotRow]) -> list[SequenceRow]:
+    counts = Counter((tuple(row.sequence or ()), row.state) for row in rows)
+    orders = sorted({order for order, _ in counts})
+    return [
+        SequenceRow(
+            sequence=list(order),
+            completed=counts[order, "completed"],
+            open=counts[order, "open"],
+            total=sum(counts[order, state] for state in ("completed", "open", "free")),
+        )
+        for order in orders
+    ]

@@ -1,0 +1,261 @@
+"""Joining a study: one transaction takes the next slot of the ledger.
+
+The ledger is an immutable list of slots, every order in every replicate, with the slots permuted
+within each block by a stored seed. A session holds a slot by an attempt. When it is withdrawn or
+aborted the attempt closes with its data and the same slot is the next to be taken, so balance
+counts completed sessions. People, simulated and test sessions have ledgers of their own.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import Select, func, select
+from sqlalchemy.orm import Session
+
+from app.errors import Conflict, InvalidInput
+from app.models import (
+    Ledger,
+    LedgerSlot,
+    Participant,
+    SlotAttempt,
+    Study,
+    StudySession,
+    StudyVersion,
+)
+from app.protocol import StudyProtocol
+from app.protocol.orders import ledger_block
+
+HOLDING = ("open", "completed")
+_CODE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
+_PREFIX = {"people": "P", "simulated": "SIM", "test": "TEST"}
+
+
+@dataclass(frozen=True)
+class SlotView:
+    """A slot with everybody who ever held it: (attempt, session, participant) oldest first."""
+
+    slot: LedgerSlot
+    attempts: tuple[tuple[SlotAttempt, StudySession, Participant], ...]
+
+    @property
+    def state(self) -> str:
+        """free, open or completed."""
+        outcomes = {attempt.outcome for attempt, _, _ in self.attempts}
+        if "completed" in outcomes:
+            return "completed"
+        return "open" if "open" in outcomes else "free"
+
+
+def take_slot(
+    db: Session, version: StudyVersion, protocol: StudyProtocol, kind: str, now: datetime
+) -> LedgerSlot:
+    """The next free slot; the caller attaches its attempt in the same transaction.
+
+    Raises Conflict when every slot is held and the study is `closed`.
+    """
+    ledger = _locked_ledger(db, version, protocol, kind, now)
+    while True:
+        slot = db.scalar(_free_slots(ledger.id).limit(1))
+        if slot is not None:
+            return slot
+        if ledger.blocks >= protocol.orders.replicates and protocol.orders.when_full == "closed":
+            total = db.scalar(
+                select(func.count())
+                .select_from(LedgerSlot)
+                .where(LedgerSlot.ledger_id == ledger.id)
+            )
+            raise Conflict(
+                "every slot of the ledger is taken and the study is closed",
+                value=total,
+                remedy="Withdraw a session that will not be finished, or set "
+                "orders.when_full to grow in a new version.",
+            )
+        _grow(db, ledger, protocol)
+
+
+def _free_slots(ledger_id: str) -> Select[LedgerSlot]:
+    held = (
+        select(SlotAttempt.id)
+        .where(SlotAttempt.slot_id == LedgerSlot.id, SlotAttempt.outcome.in_(HOLDING))
+        .exists()
+    )
+    return (
+        select(LedgerSlot)
+        .where(LedgerSlot.ledger_id == ledger_id, ~held)
+        .order_by(LedgerSlot.position)
+    )
+
+
+def _locked_ledger(
+    db: Session, version: StudyVersion, protocol: StudyProtocol, kind: str, now: datetime
+) -> Ledger:
+    """The ledger row, locked so that simultaneous joins queue here."""
+    query = (
+        select(Ledger)
+        .where(
+            Ledger.study_id == version.study_id,
+            Ledger.kind == kind,
+            Ledger.design_hash == version.design_hash,
+        )
+        .with_for_update()
+    )
+    ledger = db.scalar(query)
+    if ledger is None:
+        # Two first joins may both find nothing: queue on the study, then look again.
+        db.execute(select(Study.id).where(Study.id == version.study_id).with_for_update())
+        ledger = db.scalar(query)
+    if ledger is None:
+        ledger = Ledger(
+            study_id=version.study_id,
+            kind=kind,
+            design_hash=version.design_hash,
+            seed=protocol.orders.seed,
+            blocks=0,
+            created_at=now,
+        )
+        db.add(ledger)
+        db.flush()
+    while ledger.blocks < protocol.orders.replicates:
+        _grow(db, ledger, protocol)
+    return ledger
+
+
+def _grow(db: Session, ledger: Ledger, protocol: StudyProtocol) -> None:
+    """Add one whole seeded block: every order once."""
+    block = ledger_block(protocol, ledger.blocks)
+    first = ledger.blocks * len(block)
+    db.add_all(
+        LedgerSlot(
+            ledger_id=ledger.id,
+            position=first + offset,
+            block=ledger.blocks,
+            replicate=replicate,
+            sequence=list(sequence),
+        )
+        for offset, (sequence, replicate) in enumerate(block)
+    )
+    ledger.blocks += 1
+    db.flush()
+
+
+def find_or_add_participant(
+    db: Session, *, study_id: str, kind: str, code: str | None, now: datetime
+) -> Participant:
+    """The participant of that code, or a new one with the next free code.
+
+    Raises InvalidInput for an unusable code and Conflict where that participant is in a session or
+    has completed one.
+    """
+    if code is None or not code.strip():
+        return _add_participant(db, study_id, kind, _next_code(db, study_id, kind), now)
+    code = code.strip()
+    if not _CODE.fullmatch(code):
+        raise InvalidInput(
+            f"{code!r} cannot be a participant's code",
+            value=code,
+            valid="1 to 40 letters, digits, - and _",
+            remedy="Use a pseudonym such as P-0007, never a name.",
+        )
+    known = db.scalar(
+        select(Participant).where(
+            Participant.study_id == study_id, Participant.kind == kind, Participant.code == code
+        )
+    )
+    if known is None:
+        return _add_participant(db, study_id, kind, code, now)
+    busy = db.scalar(
+        select(StudySession).where(
+            StudySession.participant_id == known.id,
+            StudySession.status.in_(("planned", "active", "completed")),
+        )
+    )
+    if busy is not None:
+        raise Conflict(
+            f"participant {code} has a session that is {busy.status}",
+            value=code,
+            remedy="Open that session, or use another code.",
+            details=[{"session_id": busy.id, "status": busy.status}],
+        )
+    return known
+
+
+def _add_participant(
+    db: Session, study_id: str, kind: str, code: str, now: datetime
+) -> Participant:
+    row = Participant(study_id=study_id, kind=kind, code=code, created_at=now)
+    db.add(row)
+    db.flush()
+    return row
+
+
+def _next_code(db: Session, study_id: str, kind: str) -> str:
+    taken = set(
+        db.scalars(
+            select(Participant.code).where(
+                Participant.study_id == study_id, Participant.kind == kind
+            )
+        )
+    )
+    number = len(taken) + 1
+    while f"{_PREFIX[kind]}-{number:04d}" in taken:
+        number += 1
+    return f"{_PREFIX[kind]}-{number:04d}"
+
+
+def hold_slot(db: Session, slot: LedgerSlot, session: StudySession, now: datetime) -> None:
+    """Attach a session to its slot."""
+    db.add(SlotAttempt(slot_id=slot.id, session_id=session.id, outcome="open", opened_at=now))
+    db.flush()
+
+
+def close_attempt(db: Session, session: StudySession, outcome: str, now: datetime) -> None:
+    """The session has ended: completed keeps the slot, withdrawn and aborted free it."""
+    attempt = db.scalar(select(SlotAttempt).where(SlotAttempt.session_id == session.id))
+    if attempt is not None and attempt.outcome == "open":
+        attempt.outcome = outcome
+        attempt.closed_at = now
+
+
+def slot_of(db: Session, session: StudySession) -> LedgerSlot:
+    """The slot a session holds or held."""
+    return db.scalars(
+        select(LedgerSlot)
+        .join(SlotAttempt, SlotAttempt.slot_id == LedgerSlot.id)
+        .where(SlotAttempt.session_id == session.id)
+    ).one()
+
+
+def ledger_of(db: Session, version: StudyVersion, kind: str) -> tuple[SlotView, ...]:
+    """Every slot of a ledger in order, with its attempts; empty before the first join."""
+    ledger = db.scalar(
+        select(Ledger).where(
+            Ledger.study_id == version.study_id,
+            Ledger.kind == kind,
+            Ledger.design_hash == version.design_hash,
+        )
+    )
+    if ledger is None:
+        return ()
+    slots = db.scalars(
+        select(LedgerSlot).where(LedgerSlot.ledger_id == ledger.id).order_by(LedgerSlot.position)
+    ).all()
+    rows = db.execute(
+        select(SlotAttempt, StudySession, Participant)
+        .join(StudySession, StudySession.id == SlotAttempt.session_id)
+        .join(Participant, Participant.id == StudySession.participant_id)
+        .where(SlotAttempt.slot_id.in_([slot.id for slot in slots]))
+        .order_by(SlotAttempt.opened_at)
+    ).all()
+    return tuple(
+        SlotView(slot, tuple((a, s, p) for a, s, p in rows if a.slot_id == slot.id))
+        for slot in slots
+    )
+
+
+def planned_slots(protocol: StudyProtocol) -> Sequence[tuple[tuple[str, ...], int]]:
+    """The slots a ledger will have before anybody joined: (order, replicate) in slot order."""
+    return [
+        row for block in range(protocol.orders.replicates) for row in ledger_block(protocol, block)
+    ]

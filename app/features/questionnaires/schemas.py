@@ -1,0 +1,63 @@
+"""Forms as they travel to a tablet and back."""
+
+from datetime import datetime
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+AnswerValue = bool | int | float | str | None
+
+
+class Administration(BaseModel):
+    """A form to fill in now: the exact instrument, in the order to show its items."""
+
+    key: str
+    step_index: int
+    instrument: dict[str, Any]
+    item_order: list[str]
+    seed: int
+    language: str
+    languages: list[str]
+
+
+class SubmissionRequest(BaseModel):
+    """A filled-in form. The same `idempotency_key` may be sent any number of times."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    idempotency_key: str = Field(min_length=8, max_length=64)
+    administration: str = Field(max_length=120)
+    answers: dict[str, AnswerValue] = Field(max_length=200)
+    shown_order: list[str] = Field(max_length=200)
+    seed: int
+    language: str = Field(max_length=8)
+    started_at_utc: datetime | None = None
+    timings: dict[str, float] = Field(default_factory=dict, max_length=200)
+
+
+class Receipt(BaseModel):
+    """Proof that the form is stored; `duplicate` if it was stored before."""
+
+    receipt_id: str
+    stored_at: datetime
+    duplicate: bool
+
+
+class StoredScores(BaseModel):
+    """The scores of one stored form."""
+
+    administration: str
+    step_index: int
+    instrument: str
+    mode: str
+    scores: dict[str, float | None]
+
+
+class StoredAnswers(StoredScores):
+    """One stored form with its answers as given."""
+
+    submission_id: str
+    language: str
+    shown_order: list[str]
+    submitted_at: datetime
+    answers: dict[str, AnswerValue]

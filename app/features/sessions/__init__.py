@@ -1,0 +1,1 @@
+"""Running a session: its event log, its state, its commands."""

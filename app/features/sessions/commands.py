@@ -1,0 +1,83 @@
+"""From an operator's request to an engine command, storing the words that come with it."""
+
+from sqlalchemy.orm import Session
+
+from app.errors import InvalidInput
+from app.features.context import AppContext
+from app.features.sessions.contents import store_content
+from app.features.sessions.engine import Command, ContentRef
+from app.features.sessions.engine import commands as c
+from app.features.sessions.schemas import CommandRequest
+from app.models import StudySession
+
+_NEEDS_REASON = ("redo", "skip", "abort", "withdraw")
+
+
+def command_of(
+    db: Session, context: AppContext, session: StudySession, request: CommandRequest, actor: str
+) -> Command:
+    """The engine's command; raises InvalidInput where words are missing."""
+    reason = (request.reason or "").strip()
+    if request.type in _NEEDS_REASON and not reason:
+        raise InvalidInput(
+            f"{request.type} needs a reason",
+            value=request.reason,
+            valid="1 to 2000 characters",
+            remedy="Write in a few words why; it becomes part of the record.",
+        )
+    store = _Store(db, context, session, actor)
+    connected = context.hub.headset_connected(session.id)
+    match request.type:
+        case "start":
+            return c.Start()
+        case "complete_step":
+            height = request.height_m
+            body = height.model_dump() if height else None
+            return c.CompleteStep(
+                by="operator",
+                step=request.step_index,
+                content=store.put("height", body) if body else None,
+            )
+        case "begin_phase":
+            return c.BeginPhase(headset_connected=connected)
+        case "materialise":
+            return c.Materialise(by="operator")
+        case "pause":
+            return c.Pause(content=store.put("reason", reason) if reason else None)
+        case "resume":
+            return c.Resume(headset_connected=connected)
+        case "redo":
+            return c.Redo(content=store.put("reason", reason), step=request.step_index)
+        case "skip":
+            return c.Skip(content=store.put("reason", reason))
+        case "abort" | "withdraw":
+            status = "aborted" if request.type == "abort" else "withdrawn"
+            return c.Stop(status=status, content=store.put("reason", reason))
+        case "note":
+            return c.AddNote(content=store.put("note", _note_text(request)))
+
+
+class _Store:
+    """Puts words beside the log, in the caller's transaction: a refusal leaves none behind."""
+
+    def __init__(self, db: Session, context: AppContext, session: StudySession, actor: str) -> None:
+        self._db, self._context, self._session, self._actor = db, context, session, actor
+
+    def put(self, kind: str, body: object) -> ContentRef:
+        return store_content(
+            self._db,
+            session_id=self._session.id,
+            kind=kind,
+            body=body,
+            by=self._actor,
+            now=self._context.clock.utc_now(),
+        )
+
+
+def _note_text(request: CommandRequest) -> str:
+    text = (request.text or "").strip()
+    if not text:
+        raise InvalidInput(
+            "a note needs some text", value=request.text, remedy="Write the note, then send it."
+        )
+    return text

@@ -1,0 +1,138 @@
+"""Sessions over HTTP: joining, the cockpit's view, commands, the log, live news."""
+
+import asyncio
+from collections.abc import AsyncIterator
+
+from fastapi import APIRouter
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+
+from app.features.context import AppContext
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.questionnaires.schemas import (
+    Administration,
+    Receipt,
+    StoredAnswers,
+    SubmissionRequest,
+)
+from app.features.questionnaires.service import current_administration, stored_answers, submit
+from app.features.sessions.commands import command_of
+from app.features.sessions.schemas import (
+    CommandRequest,
+    EventView,
+    Kind,
+    NewSession,
+    SessionSummary,
+    SessionView,
+)
+from app.features.sessions.service import apply_command, join, session_by_id
+from app.features.sessions.view import event_views, list_sessions, session_view
+from app.features.studies.service import study_by_key
+
+router = APIRouter(tags=["sessions"])
+HEARTBEAT_S = 10.0
+
+
+@router.post("/studies/{key}/sessions", status_code=201)
+def create_session(
+    key: str, request: NewSession, db: Writing, context: Context, _: SignedIn
+) -> SessionView:
+    """Join a study: take the next slot of the ledger for a participant."""
+    session = join(
+        db,
+        context,
+        study_key=key,
+        participant_code=request.participant_code,
+        kind=request.kind,
+        language=request.language,
+        time_scale=request.time_scale,
+    )
+    return session_view(db, context, session)
+
+
+@router.get("/studies/{key}/sessions")
+def get_sessions(
+    key: str, db: Reading, _: SignedIn, kind: Kind | None = None
+) -> list[SessionSummary]:
+    """The sessions of a study, newest first."""
+    return list_sessions(db, study_by_key(db, key), kind)
+
+
+@router.get("/sessions/{session_id}")
+def get_session(session_id: str, db: Reading, context: Context, _: SignedIn) -> SessionView:
+    """A session as the cockpit shows it."""
+    return session_view(db, context, session_by_id(db, session_id))
+
+
+@router.post("/sessions/{session_id}/commands")
+def post_command(
+    session_id: str, request: CommandRequest, db: Writing, context: Context, caller: SignedIn
+) -> SessionView:
+    """Do something with a session. A repeated `command_id` changes nothing."""
+    session = session_by_id(db, session_id, lock=True)
+    apply_command(
+        db,
+        context,
+        session,
+        command_of(db, context, session, request, caller.actor),
+        actor=caller.actor,
+        command_id=request.command_id,
+        # A note cannot clash with anything.
+        expected_version=None if request.type == "note" else request.expected_version,
+    )
+    return session_view(db, context, session)
+
+
+@router.get("/sessions/{session_id}/events")
+def get_events(session_id: str, db: Reading, _: SignedIn) -> list[EventView]:
+    """The event log, oldest first."""
+    return event_views(db, session_by_id(db, session_id))
+
+
+@router.get("/sessions/{session_id}/answers")
+def get_answers(session_id: str, db: Reading, _: SignedIn) -> list[StoredAnswers]:
+    """Every stored form with answers and scores."""
+    return stored_answers(db, session_by_id(db, session_id))
+
+
+@router.get("/sessions/{session_id}/administration")
+def get_administration(session_id: str, db: Reading, _: SignedIn) -> Administration | None:
+    """The form that is due now, for entry by the operator."""
+    return current_administration(db, session_by_id(db, session_id))
+
+
+@router.post("/sessions/{session_id}/submissions")
+def post_submission(
+    session_id: str, request: SubmissionRequest, db: Writing, context: Context, caller: SignedIn
+) -> Receipt:
+    """Store a form that the operator filled in from what the participant said."""
+    session = session_by_id(db, session_id, lock=True)
+    submission, duplicate = submit(
+        db, context, session, request, mode="operator", actor=caller.actor
+    )
+    return Receipt(receipt_id=submission.id, stored_at=submission.submitted_at, duplicate=duplicate)
+
+
+@router.get("/sessions/{session_id}/live", response_class=EventSourceResponse)
+async def get_live(
+    session_id: str, context: Context, _: SignedIn
+) -> AsyncIterator[ServerSentEvent]:
+    """News of a session: `session` on every change, `telemetry` a few times a second."""
+    with context.hub.subscribe(session_id) as subscription:
+        yield await _session_event(context, session_id)
+        while True:
+            news = await subscription.next(HEARTBEAT_S)
+            if not news:
+                yield ServerSentEvent(comment="still here")
+            if "session" in news:
+                yield await _session_event(context, session_id)
+            if "telemetry" in news:
+                yield ServerSentEvent(data=news["telemetry"], event="telemetry")
+
+
+async def _session_event(context: AppContext, session_id: str) -> ServerSentEvent:
+    def read() -> SessionView:
+        with context.database.reading() as db:
+            return session_view(db, context, session_by_id(db, session_id))
+
+    view = await asyncio.to_thread(read)
+    return ServerSentEvent(data=view, event="session", id=str(view.version))

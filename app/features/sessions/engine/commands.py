@@ -1,0 +1,123 @@
+"""What can be asked of a session: by the operator, the tablet, the headset, or the server."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ContentRef:
+    """Words stored elsewhere: their id and salted hash."""
+
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Command:
+    """Base of all commands."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Start(Command):
+    """Start the session."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompleteStep(Command):
+    """The current step without a clock is done (consent given, instructions read, ...).
+
+    `step` guards against a late click: it must be the current one where it is given.
+    """
+
+    by: str
+    step: int | None = None
+    content: ContentRef | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class SubmitForm(Command):
+    """The form of step `step` was stored as `submission_id`."""
+
+    step: int
+    submission_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class Materialise(Command):
+    """The participant stands in T-pose and the avatar appears."""
+
+    by: str
+    client_t_s: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeginPhase(Command):
+    """Call the current timed step."""
+
+    headset_connected: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pause(Command):
+    """Stop the clock."""
+
+    content: ContentRef | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Resume(Command):
+    """Let the clock go on."""
+
+    headset_connected: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Redo(Command):
+    """Do step `step` (the current one if None) over, and what came after it."""
+
+    content: ContentRef
+    step: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Skip(Command):
+    """Leave the current step out."""
+
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stop(Command):
+    """End the session before its time: `aborted` by the lab or `withdrawn` by the participant."""
+
+    status: str
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
+class AddNote(Command):
+    """Write something down."""
+
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
+class Report(Command):
+    """What the headset did to a phase's clock, at its own time.
+
+    `what`: started, paused, resumed, walk_back_started, walk_back_ended, time_up or ended.
+    """
+
+    what: str
+    phase_id: int
+    client_t_s: float
+    active_s: float
+    cause: str = "headset"
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeadsetLost(Command):
+    """The headset's connection or the server broke off; `active_s` is the last stored value."""
+
+    active_s: float
+    cause: str

@@ -1,0 +1,117 @@
+"""A phase's clock as the headset reports it.
+
+The headset runs the phase on its own monotonic clock and reports each change with its active time;
+here the report is checked against the state. Active time never runs backwards and a phase cannot
+end before its duration is used up.
+"""
+
+from collections.abc import Sequence
+from typing import TypeVar
+
+from app.features.sessions.engine import commands as c
+from app.features.sessions.engine import events as e
+from app.features.sessions.engine.refused import Refused
+from app.features.sessions.engine.state import PhaseState, PhaseStatus, SessionState
+from app.protocol.plan import Step
+
+FRAME_TOLERANCE_S = 0.05
+"""A phase may end this much off its duration: a few frames of the slowest headset."""
+
+_EXPECTED: dict[str, tuple[PhaseStatus, ...]] = {
+    "started": (PhaseStatus.PREPARING,),
+    # A pause may confirm one that the server had to assume when the headset was lost.
+    "paused": (PhaseStatus.RUNNING, PhaseStatus.PAUSED),
+    "resumed": (PhaseStatus.PAUSED,),
+    "walk_back_started": (PhaseStatus.RUNNING,),
+    "walk_back_ended": (PhaseStatus.WALK_BACK,),
+    "time_up": (PhaseStatus.RUNNING,),
+    "ended": (PhaseStatus.FREEZING,),
+}
+
+
+def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -> list[e.Event]:
+    """The event of a headset's report; raises Refused when it does not fit the state."""
+    phase = state.phase
+    if phase is None or phase.phase_id != report.phase_id:
+        raise Refused(
+            f"phase {report.phase_id} is not under way",
+            value=report.phase_id,
+            valid=[phase.phase_id] if phase else [],
+            remedy="Follow the newest state message.",
+        )
+    if report.what not in _EXPECTED:
+        raise Refused(f"unknown report {report.what!r}", value=report.what, valid=list(_EXPECTED))
+    if phase.status not in _EXPECTED[report.what]:
+        raise Refused(
+            f"report {report.what!r} does not fit a phase that is {phase.status}",
+            value=phase.status,
+            valid=list(_EXPECTED[report.what]),
+            remedy="Follow the newest state message.",
+        )
+    _require_active_time(phase, report, plan[phase.step].duration_s or 0.0)
+    return [_event(report, phase)]
+
+
+def _event(report: c.Report, phase: PhaseState) -> e.Event:
+    match report.what:
+        case "started":
+            return e.PhaseStarted(phase_id=report.phase_id, client_t_s=report.client_t_s)
+        case "paused":
+            cause = "operator" if phase.pausing else report.cause
+            if phase.status is PhaseStatus.PAUSED and phase.pause_cause is not None:
+                cause = phase.pause_cause
+            return e.PhasePaused(
+                phase_id=report.phase_id,
+                active_s=report.active_s,
+                client_t_s=report.client_t_s,
+                cause=cause,
+            )
+        case "resumed":
+            return _stamped(e.PhaseResumed, report)
+        case "walk_back_started":
+            return _stamped(e.WalkBackStarted, report)
+        case "walk_back_ended":
+            return _stamped(e.WalkBackEnded, report)
+        case "time_up":
+            return _stamped(e.PhaseFrozen, report)
+        case _:
+            return _stamped(e.PhaseEnded, report)
+
+
+_Stamped = TypeVar(
+    "_Stamped", e.PhaseResumed, e.WalkBackStarted, e.WalkBackEnded, e.PhaseFrozen, e.PhaseEnded
+)
+
+
+def _stamped(event: type[_Stamped], report: c.Report) -> _Stamped:
+    return event(phase_id=report.phase_id, active_s=report.active_s, client_t_s=report.client_t_s)
+
+
+def decide_headset_lost(state: SessionState, command: c.HeadsetLost) -> list[e.Event]:
+    """A running clock stops where it was last known; other phases wait as they are."""
+    phase = state.phase
+    if phase is None or phase.status is not PhaseStatus.RUNNING:
+        return []
+    return [
+        e.PhasePaused(
+            phase_id=phase.phase_id,
+            active_s=max(phase.active_s, command.active_s),
+            cause=command.cause,
+        )
+    ]
+
+
+def _require_active_time(phase: PhaseState, report: c.Report, duration_s: float) -> None:
+    low = max(0.0, phase.active_s - 1e-6)
+    high = duration_s + FRAME_TOLERANCE_S
+    if report.what == "time_up":
+        low = max(low, duration_s - FRAME_TOLERANCE_S)
+    if report.what == "started":
+        high = FRAME_TOLERANCE_S
+    if not low <= report.active_s <= high:
+        raise Refused(
+            f"active time {report.active_s:.3f} s does not fit {report.what!r}",
+            value=report.active_s,
+            valid=[low, high],
+            remedy="Report the phase's active time in seconds: pauses and walk-backs do not count.",
+        )

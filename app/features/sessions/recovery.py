@@ -1,0 +1,31 @@
+"""What a starting server does about sessions that were running when it died."""
+
+from sqlalchemy import select
+
+from app.features.context import AppContext
+from app.features.sessions.engine.commands import HeadsetLost
+from app.features.sessions.service import apply_command, session_by_id, state_of
+from app.features.studies.service import protocol_of
+from app.features.telemetry.positions import certain_active_s
+from app.models import StudySession, StudyVersion
+
+
+def stop_running_clocks(context: AppContext) -> int:
+    """Pause every phase whose clock ran, at the last active time on disk; how many there were.
+
+    A study with `on_disconnect: continue` is left alone: its headset goes on by its journal.
+    """
+    with context.database.reading() as db:
+        active = list(db.scalars(select(StudySession.id).where(StudySession.status == "active")))
+    paused = 0
+    for session_id in active:
+        with context.database.writing() as db:
+            session = session_by_id(db, session_id, lock=True)
+            version = db.get_one(StudyVersion, session.study_version_id)
+            phase = state_of(session).phase
+            if phase is None or protocol_of(version).on_disconnect == "continue":
+                continue
+            active_s = certain_active_s(db, session_id, phase.phase_id)
+            command = HeadsetLost(active_s=active_s, cause="server_restarted")
+            paused += len(apply_command(db, context, session, command, actor="system").events)
+    return paused

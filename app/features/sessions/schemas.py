@@ -1,0 +1,179 @@
+"""A session as pages and clients see it."""
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.features.questionnaires.schemas import StoredScores
+
+Kind = Literal["people", "simulated", "test"]
+CommandType = Literal[
+    "start",
+    "complete_step",
+    "begin_phase",
+    "materialise",
+    "pause",
+    "resume",
+    "redo",
+    "skip",
+    "abort",
+    "withdraw",
+    "note",
+]
+
+
+class NewSession(BaseModel):
+    """A request to join a study."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    participant_code: str | None = None
+    kind: Kind = "people"
+    language: str = "en"
+    time_scale: float = Field(default=1.0, allow_inf_nan=False)
+
+
+class Height(BaseModel):
+    """The participant's height as stated and as matched to the avatar, in metres."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    stated: float | None = Field(default=None, ge=0.8, le=2.5)
+    matched: float | None = Field(default=None, ge=0.8, le=2.5)
+
+
+class CommandRequest(BaseModel):
+    """An operator's command, decided on what their page showed (`expected_version`)."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    command_id: str = Field(min_length=8, max_length=36)
+    expected_version: int = Field(ge=0)
+    type: CommandType
+    reason: str | None = Field(default=None, max_length=2000)
+    text: str | None = Field(default=None, max_length=4000)
+    step_index: int | None = Field(default=None, ge=0)
+    height_m: Height | None = None
+
+
+class SlotInfo(BaseModel):
+    """The session's row of the ledger."""
+
+    index: int
+    block: int
+    replicate: int
+
+
+class StepView(BaseModel):
+    """One step of the procedure; fields that do not apply are null."""
+
+    index: int
+    key: str
+    kind: str
+    title: str
+    block: int | None
+    latency_ms: float | None
+    limb: str | None
+    preparation_s: float | None
+    duration_s: float | None
+    freeze_s: float | None
+    instrument: str | None
+    status: str
+    attempt: int
+    reason: str | None
+
+
+class CurrentView(BaseModel):
+    """The current step; `status` is ready or that of its phase."""
+
+    index: int
+    status: str
+    active_s: float
+    duration_s: float | None
+    pausing: bool
+    resuming: bool
+    pause_reason: str | None
+
+
+class DeviceView(BaseModel):
+    """A paired device."""
+
+    id: str
+    kind: str
+    name: str
+    paired_at: datetime
+    connected: bool
+    last_seen_at: datetime | None
+
+
+class PhaseView(BaseModel):
+    """A phase that was prepared, with what happened in it so far."""
+
+    phase_id: int
+    step_index: int
+    attempt: int
+    kind: str
+    limb: str | None
+    latency_ms: float | None
+    status: str
+    active_s: float
+    completions: int
+    side_contacts: int
+    side_contact_s: float
+    started_at: datetime | None
+    ended_at: datetime | None
+
+
+class NoteView(BaseModel):
+    """A note of the lab."""
+
+    id: str
+    text: str
+    at: datetime
+    by: str
+
+
+class SessionSummary(BaseModel):
+    """A row of a list of sessions."""
+
+    id: str
+    participant_code: str
+    kind: str
+    simulated: bool
+    status: str
+    sequence: list[float] | None
+    study_version: int
+    created_at: datetime
+    started_at: datetime | None
+    ended_at: datetime | None
+
+
+class SessionView(SessionSummary):
+    """Everything a cockpit shows. `sequence` and latencies are null for a blinded operator."""
+
+    study_key: str
+    study_title: str
+    avatar: str
+    language: str
+    version: int
+    time_scale: float
+    slot: SlotInfo
+    steps: list[StepView]
+    current: CurrentView | None
+    allowed: list[str]
+    devices: list[DeviceView]
+    phases: list[PhaseView]
+    notes: list[NoteView]
+    scores: list[StoredScores]
+
+
+class EventView(BaseModel):
+    """A row of the event log."""
+
+    seq: int
+    type: str
+    at: datetime
+    by: str
+    data: dict[str, Any]
+    hash: str

@@ -1,0 +1,255 @@
+"""Drawing a session for a page, from its snapshot and rows."""
+
+import json
+from collections.abc import Mapping, Sequence
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.features.context import AppContext
+from app.features.devices.service import devices_of_session
+from app.features.participants.service import slot_of
+from app.features.questionnaires.service import stored_scores
+from app.features.sessions.contents import content_body, contents_of
+from app.features.sessions.engine import SessionState, allowed_commands
+from app.features.sessions.journal import events_of
+from app.features.sessions.schemas import (
+    CurrentView,
+    DeviceView,
+    EventView,
+    NoteView,
+    PhaseView,
+    SessionSummary,
+    SessionView,
+    SlotInfo,
+    StepView,
+)
+from app.features.sessions.service import plan_of, state_of
+from app.features.studies.service import protocol_of
+from app.models import Completion, Contact, Participant, Phase, Study, StudySession, StudyVersion
+from app.protocol import StudyProtocol
+from app.protocol.plan import Step
+
+
+def session_view(db: Session, context: AppContext, session: StudySession) -> SessionView:
+    """The whole session, for the console."""
+    version = db.get_one(StudyVersion, session.study_version_id)
+    protocol = protocol_of(version)
+    blinded = protocol.blinding.operator
+    state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
+    reasons = _reasons(db, session)
+    summary = _summary(session, protocol, version, _code(db, session), slot.sequence)
+    return SessionView(
+        **summary.model_dump(),
+        study_key=protocol.key,
+        study_title=_text(protocol.title, "en"),
+        avatar=session.avatar,
+        language=session.language,
+        version=session.version,
+        time_scale=session.time_scale,
+        slot=SlotInfo(index=slot.position, block=slot.block, replicate=slot.replicate),
+        steps=[_step(step, state, reasons, blinded=blinded) for step in plan],
+        current=_current(plan, state),
+        allowed=allowed_commands(plan, state),
+        devices=_devices(db, context, session),
+        phases=_phases(db, session, blinded=blinded),
+        notes=_notes(db, session),
+        scores=stored_scores(db, session),
+    )
+
+
+def list_sessions(db: Session, study: Study, kind: str | None) -> list[SessionSummary]:
+    """All sessions of a study, newest first."""
+    query = (
+        select(StudySession, StudyVersion, Participant.code)
+        .join(StudyVersion, StudyVersion.id == StudySession.study_version_id)
+        .join(Participant, Participant.id == StudySession.participant_id)
+        .where(StudySession.study_id == study.id)
+        .order_by(StudySession.created_at.desc())
+    )
+    if kind is not None:
+        query = query.where(StudySession.kind == kind)
+    return [
+        _summary(session, protocol_of(version), version, code, slot_of(db, session).sequence)
+        for session, version, code in db.execute(query)
+    ]
+
+
+def event_views(db: Session, session: StudySession) -> list[EventView]:
+    """The event log for reading; latencies are left out where the operator is blinded."""
+    version = db.get_one(StudyVersion, session.study_version_id)
+    blinded = protocol_of(version).blinding.operator
+    views = []
+    for row in events_of(db, session.id):
+        data = json.loads(row.payload)
+        if blinded:
+            data.pop("latency_ms", None)
+        views.append(
+            EventView(
+                seq=row.seq,
+                type=row.type,
+                at=row.recorded_at,
+                by=row.actor,
+                data=data,
+                hash=row.hash,
+            )
+        )
+    return views
+
+
+def _summary(
+    session: StudySession,
+    protocol: StudyProtocol,
+    version: StudyVersion,
+    code: str,
+    sequence: Sequence[str],
+) -> SessionSummary:
+    latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
+    return SessionSummary(
+        id=session.id,
+        participant_code=code,
+        kind=session.kind,
+        simulated=session.kind == "simulated",
+        status=session.status,
+        sequence=None if protocol.blinding.operator else [latency_ms[key] for key in sequence],
+        study_version=version.number,
+        created_at=session.created_at,
+        started_at=session.started_at,
+        ended_at=session.ended_at,
+    )
+
+
+def _code(db: Session, session: StudySession) -> str:
+    return db.get_one(Participant, session.participant_id).code
+
+
+def _text(text: Mapping[str, str], language: str) -> str:
+    return text.get(language) or next(iter(text.values()), "")
+
+
+def _step(
+    step: Step, state: SessionState, reasons: Mapping[int, str], *, blinded: bool
+) -> StepView:
+    own = state.steps[step.index]
+    return StepView(
+        index=step.index,
+        key=step.key,
+        kind=step.kind,
+        title=_text(step.title, "en"),
+        block=step.block,
+        latency_ms=None if blinded else step.latency_ms,
+        limb=step.limb,
+        preparation_s=step.preparation_s,
+        duration_s=step.duration_s,
+        freeze_s=step.freeze_s,
+        instrument=step.instrument,
+        status=str(own.status),
+        attempt=own.attempt,
+        reason=reasons.get(step.index),
+    )
+
+
+def _current(plan: Sequence[Step], state: SessionState) -> CurrentView | None:
+    if state.current is None:
+        return None
+    phase = state.phase
+    return CurrentView(
+        index=state.current,
+        status="ready" if phase is None else str(phase.status),
+        active_s=0.0 if phase is None else phase.active_s,
+        duration_s=plan[state.current].duration_s,
+        pausing=phase is not None and phase.pausing,
+        resuming=phase is not None and phase.resuming,
+        pause_reason=None if phase is None else phase.pause_cause,
+    )
+
+
+def _devices(db: Session, context: AppContext, session: StudySession) -> list[DeviceView]:
+    now = context.clock.utc_now()
+    views = []
+    for device in devices_of_session(db, session.id):
+        if device.kind == "headset":
+            connected = context.hub.headset_connected(session.id)
+        else:
+            seen = device.last_seen_at
+            connected = seen is not None and (now - seen).total_seconds() < TABLET_SILENT_AFTER_S
+        views.append(
+            DeviceView(
+                id=device.id,
+                kind=device.kind,
+                name=device.name,
+                paired_at=device.paired_at,
+                connected=connected,
+                last_seen_at=device.last_seen_at,
+            )
+        )
+    return views
+
+
+TABLET_SILENT_AFTER_S = 30.0
+"""A tablet is told every 10 s that the server is there; after three misses it counts as away."""
+
+
+def _phases(db: Session, session: StudySession, *, blinded: bool) -> list[PhaseView]:
+    completions = dict(
+        db.execute(
+            select(Completion.phase_id, func.count())
+            .where(Completion.session_id == session.id)
+            .group_by(Completion.phase_id)
+        ).all()
+    )
+    sides = {
+        phase_id: (count, seconds)
+        for phase_id, count, seconds in db.execute(
+            select(
+                Contact.phase_id,
+                func.count(),
+                func.sum(Contact.end_active_s - Contact.begin_active_s),
+            )
+            .where(Contact.session_id == session.id, Contact.surface_kind == "side")
+            .group_by(Contact.phase_id)
+        )
+    }
+    phases = db.scalars(
+        select(Phase).where(Phase.session_id == session.id).order_by(Phase.phase_id)
+    )
+    return [
+        PhaseView(
+            phase_id=phase.phase_id,
+            step_index=phase.step_index,
+            attempt=phase.attempt,
+            kind=phase.kind,
+            limb=phase.limb,
+            latency_ms=None if blinded else phase.latency_ms,
+            status=phase.status,
+            active_s=phase.active_s,
+            completions=completions.get(phase.phase_id, 0),
+            side_contacts=sides.get(phase.phase_id, (0, 0.0))[0],
+            side_contact_s=sides.get(phase.phase_id, (0, 0.0))[1],
+            started_at=phase.started_at,
+            ended_at=phase.ended_at,
+        )
+        for phase in phases
+    ]
+
+
+def _notes(db: Session, session: StudySession) -> list[NoteView]:
+    return [
+        NoteView(id=row.id, text=str(content_body(row)), at=row.created_at, by=row.created_by)
+        for row in contents_of(db, session.id, "note")
+        if row.body is not None
+    ]
+
+
+def _reasons(db: Session, session: StudySession) -> dict[int, str]:
+    """Why steps were skipped or done over, by step index; the newest reason of each."""
+    bodies = {
+        row.id: content_body(row) for row in contents_of(db, session.id, "reason") if row.body
+    }
+    reasons: dict[int, str] = {}
+    for row in events_of(db, session.id):
+        if row.type in ("step_skipped", "step_reopened"):
+            payload = json.loads(row.payload)
+            if payload["content_id"] in bodies:
+                reasons[payload["step"]] = str(bodies[payload["content_id"]])
+    return reasons

@@ -1,0 +1,97 @@
+"""Studies as pages see them."""
+
+from datetime import datetime
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+MAX_YAML_CHARACTERS = 262_144
+
+
+class StudyFile(BaseModel):
+    """A study as YAML text."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    yaml: str = Field(max_length=MAX_YAML_CHARACTERS)
+
+
+class CheckResult(BaseModel):
+    """Whether a file can be used, with every problem and its place."""
+
+    ok: bool
+    key: str | None = None
+    content_hash: str | None = None
+    problems: list[dict[str, Any]] = []
+
+
+class VersionView(BaseModel):
+    """One version of a study."""
+
+    number: int
+    content_hash: str
+    created_at: datetime
+    frozen_at: datetime | None
+
+
+class StudySummary(BaseModel):
+    """A study in the list."""
+
+    key: str
+    title: str
+    description: str
+    version: int
+    content_hash: str
+    frozen: bool
+    session_counts: dict[str, int]
+    created_at: datetime
+
+
+class StudyView(StudySummary):
+    """A study with its newest version in full."""
+
+    languages: list[str]
+    versions: list[VersionView]
+    protocol: dict[str, Any]
+    yaml: str
+
+
+class AttemptView(BaseModel):
+    """A session that holds or held a slot."""
+
+    session_id: str
+    participant_code: str
+    outcome: str
+    opened_at: datetime
+    closed_at: datetime | None
+
+
+class SlotRow(BaseModel):
+    """A slot of the ledger; `sequence` holds latencies in ms, null for a blinded operator."""
+
+    index: int
+    block: int
+    replicate: int
+    sequence: list[float] | None
+    state: str
+    attempts: list[AttemptView]
+
+
+class SequenceRow(BaseModel):
+    """How far one order is filled."""
+
+    sequence: list[float]
+    completed: int
+    open: int
+    total: int
+
+
+class LedgerView(BaseModel):
+    """The counterbalancing ledger of one kind of sessions."""
+
+    kind: str
+    seed: int
+    when_full: str
+    started: bool
+    sequences: list[SequenceRow] | None
+    slots: list[SlotRow]

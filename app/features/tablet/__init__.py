@@ -1,0 +1,1 @@
+"""The tablet: what it shows, what it sends."""

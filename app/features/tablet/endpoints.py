@@ -1,0 +1,106 @@
+"""The tablet over HTTP: its cookie opens its own session and nothing else."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from datetime import datetime
+
+from fastapi import APIRouter
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+
+from app.errors import InvalidInput
+from app.features.context import AppContext
+from app.features.dependencies import Context, PairedTablet, Reading, Writing
+from app.features.questionnaires.schemas import Receipt, SubmissionRequest
+from app.features.questionnaires.service import submit
+from app.features.sessions.engine.commands import CompleteStep
+from app.features.sessions.service import apply_command, plan_of, session_by_id
+from app.features.studies.service import protocol_of
+from app.features.tablet.schemas import Acknowledgement, LanguageChoice, TabletState
+from app.features.tablet.service import tablet_state
+from app.models import Device, StudyVersion
+
+router = APIRouter(prefix="/tablet", tags=["tablet"])
+HEARTBEAT_S = 10.0
+
+
+@router.get("/state")
+def get_state(db: Reading, tablet: PairedTablet) -> TabletState:
+    """What to show now."""
+    return tablet_state(db, session_by_id(db, tablet.session_id))
+
+
+@router.put("/language")
+def put_language(
+    choice: LanguageChoice, db: Writing, context: Context, tablet: PairedTablet
+) -> TabletState:
+    """Go on in another language of the study."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    valid = protocol_of(db.get_one(StudyVersion, session.study_version_id)).languages
+    if choice.language not in valid:
+        raise InvalidInput(
+            f"the study has no texts in {choice.language!r}",
+            value=choice.language,
+            valid=list(valid),
+        )
+    session.language = choice.language
+    context.hub.publish_after_commit(db, session.id)
+    return tablet_state(db, session)
+
+
+@router.post("/acknowledge")
+def post_acknowledge(
+    request: Acknowledgement, db: Writing, context: Context, tablet: PairedTablet
+) -> TabletState:
+    """Consent given, or instructions read; sending it twice does no harm."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    plan = plan_of(db, session)
+    step = plan[request.step_index] if request.step_index < len(plan) else None
+    if step is None or step.kind not in ("consent", "instructions"):
+        raise InvalidInput(
+            "this step is not the tablet's to complete",
+            value=request.step_index,
+            valid=[one.index for one in plan if one.kind in ("consent", "instructions")],
+            remedy="Wait for the experimenter.",
+        )
+    status = session.snapshot["steps"][request.step_index]["status"]
+    if status not in ("done", "skipped"):
+        command = CompleteStep(by="tablet", step=request.step_index)
+        apply_command(db, context, session, command, actor=f"tablet:{tablet.id}")
+    return tablet_state(db, session)
+
+
+@router.post("/submissions")
+def post_submission(
+    request: SubmissionRequest, db: Writing, context: Context, tablet: PairedTablet
+) -> Receipt:
+    """Store a filled-in form; the same form under the same key may come any number of times."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    submission, duplicate = submit(
+        db, context, session, request, mode="tablet", actor=f"tablet:{tablet.id}"
+    )
+    return Receipt(receipt_id=submission.id, stored_at=submission.submitted_at, duplicate=duplicate)
+
+
+@router.get("/live", response_class=EventSourceResponse)
+async def get_live(context: Context, tablet: PairedTablet) -> AsyncIterator[ServerSentEvent]:
+    """The screen, again at every change; ends when the tablet is unpaired."""
+    with context.hub.subscribe(tablet.session_id) as subscription:
+        event = await asyncio.to_thread(_seen, context, tablet.id)
+        while event is not None:
+            yield event
+            news = await subscription.next(HEARTBEAT_S)
+            event = await asyncio.to_thread(_seen, context, tablet.id)
+            if event is not None and not news:
+                event = ServerSentEvent(comment="still here")
+
+
+def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
+    """Note that the tablet is there, and draw its screen; None once it was unpaired."""
+    now: datetime = context.clock.utc_now()
+    with context.database.writing() as db:
+        device = db.get(Device, device_id)
+        if device is None or device.revoked_at is not None:
+            return None
+        device.last_seen_at = now
+        state = tablet_state(db, session_by_id(db, device.session_id))
+    return ServerSentEvent(data=state, event="state", id=str(state.version))

@@ -1,0 +1,41 @@
+"""The tablet's screens."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.features.questionnaires.schemas import Administration
+
+Screen = Literal["waiting", "consent", "instructions", "form", "finished"]
+
+
+class TabletState(BaseModel):
+    """What the tablet shows now; `next` says what comes next, in the participant's language."""
+
+    session_id: str
+    version: int
+    language: str
+    languages: list[str]
+    simulated: bool
+    screen: Screen
+    step_index: int | None
+    title: str | None
+    text: str | None
+    next: str | None
+    administration: Administration | None
+
+
+class Acknowledgement(BaseModel):
+    """Consent given or instructions read."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    step_index: int = Field(ge=0)
+
+
+class LanguageChoice(BaseModel):
+    """The language to go on in."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    language: str = Field(max_length=8)

@@ -1,0 +1,91 @@
+"""What the console shows of the movement right now, from the newest messages, before any commit."""
+
+import time
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from app.science.skeleton import JOINT_NAMES
+from app.wire import Batch, FrameFlags, StreamName
+from app.wire.messages import CompletionReport, ContactReport, Report
+
+PERIOD_S = 0.2
+
+
+@dataclass
+class LiveTelemetry:
+    """Folds the messages of one connection into a few figures, at most five times a second."""
+
+    _newest: dict[StreamName, Batch] = field(default_factory=dict)
+    _told_at_s: float = 0.0
+    _frames: int = 0
+    _flagged: int = 0
+    _first_t_s: float = float("nan")
+    _phase_id: int = 0
+    _completions: int = 0
+    _side_contacts: int = 0
+
+    def count(self, report: Report) -> None:
+        """Take note of a completion or a side contact."""
+        if isinstance(report.body, CompletionReport):
+            self._completions = report.body.number
+        elif isinstance(report.body, ContactReport) and report.body.surface_kind == "side":
+            self._side_contacts += 1
+
+    def update(self, batch: Batch, flags: FrameFlags) -> dict[str, Any] | None:
+        """The figures, when it is time to tell them again."""
+        header = batch.header
+        if header.phase_id != self._phase_id:
+            self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
+        self._newest[header.stream] = batch
+        self._flagged += int(flags.bad.sum())
+        if header.stream is StreamName.TARGET:
+            self._frames += header.frame_count
+            if np.isnan(self._first_t_s):
+                self._first_t_s = float(batch.times_s[0])
+        now_s = time.monotonic()
+        if now_s - self._told_at_s < PERIOD_S or StreamName.ACTUAL not in self._newest:
+            return None
+        self._told_at_s = now_s
+        return self._figures()
+
+    def _figures(self) -> dict[str, Any]:
+        actual = self._newest[StreamName.ACTUAL]
+        target = self._newest.get(StreamName.TARGET)
+        spanned_s = float(actual.times_s[-1]) - self._first_t_s
+        fps = self._frames / spanned_s if spanned_s > 0 else None
+        self._frames, self._first_t_s = 0, float(actual.times_s[-1])
+        return {
+            "phase_id": self._phase_id,
+            "active_s": actual.header.active_s,
+            "client_t_s": _number(actual.times_s[-1]),
+            "fps": None if fps is None else round(fps, 1),
+            "completions": self._completions,
+            "side_contacts": self._side_contacts,
+            "frames_flagged": self._flagged,
+            "joint_error_deg": _errors_deg(target, actual) if target is not None else {},
+        }
+
+
+def _errors_deg(target: Batch, actual: Batch) -> dict[str, float | None]:
+    """The angle between both poses at the newest seq that both have, per joint but the hips."""
+    end = min(target.header.seq_end, actual.header.seq_end)
+    first = max(target.header.seq_first, actual.header.seq_first)
+    if end <= first:
+        return {}
+    wanted = target.values[end - 1 - target.header.seq_first, 3:].reshape(-1, 4)
+    is_ = actual.values[end - 1 - actual.header.seq_first, 3:].reshape(-1, 4)
+    with np.errstate(invalid="ignore"):
+        cosine = np.abs(np.einsum("jk,jk->j", wanted.astype(float), is_.astype(float)))
+        angle_deg = np.degrees(2.0 * np.arccos(np.clip(cosine, 0.0, 1.0)))
+    return {
+        name: _number(angle)
+        for name, angle in zip(JOINT_NAMES, angle_deg, strict=True)
+        if name != "Hips"
+    }
+
+
+def _number(value: np.floating[Any]) -> float | None:
+    """A number for JSON; what is not finite becomes null."""
+    return round(float(value), 3) if np.isfinite(value) else None

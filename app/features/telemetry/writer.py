@@ -1,0 +1,174 @@
+"""One thread commits the messages of all sessions together, every 50 ms, and only then acks.
+
+So the number of flushes to disk does not grow with the number of headsets, and an acknowledgement
+always means "on disk". A message that cannot be stored fails its own session only; when the
+database itself cannot write, nothing is acknowledged and everything waits.
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from sqlalchemy.exc import OperationalError
+from sqlalchemy.orm import Session
+
+from app.features.context import AppContext
+from app.features.telemetry.ingest import (
+    Outcome,
+    store_batch,
+    store_loss,
+    store_probe,
+    store_report,
+)
+from app.wire import BatchHeader, FrameFlags
+from app.wire.messages import Probed, Report
+
+log = logging.getLogger(__name__)
+RETRY_S = 0.5
+
+
+class Sender(Protocol):
+    """Where the answer to a message goes, from any thread."""
+
+    def deliver(self, outcome: Outcome) -> None:
+        """The message is on disk."""
+
+    def fail(self, error: Exception) -> None:
+        """The message cannot be stored, ever; close."""
+
+
+@dataclass(frozen=True)
+class Arrival:
+    """A message of a session waiting to be stored."""
+
+    session_id: str
+    sender: Sender
+    content: "BatchContent | Report | ProbeContent | LossContent"
+
+
+@dataclass(frozen=True)
+class BatchContent:
+    """A checked batch and its raw bytes."""
+
+    header: BatchHeader
+    message: bytes
+    flags: FrameFlags
+
+
+@dataclass(frozen=True)
+class ProbeContent:
+    """A raw clock reading."""
+
+    epoch: int
+    probe: Probed
+
+
+@dataclass(frozen=True)
+class LossContent:
+    """The headset's connection broke."""
+
+    cause: str
+
+
+@dataclass
+class TelemetryWriter:
+    """The single writer of telemetry. `start` it once, `stop` it after the last connection."""
+
+    context: AppContext
+    on_phase_ended: Callable[[str, int], None]
+    _waiting: list[Arrival] = field(default_factory=list)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _wake: threading.Event = field(default_factory=threading.Event)
+    _stopping: bool = False
+    _thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begin to commit."""
+        self._thread = threading.Thread(target=self._run, name="telemetry-writer", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Commit what waits and end."""
+        self._stopping = True
+        self._wake.set()
+        if self._thread is not None:
+            self._thread.join(timeout=10.0)
+
+    def submit(self, arrival: Arrival) -> None:
+        """Queue a message; its sender limits how many are in flight."""
+        with self._lock:
+            self._waiting.append(arrival)
+        self._wake.set()
+
+    def _run(self) -> None:
+        while True:
+            self._wake.wait(timeout=1.0)
+            self._wake.clear()
+            # Wait a little for others to join the same flush.
+            if not self._stopping:
+                time.sleep(self.context.settings.commit_interval_s)
+            with self._lock:
+                arrivals, self._waiting = self._waiting, []
+            if arrivals:
+                self._store_or_wait(arrivals)
+            if self._stopping and not self._waiting:
+                return
+
+    def _store_or_wait(self, arrivals: Sequence[Arrival]) -> None:
+        while True:
+            try:
+                self._store(arrivals)
+            except OperationalError:
+                log.exception("telemetry cannot be written; nothing is acknowledged")
+                if self._stopping:
+                    return
+                time.sleep(RETRY_S)
+            else:
+                return
+
+    def _store(self, arrivals: Sequence[Arrival]) -> None:
+        """Commit all together; if a message is at fault, session by session."""
+        try:
+            self._commit(arrivals)
+        except OperationalError:
+            raise
+        except Exception as error:
+            sessions = {arrival.session_id for arrival in arrivals}
+            if len(sessions) > 1:
+                for session_id in sorted(sessions):
+                    self._store([a for a in arrivals if a.session_id == session_id])
+                return
+            log.error("telemetry of one session cannot be stored", exc_info=error)
+            for arrival in arrivals:
+                arrival.sender.fail(error)
+
+    def _commit(self, arrivals: Sequence[Arrival]) -> None:
+        outcomes: dict[int, tuple[Sender, Outcome]] = {}
+        ended: list[tuple[str, int]] = []
+        with self.context.database.writing() as db:
+            for arrival in arrivals:
+                _, outcome = outcomes.setdefault(id(arrival.sender), (arrival.sender, Outcome()))
+                self._store_one(db, arrival, outcome)
+                outcome.messages += not isinstance(arrival.content, LossContent)
+                ended += [(arrival.session_id, phase) for phase in outcome.phases_ended]
+                outcome.phases_ended.clear()
+        for sender, outcome in outcomes.values():
+            sender.deliver(outcome)
+        for session_id, phase_id in ended:
+            self.on_phase_ended(session_id, phase_id)
+
+    def _store_one(self, db: Session, arrival: Arrival, outcome: Outcome) -> None:
+        now = self.context.clock.utc_now()
+        session_id = arrival.session_id
+        match arrival.content:
+            case BatchContent(header, message, flags):
+                store_batch(db, session_id, header, message, flags, now, outcome)
+            case Report() as report:
+                store_report(db, self.context, session_id, report, now, outcome)
+            case ProbeContent(epoch, probe):
+                store_probe(db, session_id, epoch, probe, now)
+            case LossContent(cause):
+                store_loss(db, self.context, session_id, cause)

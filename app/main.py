@@ -1,0 +1,99 @@
+"""The only wiring: settings in, a complete application out."""
+
+import logging
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+
+from fastapi import FastAPI
+
+from app import __version__
+from app.api.errors import install_error_handler
+from app.api.guards import Guards
+from app.api.pages import install_pages
+from app.api.router import build_router
+from app.clock import Clock
+from app.database import migrate, open_database
+from app.features.accounts.service import ensure_admin
+from app.features.context import AppContext
+from app.features.live import Hub
+from app.features.rate_limit import RateLimiter
+from app.features.sessions.recovery import stop_running_clocks
+from app.features.studies.service import add_shipped
+from app.features.telemetry.fold import Folder
+from app.features.telemetry.summaries import Summariser
+from app.features.telemetry.writer import TelemetryWriter
+from app.resources import static_dir
+from app.settings import Settings
+
+log = logging.getLogger(__name__)
+LOGIN_ATTEMPTS = 10
+PAIRING_ATTEMPTS = 20
+WINDOW_S = 60.0
+
+
+def create_app(
+    settings: Settings | None = None,
+    *,
+    clock: Clock | None = None,
+    on_first_password: Callable[[str], None] | None = None,
+) -> FastAPI:
+    """The application for `settings` (from the environment if None).
+
+    Start-up migrates the database, makes the first account (telling a random password to
+    `on_first_password`), stores the shipped studies and pauses phases that a crash cut off.
+    """
+    settings = settings or Settings()
+    clock = clock or Clock()
+    context = AppContext(
+        settings=settings,
+        database=open_database(settings.resolved_database_url),
+        clock=clock,
+        hub=Hub(),
+        login_limiter=RateLimiter(LOGIN_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
+        pairing_limiter=RateLimiter(PAIRING_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
+    )
+    summariser = Summariser(context)
+    writer = TelemetryWriter(context, summariser.phase_ended)
+    folder = Folder(context)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        _prepare(context, on_first_password)
+        writer.start()
+        folder.start()
+        summariser.catch_up()
+        yield
+        writer.stop()
+        folder.stop()
+        summariser.stop()
+        context.database.close()
+
+    app = FastAPI(
+        title="Reembody",
+        version=__version__,
+        lifespan=lifespan,
+        docs_url="/api/docs",
+        redoc_url=None,
+        openapi_url="/api/openapi.json",
+    )
+    app.state.context = context
+    app.state.writer = writer
+    install_error_handler(app)
+    app.include_router(build_router())
+    install_pages(app, static_dir())
+    app.add_middleware(Guards, max_body_bytes=settings.max_body_bytes)
+    return app
+
+
+def _prepare(context: AppContext, on_first_password: Callable[[str], None] | None) -> None:
+    migrate(context.settings.resolved_database_url)
+    secret = context.settings.admin_password
+    now = context.clock.utc_now()
+    with context.database.writing() as db:
+        made = ensure_admin(db, password=secret.get_secret_value() if secret else None, now=now)
+        add_shipped(db, now)
+    if made is not None and on_first_password is not None:
+        on_first_password(made)
+    paused = stop_running_clocks(context)
+    if paused:
+        log.warning("%d running phase(s) were paused: the server had stopped in between", paused)

@@ -1,0 +1,52 @@
+"""Tablets and headsets: paired once by a short code, then known by a scoped token."""
+
+from datetime import datetime
+
+from sqlalchemy import CheckConstraint, ForeignKey, Index, String, text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.database import Base
+from app.models.types import Id, UtcDateTime, UtcTime
+
+
+class PairingCode(Base):
+    """A short code that pairs one device with one session, once."""
+
+    __tablename__ = "pairing_codes"
+
+    code_hash: Mapped[str] = mapped_column(String(64), primary_key=True)
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), index=True)
+    kind: Mapped[str] = mapped_column(String(20))
+    created_at: Mapped[UtcTime]
+    expires_at: Mapped[UtcTime]
+    used_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+
+
+class Device(Base):
+    """A paired device. Its token opens its own session only; we keep the token's hash.
+
+    At most one device of a kind is unrevoked in a session: a second tablet is a takeover that the
+    operator makes on purpose by showing a new code.
+    """
+
+    __tablename__ = "devices"
+    __table_args__ = (
+        CheckConstraint("kind IN ('tablet', 'headset')", name="kind"),
+        Index(
+            "uq_devices_holder",
+            "session_id",
+            "kind",
+            unique=True,
+            sqlite_where=text("revoked_at IS NULL"),
+            postgresql_where=text("revoked_at IS NULL"),
+        ),
+    )
+
+    id: Mapped[Id]
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), index=True)
+    kind: Mapped[str] = mapped_column(String(20))
+    name: Mapped[str] = mapped_column(String(80))
+    token_hash: Mapped[str] = mapped_column(String(64), unique=True)
+    paired_at: Mapped[UtcTime]
+    last_seen_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+    revoked_at: Mapped[datetime | None] = mapped_column(UtcDateTime)

@@ -1,0 +1,89 @@
+"""The counterbalancing ledger: an immutable list of slots, with attempts attached to them."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import JSON, CheckConstraint, ForeignKey, Index, String, UniqueConstraint, text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.database import Base
+from app.models.types import Id, UtcDateTime, UtcTime
+
+KINDS = ("people", "simulated", "test")
+
+
+class Participant(Base):
+    """Somebody taking part, under a pseudonym that is unique within the study and kind."""
+
+    __tablename__ = "participants"
+    __table_args__ = (UniqueConstraint("study_id", "kind", "code"),)
+
+    id: Mapped[Id]
+    study_id: Mapped[str] = mapped_column(ForeignKey("studies.id"), index=True)
+    kind: Mapped[str] = mapped_column(String(20))
+    code: Mapped[str] = mapped_column(String(40))
+    created_at: Mapped[UtcTime]
+
+
+class Ledger(Base):
+    """One balance: people, simulated and test sessions of one design never share it.
+
+    Versions of a study that differ in wording only share their ledger, because `design_hash` covers
+    just what decides balance (conditions and orders). `blocks` counts the seeded blocks made so
+    far.
+    """
+
+    __tablename__ = "ledgers"
+    __table_args__ = (
+        UniqueConstraint("study_id", "kind", "design_hash"),
+        CheckConstraint("kind IN ('people', 'simulated', 'test')", name="kind"),
+    )
+
+    id: Mapped[Id]
+    study_id: Mapped[str] = mapped_column(ForeignKey("studies.id"), index=True)
+    kind: Mapped[str] = mapped_column(String(20))
+    design_hash: Mapped[str] = mapped_column(String(64))
+    seed: Mapped[int]
+    blocks: Mapped[int] = mapped_column(default=0)
+    created_at: Mapped[UtcTime]
+
+
+class LedgerSlot(Base):
+    """A row of the ledger: one order (condition keys) in one replicate. It never changes."""
+
+    __tablename__ = "ledger_slots"
+    __table_args__ = (UniqueConstraint("ledger_id", "position"),)
+
+    id: Mapped[Id]
+    ledger_id: Mapped[str] = mapped_column(ForeignKey("ledgers.id"), index=True)
+    position: Mapped[int]
+    block: Mapped[int]
+    replicate: Mapped[int]
+    sequence: Mapped[list[Any]] = mapped_column(JSON)
+
+
+class SlotAttempt(Base):
+    """A session's hold on a slot. At most one attempt of a slot is open or completed.
+
+    The partial unique index makes a double booking impossible whatever the code does; a withdrawn
+    or aborted attempt stays with its data and reason and frees the slot for the next.
+    """
+
+    __tablename__ = "slot_attempts"
+    __table_args__ = (
+        Index(
+            "uq_slot_attempts_holder",
+            "slot_id",
+            unique=True,
+            sqlite_where=text("outcome IN ('open', 'completed')"),
+            postgresql_where=text("outcome IN ('open', 'completed')"),
+        ),
+        CheckConstraint("outcome IN ('open', 'completed', 'withdrawn', 'aborted')", name="outcome"),
+    )
+
+    id: Mapped[Id]
+    slot_id: Mapped[str] = mapped_column(ForeignKey("ledger_slots.id"), index=True)
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), unique=True)
+    outcome: Mapped[str] = mapped_column(String(20))
+    opened_at: Mapped[UtcTime]
+    closed_at: Mapped[datetime | None] = mapped_column(UtcDateTime)

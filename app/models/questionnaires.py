@@ -1,0 +1,66 @@
+"""Answers as given, with what was shown and how they came in; scores beside them."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import JSON, BigInteger, ForeignKey, String, Text, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.database import Base
+from app.models.types import Id, UtcDateTime, UtcTime
+
+
+class Submission(Base):
+    """One filled-in form. The idempotency key makes sending it twice harmless.
+
+    `administration` names the step and attempt it answers ("block1.hand.karas2020#1").
+    `request_hash` tells a repeated request from a different one under the same key. The event log
+    holds sha256(salt + answers) only.
+    """
+
+    __tablename__ = "submissions"
+    __table_args__ = (
+        UniqueConstraint("session_id", "idempotency_key"),
+        UniqueConstraint("session_id", "administration"),
+    )
+
+    id: Mapped[Id]
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), index=True)
+    administration: Mapped[str] = mapped_column(String(120))
+    step_index: Mapped[int]
+    attempt: Mapped[int]
+    instrument_version_id: Mapped[str] = mapped_column(ForeignKey("instrument_versions.id"))
+    instrument: Mapped[str] = mapped_column(String(80), index=True)
+    idempotency_key: Mapped[str] = mapped_column(String(64))
+    request_hash: Mapped[str] = mapped_column(String(64))
+    salt: Mapped[str | None] = mapped_column(String(64))
+    mode: Mapped[str] = mapped_column(String(20))
+    entered_by: Mapped[str] = mapped_column(String(80))
+    language: Mapped[str] = mapped_column(String(8))
+    item_seed: Mapped[int] = mapped_column(BigInteger)
+    shown_order: Mapped[list[Any]] = mapped_column(JSON)
+    timings: Mapped[dict[str, Any]] = mapped_column(JSON)
+    started_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+    submitted_at: Mapped[UtcTime]
+
+
+class Answer(Base):
+    """One item's answer: a number or a text, never both; neither means it was left out."""
+
+    __tablename__ = "answers"
+
+    submission_id: Mapped[str] = mapped_column(ForeignKey("submissions.id"), primary_key=True)
+    item: Mapped[str] = mapped_column(String(80), primary_key=True)
+    position: Mapped[int]
+    value_number: Mapped[float | None]
+    value_text: Mapped[str | None] = mapped_column(Text)
+
+
+class ScoreValue(Base):
+    """A score of a submission by its instrument's formula; null if an item is missing."""
+
+    __tablename__ = "scores"
+
+    submission_id: Mapped[str] = mapped_column(ForeignKey("submissions.id"), primary_key=True)
+    score: Mapped[str] = mapped_column(String(80), primary_key=True)
+    value: Mapped[float | None]

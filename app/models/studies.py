@@ -1,0 +1,60 @@
+"""Studies and instruments: every version that was ever used, by the hash of its content."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import JSON, ForeignKey, String, Text, UniqueConstraint
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.database import Base
+from app.models.types import Id, UtcDateTime, UtcTime
+
+
+class Study(Base):
+    """A study by its key; what it asks of people stands in its versions."""
+
+    __tablename__ = "studies"
+
+    id: Mapped[Id]
+    key: Mapped[str] = mapped_column(String(80), unique=True)
+    created_at: Mapped[UtcTime]
+    archived_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+
+
+class StudyVersion(Base):
+    """One content of a study. Once a session has started it is frozen; an edit makes a new one.
+
+    `source_yaml` is the file as it was given, comments included; `canonical_json` is what its
+    hash was taken over. `instruments` maps each instrument key to the content hash it had.
+    """
+
+    __tablename__ = "study_versions"
+    __table_args__ = (
+        UniqueConstraint("study_id", "number"),
+        UniqueConstraint("study_id", "content_hash"),
+    )
+
+    id: Mapped[Id]
+    study_id: Mapped[str] = mapped_column(ForeignKey("studies.id"), index=True)
+    number: Mapped[int]
+    content_hash: Mapped[str] = mapped_column(String(64))
+    design_hash: Mapped[str] = mapped_column(String(64))
+    source_yaml: Mapped[str] = mapped_column(Text)
+    canonical_json: Mapped[str] = mapped_column(Text)
+    instruments: Mapped[dict[str, Any]] = mapped_column(JSON)
+    created_at: Mapped[UtcTime]
+    frozen_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+
+
+class InstrumentVersion(Base):
+    """One content of an instrument; submissions point at the exact wording that was shown."""
+
+    __tablename__ = "instrument_versions"
+    __table_args__ = (UniqueConstraint("key", "content_hash"),)
+
+    id: Mapped[Id]
+    key: Mapped[str] = mapped_column(String(80), index=True)
+    content_hash: Mapped[str] = mapped_column(String(64))
+    source_yaml: Mapped[str] = mapped_column(Text)
+    canonical_json: Mapped[str] = mapped_column(Text)
+    created_at: Mapped[UtcTime]

@@ -1,0 +1,175 @@
+"""Movement and what it did: streams, batches, chunks, reports, contacts, joint errors."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import (
+    JSON,
+    BigInteger,
+    ForeignKey,
+    ForeignKeyConstraint,
+    Index,
+    LargeBinary,
+    String,
+)
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.database import Base
+from app.models.types import Id, UtcDateTime, UtcTime
+
+
+class TelemetryStream(Base):
+    """How far a stream of one client run (epoch) is stored: all of `seq < next_seq`.
+
+    `phase_id` and `active_s` are those of the newest stored frame: after a crash they tell how much
+    active time is certain.
+    """
+
+    __tablename__ = "telemetry_streams"
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    stream: Mapped[str] = mapped_column(String(20), primary_key=True)
+    epoch: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    next_seq: Mapped[int] = mapped_column(BigInteger, default=0)
+    frames_stored: Mapped[int] = mapped_column(BigInteger, default=0)
+    frames_flagged: Mapped[int] = mapped_column(BigInteger, default=0)
+    phase_id: Mapped[int] = mapped_column(default=0)
+    active_s: Mapped[float] = mapped_column(default=0.0)
+    first_at: Mapped[UtcTime]
+    last_at: Mapped[UtcTime]
+
+
+class TelemetryBatch(Base):
+    """A message exactly as it came, kept until it is folded into a chunk."""
+
+    __tablename__ = "telemetry_batches"
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    stream: Mapped[str] = mapped_column(String(20), primary_key=True)
+    epoch: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    seq_first: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    frame_count: Mapped[int]
+    phase_id: Mapped[int]
+    received_at: Mapped[UtcTime] = mapped_column(index=True)
+    message: Mapped[bytes] = mapped_column(LargeBinary)
+
+
+class TelemetryChunk(Base):
+    """About a second of one stream in compressed columns, bit-exact; never spans two phases."""
+
+    __tablename__ = "telemetry_chunks"
+    __table_args__ = (Index("ix_telemetry_chunks_phase", "session_id", "phase_id", "stream"),)
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    stream: Mapped[str] = mapped_column(String(20), primary_key=True)
+    epoch: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    seq_first: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    frame_count: Mapped[int]
+    phase_id: Mapped[int]
+    values_per_frame: Mapped[int]
+    t_first_s: Mapped[float]
+    t_last_s: Mapped[float]
+    encoding: Mapped[str] = mapped_column(String(40))
+    data: Mapped[bytes] = mapped_column(LargeBinary)
+
+
+class ClientReport(Base):
+    """A headset's report as it came, with what the server made of it."""
+
+    __tablename__ = "client_reports"
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), primary_key=True)
+    epoch: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    seq: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
+    type: Mapped[str] = mapped_column(String(40))
+    payload: Mapped[dict[str, Any]] = mapped_column(JSON)
+    accepted: Mapped[bool]
+    refusal: Mapped[str | None] = mapped_column(String(400))
+    received_at: Mapped[UtcTime]
+
+
+class Contact(Base):
+    """One body part touching one surface, for one interval of active time.
+
+    Times are the client's monotonic seconds, `*_active_s` the phase's active time. `effect` says
+    what the task made of it: green, out_of_order, wrong_part, early, side, target, start or none.
+    """
+
+    __tablename__ = "contacts"
+    __table_args__ = (
+        ForeignKeyConstraint(["session_id", "phase_id"], ["phases.session_id", "phases.phase_id"]),
+        Index("ix_contacts_phase", "session_id", "phase_id"),
+    )
+
+    id: Mapped[Id]
+    session_id: Mapped[str] = mapped_column(String(32))
+    phase_id: Mapped[int]
+    surface: Mapped[str] = mapped_column(String(40))
+    surface_kind: Mapped[str] = mapped_column(String(20))
+    box: Mapped[int | None]
+    side: Mapped[str | None] = mapped_column(String(20))
+    body_part: Mapped[str] = mapped_column(String(40))
+    begin_s: Mapped[float]
+    end_s: Mapped[float]
+    begin_active_s: Mapped[float]
+    end_active_s: Mapped[float]
+    effect: Mapped[str] = mapped_column(String(20))
+
+
+class Completion(Base):
+    """One completed task: every panel in order, then the target."""
+
+    __tablename__ = "completions"
+    __table_args__ = (
+        ForeignKeyConstraint(["session_id", "phase_id"], ["phases.session_id", "phases.phase_id"]),
+    )
+
+    session_id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    phase_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    at_s: Mapped[float]
+    active_s: Mapped[float]
+    duration_s: Mapped[float]
+    order: Mapped[list[Any]] = mapped_column(JSON)
+    out_of_order_touches: Mapped[int]
+
+
+class JointErrorRow(Base):
+    """How far a joint was from its target over the active time of a phase, per axis.
+
+    `reference` is `present` (against the participant's pose at that moment) or `command` (against
+    the delayed command, which tells how good the controller is). Radians; null where no sample
+    counts.
+    """
+
+    __tablename__ = "joint_errors"
+    __table_args__ = (
+        ForeignKeyConstraint(["session_id", "phase_id"], ["phases.session_id", "phases.phase_id"]),
+    )
+
+    session_id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    phase_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    reference: Mapped[str] = mapped_column(String(20), primary_key=True)
+    joint: Mapped[str] = mapped_column(String(40), primary_key=True)
+    axis: Mapped[str] = mapped_column(String(10), primary_key=True)
+    mean_rad: Mapped[float | None]
+    rms_rad: Mapped[float | None]
+    p95_rad: Mapped[float | None]
+    max_rad: Mapped[float | None]
+    samples: Mapped[int]
+    excluded: Mapped[int]
+
+
+class ClockProbe(Base):
+    """One exchange of clock readings, raw; the mapping is made at analysis."""
+
+    __tablename__ = "clock_probes"
+
+    id: Mapped[Id]
+    session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), index=True)
+    epoch: Mapped[int] = mapped_column(BigInteger)
+    client_sent_s: Mapped[float]
+    server_received_ns: Mapped[int] = mapped_column(BigInteger)
+    server_sent_ns: Mapped[int] = mapped_column(BigInteger)
+    client_received_s: Mapped[float | None]
+    server_utc: Mapped[datetime] = mapped_column(UtcDateTime)

@@ -1,0 +1,1 @@
+"""A scripted participant, headset, tablet and operator over the public interfaces."""

@@ -1,0 +1,39 @@
+"""What the installation decides: where data live, which address is served.
+
+Built once in `create_app` or a command, never at import, so that two applications in one process
+(tests, the rehearsal's own server) can differ.
+"""
+
+from pathlib import Path
+
+from pydantic import SecretStr
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+
+class Settings(BaseSettings):
+    """Frozen settings, read from `REEMBODY_*` variables and overridden by arguments.
+
+    `database_url` empty means the embedded SQLite in `data_dir`. `admin_password` is for scripts;
+    without it the first start makes a random one and prints it once. `production` switches the
+    interactive API pages off.
+    """
+
+    model_config = SettingsConfigDict(env_prefix="REEMBODY_", frozen=True, extra="ignore")
+
+    data_dir: Path = Path("data")
+    database_url: str = ""
+    admin_password: SecretStr | None = None
+    host: str = "127.0.0.1"
+    port: int = 8321
+    commit_interval_s: float = 0.05
+    login_hours: float = 12.0
+    pairing_minutes: float = 10.0
+    max_body_bytes: int = 2 * 1024 * 1024
+    max_telemetry_message_bytes: int = 256 * 1024
+
+    @property
+    def resolved_database_url(self) -> str:
+        """The address of the database, the embedded SQLite file unless one is set."""
+        if self.database_url:
+            return self.database_url
+        return f"sqlite:///{(self.data_dir / 'reembody.sqlite').resolve()}"

@@ -1,0 +1,183 @@
+"""The binary telemetry batch: a 64-byte header and little-endian arrays, read without copying.
+
+    offset  type     field
+    0       4 bytes  magic "RMB1"
+    4       u16      header length, 64
+    6       u8       stream: 1 target, 2 actual
+    7       u8       reserved, 0
+    8       u32      epoch: one run of the client; a restart takes a new one
+    12      u32      phase_id the frames belong to, 0 outside phases
+    16      u64      seq of the first frame; seqs are consecutive within an epoch
+    24      u16      frame count n, 1..1024
+    26      u16      values per frame w, 91
+    28      u32      CRC-32 of everything behind the header
+    32      f64      active time of the phase at the last frame, s
+    40      f64      client monotonic time when the batch was closed, s
+    48      16 bytes reserved, 0
+    64      f64[n]   client monotonic time of each frame, s
+    ...     u8[n]    frame flags (bit 0: the phase's clock ran), zero-padded to a multiple of 8
+    ...     f32[n,w] root position x, y, z (m, world) then 22 joints' local rotations w, x, y, z
+
+The frames of the target and the actual stream that show the same moment carry the same seq.
+"""
+
+import struct
+import zlib
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+MAGIC = b"RMB1"
+HEADER = struct.Struct("<4sHBBIIQHHIdd16x")
+HEADER_BYTES = HEADER.size
+BODY_JOINTS = 22
+VALUES_PER_FRAME = 3 + 4 * BODY_JOINTS
+MAX_FRAMES = 1024
+ACTIVE = 1
+"""Frame flag: the phase's clock ran when this frame was shown."""
+
+
+class StreamName(StrEnum):
+    """`target` is what the tracking asks for, `actual` what the remote avatar does."""
+
+    TARGET = "target"
+    ACTUAL = "actual"
+
+
+_STREAM_OF_CODE = {1: StreamName.TARGET, 2: StreamName.ACTUAL}
+_CODE_OF_STREAM = {name: code for code, name in _STREAM_OF_CODE.items()}
+
+
+class MalformedBatchError(ValueError):
+    """The bytes are not a batch; nothing of them was taken."""
+
+
+@dataclass(frozen=True)
+class BatchHeader:
+    """The first 64 bytes, checked against the length of the message."""
+
+    stream: StreamName
+    epoch: int
+    phase_id: int
+    seq_first: int
+    frame_count: int
+    values_per_frame: int
+    crc32: int
+    active_s: float
+    closed_at_s: float
+
+    @property
+    def seq_end(self) -> int:
+        """One past the last seq of the batch."""
+        return self.seq_first + self.frame_count
+
+
+@dataclass(frozen=True)
+class Batch:
+    """A decoded batch: `times_s` (n,), `flags` (n,), `values` (n, w) are views on the message."""
+
+    header: BatchHeader
+    times_s: NDArray[np.float64]
+    flags: NDArray[np.uint8]
+    values: NDArray[np.float32]
+
+
+def body_bytes(frame_count: int, values_per_frame: int) -> int:
+    """How many bytes follow the header of such a batch."""
+    return 8 * frame_count + _padded(frame_count) + 4 * frame_count * values_per_frame
+
+
+def decode_header(message: bytes) -> BatchHeader:
+    """Read and check the header; raises MalformedBatchError with the field, its value and the rule."""
+    if len(message) < HEADER_BYTES:
+        raise MalformedBatchError(
+            f"message of {len(message)} bytes; a batch has at least {HEADER_BYTES}"
+        )
+    magic, length, code, _, epoch, phase_id, seq, n, w, crc, active, closed = HEADER.unpack_from(
+        message
+    )
+    if magic != MAGIC or length != HEADER_BYTES:
+        raise MalformedBatchError(
+            f"magic {magic!r}, header length {length}; expected {MAGIC!r}, 64"
+        )
+    if code not in _STREAM_OF_CODE:
+        raise MalformedBatchError(f"stream code {code}; valid are 1 (target) and 2 (actual)")
+    if not 1 <= n <= MAX_FRAMES:
+        raise MalformedBatchError(f"frame count {n}; valid are 1 to {MAX_FRAMES}")
+    if w != VALUES_PER_FRAME:
+        raise MalformedBatchError(f"{w} values per frame; expected {VALUES_PER_FRAME}")
+    if seq >= 2**62:
+        raise MalformedBatchError(f"seq {seq} is out of range; seqs start at 0 in each epoch")
+    expected = HEADER_BYTES + body_bytes(n, w)
+    if len(message) != expected:
+        raise MalformedBatchError(f"message of {len(message)} bytes; {n} frames need {expected}")
+    return BatchHeader(
+        _STREAM_OF_CODE[code], epoch, phase_id, seq, n, w, crc, float(active), float(closed)
+    )
+
+
+def decode_batch(message: bytes) -> Batch:
+    """The batch in `message`; raises MalformedBatchError, also when the checksum does not match."""
+    header = decode_header(message)
+    crc = zlib.crc32(memoryview(message)[HEADER_BYTES:])
+    if crc != header.crc32:
+        raise MalformedBatchError(f"checksum {crc:#010x}; the header says {header.crc32:#010x}")
+    n, w = header.frame_count, header.values_per_frame
+    flags_at = HEADER_BYTES + 8 * n
+    values_at = flags_at + _padded(n)
+    return Batch(
+        header,
+        np.frombuffer(message, "<f8", n, HEADER_BYTES),
+        np.frombuffer(message, "u1", n, flags_at),
+        np.frombuffer(message, "<f4", n * w, values_at).reshape(n, w),
+    )
+
+
+def encode_batch(
+    stream: StreamName,
+    *,
+    epoch: int,
+    phase_id: int,
+    seq_first: int,
+    times_s: NDArray[np.float64],
+    flags: NDArray[np.uint8],
+    values: NDArray[np.float32],
+    active_s: float,
+    closed_at_s: float,
+) -> bytes:
+    """The message for frames `times_s` (n,), `flags` (n,), `values` (n, 91)."""
+    n, w = values.shape
+    if w != VALUES_PER_FRAME or times_s.shape != (n,) or flags.shape != (n,):
+        raise MalformedBatchError(
+            f"shapes {times_s.shape}, {flags.shape}, {values.shape}; expected (n,), (n,), (n, 91)"
+        )
+    body = b"".join(
+        (
+            np.ascontiguousarray(times_s, "<f8").tobytes(),
+            np.ascontiguousarray(flags, "u1").tobytes().ljust(_padded(n), b"\0"),
+            np.ascontiguousarray(values, "<f4").tobytes(),
+        )
+    )
+    return (
+        HEADER.pack(
+            MAGIC,
+            HEADER_BYTES,
+            _CODE_OF_STREAM[stream],
+            0,
+            epoch,
+            phase_id,
+            seq_first,
+            n,
+            w,
+            zlib.crc32(body),
+            active_s,
+            closed_at_s,
+        )
+        + body
+    )
+
+
+def _padded(count: int) -> int:
+    return -(-count // 8) * 8
