@@ -4,6 +4,7 @@ A stand-in for uv records what it is asked to do, so these tests need no network
 """
 
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -20,8 +21,8 @@ INPUTS = (
     "requirements.lock",
     "requirements-dev.lock",
 )
-UV = """#!{python}
-import os, pathlib, sys
+UV = """
+import pathlib, sys
 here = pathlib.Path({folder!r})
 with (here / "uv.log").open("a") as log:
     print(*sys.argv[1:3], pathlib.Path(sys.argv[-1]).name, file=log)
@@ -80,8 +81,13 @@ def checkout(tmp_path: Path) -> Checkout:
     tools.mkdir()
     for name in INPUTS:
         shutil.copy(REPOSITORY / name, folder / name)
+    script = tools / "uv.py"
+    script.write_text(UV.format(folder=str(tools)))
     uv = tools / "uv"
-    uv.write_text(UV.format(python=sys.executable, folder=str(tools)))
+    # Not a Python script itself: this Python's own path may hold spaces.
+    uv.write_text(
+        f'#!/bin/sh\nexec {shlex.quote(sys.executable)} {shlex.quote(str(script))} "$@"\n'
+    )
     uv.chmod(0o755)
     return Checkout(folder, tools)
 
