@@ -90,10 +90,10 @@ def body_bytes(frame_count: int, values_per_frame: int) -> int:
 
 
 def decode_header(message: bytes) -> BatchHeader:
-    """Read and check the header; raises MalformedBatchError with the field, its value and the rule."""
+    """Read and check the header; MalformedBatchError names the field, its value and the rule."""
     if len(message) < HEADER_BYTES:
         raise MalformedBatchError(
-            f"message of {len(message)} bytes; a batch has at least {HEADER_BYTES}"
+            f"message of {len(message)} bytes; a batch has {HEADER_BYTES} and more"
         )
     magic, length, code, _, epoch, phase_id, seq, n, w, crc, active, closed = HEADER.unpack_from(
         message

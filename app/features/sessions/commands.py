@@ -27,17 +27,13 @@ def command_of(
         )
     store = _Store(db, context, session, actor)
     connected = context.hub.headset_connected(session.id)
+    if request.type in _NEEDS_REASON:
+        return _with_reason(request, store.put("reason", reason))
     match request.type:
-        case "start":
-            return c.Start()
         case "complete_step":
-            height = request.height_m
-            body = height.model_dump() if height else None
-            return c.CompleteStep(
-                by="operator",
-                step=request.step_index,
-                content=store.put("height", body) if body else None,
-            )
+            body = request.height_m.model_dump() if request.height_m else None
+            content = store.put("height", body) if body else None
+            return c.CompleteStep(by="operator", step=request.step_index, content=content)
         case "begin_phase":
             return c.BeginPhase(headset_connected=connected)
         case "materialise":
@@ -46,15 +42,22 @@ def command_of(
             return c.Pause(content=store.put("reason", reason) if reason else None)
         case "resume":
             return c.Resume(headset_connected=connected)
-        case "redo":
-            return c.Redo(content=store.put("reason", reason), step=request.step_index)
-        case "skip":
-            return c.Skip(content=store.put("reason", reason))
-        case "abort" | "withdraw":
-            status = "aborted" if request.type == "abort" else "withdrawn"
-            return c.Stop(status=status, content=store.put("reason", reason))
         case "note":
             return c.AddNote(content=store.put("note", _note_text(request)))
+        case _:
+            return c.Start()
+
+
+def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:
+    match request.type:
+        case "redo":
+            return c.Redo(content=reason, step=request.step_index)
+        case "skip":
+            return c.Skip(content=reason)
+        case "abort":
+            return c.Stop(status="aborted", content=reason)
+        case _:
+            return c.Stop(status="withdrawn", content=reason)
 
 
 class _Store:

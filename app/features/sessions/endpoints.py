@@ -24,7 +24,7 @@ from app.features.sessions.schemas import (
     SessionSummary,
     SessionView,
 )
-from app.features.sessions.service import apply_command, join, session_by_id
+from app.features.sessions.service import apply_command, is_repeated, join, session_by_id
 from app.features.sessions.view import event_views, list_sessions, session_view
 from app.features.studies.service import study_by_key
 
@@ -69,6 +69,8 @@ def post_command(
 ) -> SessionView:
     """Do something with a session. A repeated `command_id` changes nothing."""
     session = session_by_id(db, session_id, lock=True)
+    if is_repeated(db, session_id, request.command_id):
+        return session_view(db, context, session)
     apply_command(
         db,
         context,

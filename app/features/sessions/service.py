@@ -161,7 +161,7 @@ def apply_command(
     cannot be done in the present state.
     """
     state = state_of(session)
-    if command_id is not None and _known_command(db, session.id, command_id):
+    if command_id is not None and is_repeated(db, session.id, command_id):
         return Applied(session, state, ())
     if expected_version is not None and expected_version != session.version:
         raise _stale(db, session, expected_version)
@@ -195,7 +195,8 @@ def apply_command(
     return Applied(session, state, tuple(events))
 
 
-def _known_command(db: Session, session_id: str, command_id: str) -> bool:
+def is_repeated(db: Session, session_id: str, command_id: str) -> bool:
+    """Whether this command was applied before, so that sending it again changes nothing."""
     query = select(SessionEvent.seq).where(
         SessionEvent.session_id == session_id, SessionEvent.command_id == command_id
     )
