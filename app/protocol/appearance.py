@@ -57,5 +57,6 @@ class Appearance(Strict):
                 value=self.default,
                 valid=keys,
                 remedy="Give each palette its own key, and name one of them as the default.",
+                at=("default",),
             )
         return self

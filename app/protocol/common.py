@@ -45,10 +45,18 @@ class Provenance(Strict):
 
 
 def refusal(
-    message: str, *, value: object = None, valid: object = None, remedy: str = ""
+    message: str,
+    *,
+    value: object = None,
+    valid: object = None,
+    remedy: str = "",
+    at: tuple[str | int, ...] = (),
 ) -> PydanticCustomError:
-    """The error that a validator raises: what happened, the value, what is valid, what to do."""
+    """The error that a validator raises: what happened, the value, what is valid, what to do.
+
+    `at`: the place within the validated value, such as (1, "key").
+    """
     context: dict[str, Any] = {
-        "said": message, "value": value, "valid": valid, "remedy": remedy,
+        "said": message, "value": value, "valid": valid, "remedy": remedy, "at": at,
     }  # fmt: skip
     return PydanticCustomError("refused", "{said}", context)

@@ -50,6 +50,7 @@ def _told_apart(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
                     value=condition.key,
                     valid="a key of its own for each condition",
                     remedy="Rename one of them.",
+                    at=(index, "key"),
                 )
             if condition.latency_ms == earlier.latency_ms:
                 raise refusal(
@@ -58,6 +59,7 @@ def _told_apart(conditions: tuple[Condition, ...]) -> tuple[Condition, ...]:
                     value=condition.latency_ms,
                     valid="a latency of its own for each condition",
                     remedy="Change or remove one of them.",
+                    at=(index, "latency_ms"),
                 )
     return conditions
 

@@ -10,6 +10,10 @@ from app.protocol.errors import ConfigProblem
 from app.protocol.schema import Schema, schema_at
 from app.protocol.source import Path, Plain, Source, path_text
 from app.science.instruments import DefinitionProblem, InstrumentDefinitionError
+from app.science.instruments.errors import shortened
+
+UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
+"""What pydantic calls a key that a model, or a dataclass, does not have."""
 
 _WANTED = {
     "string_type": ("text", "Write text; put it in quotes if it looks like a number."),
@@ -24,6 +28,7 @@ _WANTED = {
     "dict_type": ("a mapping", "Write keys with values, indented below it."),
     "mapping_type": ("a mapping of languages", "Write for example {en: ..., de: ...}."),
 }
+_MAX_SHOWN = 200
 _LIMITS = {
     "greater_than": ("gt", "above"),
     "greater_than_equal": ("ge", "at least"),
@@ -44,7 +49,7 @@ def explain(error: ValidationError, schema: Schema, source: Source) -> Iterable[
             yield from (locate(problem, source) for problem in cause.problems)
         else:
             found = _finding(details, path, schema, source.tree)
-            yield locate(found, source, at_key=details["type"] == "extra_forbidden")
+            yield locate(found, source, at_key=details["type"] in UNKNOWN_KEY)
 
 
 def locate(problem: DefinitionProblem, source: Source, *, at_key: bool = False) -> ConfigProblem:
@@ -52,19 +57,27 @@ def locate(problem: DefinitionProblem, source: Source, *, at_key: bool = False) 
     mark = source.place(problem.path, of_key=at_key)
     return ConfigProblem(
         path_text(problem.path), mark.line, mark.column,
-        problem.message, problem.value, problem.valid, problem.remedy,
+        problem.message, _shown(problem.value), problem.valid, problem.remedy,
     )  # fmt: skip
+
+
+def _shown(value: object) -> object:
+    """A value as a message can carry it: whole sections are left out, long texts cut."""
+    if isinstance(value, dict) or (isinstance(value, list) and len(str(value)) > _MAX_SHOWN):
+        return None
+    return shortened(value, _MAX_SHOWN)
 
 
 def _finding(details: ErrorDetails, path: Path, schema: Schema, tree: Plain) -> DefinitionProblem:
     kind, given, context = details["type"], details.get("input"), details.get("ctx", {})
     if kind == "missing":
         return _missing(path, schema_at(schema, tree, path))
-    if kind == "extra_forbidden":
+    if kind in UNKNOWN_KEY:
         return _unknown_key(path, given, schema_at(schema, tree, path[:-1]))
     if kind == "refused":
         value = given if context["value"] is None else context["value"]
-        return DefinitionProblem(path, context["said"], value, context["valid"], context["remedy"])
+        inner = (*path, *context["at"])
+        return DefinitionProblem(inner, context["said"], value, context["valid"], context["remedy"])
     if kind in _WANTED:
         wanted, remedy = _WANTED[kind]
         return DefinitionProblem(
@@ -83,6 +96,9 @@ def _finding(details: ErrorDetails, path: Path, schema: Schema, tree: Plain) -> 
 
 def _missing(path: Path, schema: Schema) -> DefinitionProblem:
     description = schema.get("description")
+    if isinstance(path[-1], int):
+        message = f"The list ends after {path[-1]} values."
+        return DefinitionProblem(path, message, remedy="Add the missing values.")
     remedy = f"Add {path[-1]}" + (f": {description}." if _is_short(description) else ".")
     return DefinitionProblem(path, f"The key {path[-1]!r} is missing.", None, description, remedy)
 
@@ -119,8 +135,13 @@ def _other(path: Path, details: ErrorDetails, schema: Schema) -> DefinitionProbl
         valid = schema["const"]
     words = ", ".join(map(str, valid)) if isinstance(valid, list) else valid
     remedy = f"Valid: {words}." if words else "Correct it."
-    if isinstance(given, str):
-        message = f"{given[:80]!r} is not valid here: {details['msg'].lower()}."
+    if details["type"] in ("too_short", "too_long"):
+        limits = (("at least", context.get("min_length")), ("at most", context.get("max_length")))
+        valid = " and ".join(f"{words} {limit}" for words, limit in limits if limit is not None)
+        message = f"There are {context['actual_length']} entries."
+        remedy = f"Give {valid}."
+    elif isinstance(given, str):
+        message = f"{given[:80]!r} is not valid here."
     else:
         message = f"{details['msg']}."
     return DefinitionProblem(path, message, given, valid, remedy)

@@ -17,7 +17,7 @@ from pydantic import TypeAdapter, ValidationError
 from app.protocol.canonical import canonical_json, sha256_of
 from app.protocol.cross import cross_problems
 from app.protocol.errors import ConfigError, ConfigProblem
-from app.protocol.explain import explain, locate, remove
+from app.protocol.explain import UNKNOWN_KEY, explain, locate, remove
 from app.protocol.schema import Schema
 from app.protocol.source import Plain, Source, read_source
 from app.protocol.study import StudyProtocol
@@ -114,7 +114,7 @@ def _behind_unknown_keys(
     kind: _Kind[_Value], error: ValidationError, source: Source
 ) -> Iterable[ConfigProblem]:
     """Problems that show only once unknown keys are gone, such as formulas with unknown names."""
-    unknown = [one["loc"] for one in error.errors() if one["type"] == "extra_forbidden"]
+    unknown = [one["loc"] for one in error.errors() if one["type"] in UNKNOWN_KEY]
     if len(unknown) != error.error_count():
         return
     cleaned = copy.deepcopy(source.tree)

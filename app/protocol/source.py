@@ -81,7 +81,7 @@ def read_source(text: str) -> Source:
     except yaml.reader.ReaderError as error:
         before = text[: error.position]
         line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-        message = f"The character U+{ord(str(error.character)):04X} cannot be part of a file."
+        message = f"The character U+{int(error.character):04X} cannot be part of a file."
         raise ConfigError(
             [ConfigProblem("", line, column, message, remedy="Remove it.")]
         ) from error

@@ -1,0 +1,67 @@
+"""The shipped study as text, and ways to change it."""
+
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from app.protocol import (
+    ConfigError,
+    ConfigProblem,
+    LoadedStudy,
+    StudyProtocol,
+    load_instrument,
+    load_study,
+)
+from app.science.instruments import Instrument
+
+CONFIGS = Path(__file__).parents[2] / "study_configs"
+STUDY = (CONFIGS / "reembodiment-latency.yaml").read_text(encoding="utf-8")
+
+
+@cache
+def instruments() -> dict[str, Instrument]:
+    """The shipped instruments by their key."""
+    files = sorted((CONFIGS / "instruments").glob("*.yaml"))
+    loaded = [load_instrument(file.read_text(encoding="utf-8")).instrument for file in files]
+    return {instrument.key: instrument for instrument in loaded}
+
+
+def edited(*changes: tuple[str, str]) -> str:
+    """The shipped study with words replaced; each must be there."""
+    text = STUDY
+    for old, new in changes:
+        assert old in text, f"{old!r} is not in the study"
+        text = text.replace(old, new, 1)
+    return text
+
+
+def loaded(text: str = STUDY) -> LoadedStudy:
+    """A study read with the shipped instruments."""
+    return load_study(text, instruments=instruments())
+
+
+def study(*changes: tuple[str, str]) -> StudyProtocol:
+    """The shipped study, with words replaced."""
+    return loaded(edited(*changes)).protocol
+
+
+def levels(n: int) -> str:
+    """The conditions section of a study with n levels."""
+    lines = [
+        f"  - {{key: c{level}, latency_ms: {level}, label: {{en: a, de: a}}}}" for level in range(n)
+    ]
+    return "conditions:\n" + "\n".join(lines) + "\n"
+
+
+def with_levels(n: int) -> str:
+    """The shipped study with n conditions."""
+    start, end = STUDY.index("conditions:\n"), STUDY.index("# All 3!")
+    return STUDY[:start] + levels(n) + STUDY[end:]
+
+
+def problems(text: str) -> tuple[ConfigProblem, ...]:
+    """What is wrong with a study file; something must be."""
+    with pytest.raises(ConfigError) as caught:
+        loaded(text)
+    return caught.value.problems

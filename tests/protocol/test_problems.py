@@ -1,0 +1,148 @@
+"""What is said about a wrong study file: everything, each at its place, with what to do."""
+
+import pytest
+
+from tests.protocol.helpers import edited, problems
+
+
+@pytest.mark.parametrize(
+    ("change", "path", "said", "remedy"),
+    [
+        (
+            ("replicates: 2", "replicates: 2\n  replicate: 3"),
+            "orders.replicate",
+            "not known",
+            "'replicates'",
+        ),
+        (
+            ("limb_order: fixed", "limb_order: fixed\n    limb_ordr: x"),
+            "procedure.block.limb_ordr",
+            "not known",
+            "mean",
+        ),
+        (("latency_ms: 125", "latency_ms: -125"), "conditions[1].latency_ms", "negative", "0 for"),
+        (
+            ("latency_ms: 0, text", "latency_ms: -1, text"),
+            "procedure.before[5].latency_ms",
+            "neg",
+            "",
+        ),
+        (("latency_ms: 125", "latency_ms: .nan"), "conditions[1].latency_ms", "finite", "number"),
+        (
+            ("latency_ms: 125", "latency_ms: '125'"),
+            "conditions[1].latency_ms",
+            "a number",
+            "quotes",
+        ),
+        (
+            ("latency_ms: 125", "latency_ms: 0"),
+            "conditions[1].latency_ms",
+            "both add 0 ms",
+            "Change",
+        ),
+        (("key: latency_125", "key: latency_0"), "conditions[1].key", "Two conditions", "Rename"),
+        (("replicates: 2", "replicates: 2\n  replicates: 3"), "orders.replicates", "twice", "Keep"),
+        (("replicates: 2", "replicates: 0"), "orders.replicates", "out of range", "at least 1"),
+        (("replicates: 2", "replicates: 1.5"), "orders.replicates", "whole number", ""),
+        (("when_full: grow", "when_full: no"), "orders.when_full", "'no'", "grow, closed"),
+        (("operator: ", "operator: yes #"), "blinding.operator", "true or false", "quotes"),
+        (
+            ("duration_s: 60", "duration_s: 0"),
+            "procedure.block.phases[0].duration_s",
+            "range",
+            "above",
+        ),
+        (
+            ("freeze_s: 5", "freeze_s: -5"),
+            "procedure.block.phases[0].freeze_s",
+            "range",
+            "at least 0",
+        ),
+        (("duration_s: 120, ", ""), "procedure.before[5].duration_s", "missing", "seconds"),
+        (("limb: foot", "limb: hand"), "procedure.block.phases", "two phases", "one phase"),
+        (("step: height", "step: heigth"), "procedure.before[3].step", "heigth", "'height'"),
+        (("step: height, ", ""), "procedure.before[3].step", "missing", "materialise"),
+        (("text: t_pose", "text: tpose"), "procedure.before[4].text", "no text 'tpose'", "t_pose"),
+        (
+            ("instrument: demographics", "instrument: demo"),
+            "procedure.before[1].instrument",
+            "demo",
+            "k",
+        ),
+        (("  freeze:\n", "  frozen:\n"), "texts.freeze", "missing", "every language"),
+        (("    de: Bitte halten", "    fr: Bitte halten"), "texts.freeze.de", "'de'", "languages"),
+        (("de: keine zus", "fr: keine zus"), "conditions[0].label.de", "'de'", ""),
+        (
+            ("    en: Please hold still for", "    en: 5 #"),
+            "texts.freeze.en",
+            "Expected text",
+            "quotes",
+        ),
+        (("[-0.11, 1.2", "[-0.22, 1.2"), "tasks.hand", "overlap", ""),
+        (("length_factor: 1.10", "length_factor: 2.5"), "tasks.foot", "overlap", ""),
+        (("[-0.39, 0.07", "[-0.39, 0.02"), "tasks.foot", "below the floor", ""),
+        (("sides: [left, right, top", "sides: [left, front, top"), "tasks.hand", "no side", ""),
+        (("[0, 1.42, -0.55]", "[0, 1.42]"), "tasks.hand.target.center_m[2]", "after 2 values", ""),
+        (
+            ("undelayed_parts: [Hips]", "undelayed_parts: [Hip]"),
+            "latency.undelayed_parts",
+            "Hip",
+            "",
+        ),
+        (("default: standard", "default: dark"), "appearance.default", "not there", "palette"),
+        (('"#8a8f98"', "red"), "appearance.palettes[0].colours.panel", "'red'", "#rrggbb"),
+        (("avatar: delayed_copy", "avatar: physics"), "avatar", "'physics'", "delayed_copy"),
+        (("key: reembodiment-latency", "key: Re embody"), "key", "'Re embody'", "lower-case"),
+        (("languages: [en, de]", "languages: [en, en]"), "languages", "twice", "once"),
+    ],
+)
+def test_each_problem_has_its_place_and_its_remedy(
+    change: tuple[str, str], path: str, said: str, remedy: str
+) -> None:
+    """One slip gives one problem: where, what, and what to do; the line is that of the slip."""
+    text = edited(change)
+    (problem,) = problems(text)
+    assert problem.path == path
+    assert said in problem.message
+    assert remedy in problem.remedy
+    assert problem.line > 0
+    assert problem.column > 0
+
+
+def test_a_problem_points_at_its_line_and_value() -> None:
+    """The line of a negative latency is the line on which it stands."""
+    text = edited(("latency_ms: 350", "latency_ms: -350"))
+    (problem,) = problems(text)
+    assert text.splitlines()[problem.line - 1][problem.column - 1 :] == "-350"
+    assert problem.value == -350
+    assert problem.valid == "0 to 10000 ms"
+
+
+def test_an_unknown_key_lists_the_valid_ones() -> None:
+    """So that nobody has to look them up."""
+    (problem,) = problems(edited(("when_full: grow", "full: grow\n  when_full: grow")))
+    assert problem.valid == ["design", "replicates", "seed", "when_full"]
+
+
+def test_all_problems_come_at_once_in_the_order_of_the_file() -> None:
+    """Wrong values do not hide wrong references, and broken sections do not hide each other."""
+    text = edited(
+        ("latency_ms: 125", "latency_ms: -1"),
+        ("replicates: 2", "replicate: 2"),
+        ("text: t_pose", "text: tpose"),
+        ("duration_s: 60", "duration_s: .inf"),
+        ("[-0.11, 1.2", "[-0.22, 1.2"),
+        ("    de: Bitte halten", "    fr: Bitte halten"),
+    )
+    found = problems(text)
+    assert [problem.path for problem in found] == [
+        "conditions[1].latency_ms",
+        "orders.replicates",
+        "orders.replicate",
+        "procedure.before[4].text",
+        "procedure.block.phases[0].duration_s",
+        "tasks.hand",
+        "texts.freeze.de",
+    ]
+    lines = [problem.line for problem in found]
+    assert lines == sorted(lines)

@@ -1,0 +1,147 @@
+"""An instrument that exists is consistent; one that is not says everything that is wrong."""
+
+from collections.abc import Sequence
+
+import pytest
+
+from app.science.instruments import (
+    Choice,
+    Instrument,
+    InstrumentDefinitionError,
+    Item,
+    Scale,
+    Score,
+)
+from tests.science.instruments.helpers import shipped, small
+
+ONE = {"en": "One"}
+
+
+def likert(key: str) -> Item:
+    """A likert item."""
+    return Item(key, ONE, "likert")
+
+
+@pytest.mark.parametrize(
+    ("changes", "path", "said"),
+    [
+        ({"key": "Small"}, ("key",), "cannot be a key"),
+        ({"version": 0}, ("version",), "from 1"),
+        ({"items": (), "scores": ()}, ("items",), "no item"),
+        ({"languages": ()}, ("languages",), "No language"),
+        ({"languages": ("en", "en")}, ("languages", 1), "twice"),
+        ({"languages": ("en", "de")}, ("title", "de"), "'de'"),
+        ({"title": {"en": " "}}, ("title", "en"), "no wording"),
+        ({"items": (likert("q1"), likert("q1")), "scores": ()}, ("items", 1, "key"), "taken"),
+        ({"items": (likert("mean"),), "scores": ()}, ("items", 0, "key"), "taken"),
+        ({"scores": (Score("q1", ONE, "q2"),)}, ("scores", 0, "key"), "taken"),
+        ({"scores": (Score("s", ONE, "q1 + q7"),)}, ("scores", 0, "formula"), "character 6"),
+        ({"scores": (Score("s", ONE, "note + 1"),)}, ("scores", 0, "formula"), "'note'"),
+        (
+            {"scores": (Score("s", ONE, "t"), Score("t", ONE, "q1"))},
+            ("scores", 0, "formula"),
+            "'t'",
+        ),
+        ({"scores": (Score("s", ONE, "q1", 3, 1),)}, ("scores", 0, "maximum"), "empty"),
+        ({"recode": "y - 4"}, ("recode",), "'y'"),
+        ({"last": ("q9",)}, ("last", 0), "'q9'"),
+        ({"scale": Scale(7, 1, ())}, ("scale", "maximum"), "steps"),
+        ({"scale": Scale(1, 7, (ONE,) * 3)}, ("scale", "labels"), "3 labels"),
+        ({"scale": None}, ("items", 0, "type"), "scale"),
+    ],
+)
+def test_contradictions_are_refused_at_their_place(
+    changes: dict[str, object], path: tuple[str | int, ...], said: str
+) -> None:
+    """Each contradiction is found, with its path and a sentence."""
+    with pytest.raises(InstrumentDefinitionError) as caught:
+        small(**changes)
+    problem = next(one for one in caught.value.problems if one.path == path)
+    assert said in problem.message
+    assert problem.remedy
+
+
+@pytest.mark.parametrize(
+    ("item", "field"),
+    [
+        (Item("a", ONE, "likert", minimum=1), "minimum"),
+        (Item("a", ONE, "text", unit="cm"), "unit"),
+        (Item("a", ONE, "number", reverse_keyed=True), "reverse_keyed"),
+        (Item("a", ONE, "boolean", choices=(Choice("x", ONE), Choice("y", ONE))), "choices"),
+        (Item("a", ONE, "choice", choices=(Choice("x", ONE),)), "choices"),
+        (Item("a", ONE, "number", minimum=3, maximum=2), "maximum"),
+        (Item("a", ONE, "integer", max_length=3), "max_length"),
+        (Item("a", ONE, "text", max_length=0), "max_length"),
+    ],
+)
+def test_an_item_has_only_the_fields_of_its_type(item: Item, field: str) -> None:
+    """A field that would be ignored is refused, and so is one that is missing."""
+    with pytest.raises(InstrumentDefinitionError) as caught:
+        small(items=(item,), scores=())
+    assert ("items", 0, field) in [problem.path for problem in caught.value.problems]
+
+
+def test_all_contradictions_are_found_at_once() -> None:
+    """Nobody has to correct a file five times."""
+    with pytest.raises(InstrumentDefinitionError) as caught:
+        small(key="!", version=0, last=("q9",), scores=(Score("s", ONE, "q1 +"),))
+    paths: Sequence[object] = [problem.path for problem in caught.value.problems]
+    assert paths == [("key",), ("version",), ("last", 0), ("scores", 0, "formula")]
+
+
+def test_the_embodiment_questionnaire_is_complete() -> None:
+    """Karas 2020, appendix A.3: 14 items on a 7-step scale and an open prompt at the end."""
+    karas = shipped("karas2020")
+    assert [item.key for item in karas.items] == [
+        *(f"q{number}" for number in range(1, 15)),
+        "problems",
+    ]
+    assert karas.scale is not None
+    assert [label["en"] for label in karas.scale.labels] == [
+        "strongly disagree",
+        "disagree",
+        "somewhat disagree",
+        "neither agree nor disagree",
+        "somewhat agree",
+        "agree",
+        "strongly agree",
+    ]
+    reverse = [item.key for item in karas.items if item.reverse_keyed]
+    assert reverse == ["q2", "q3", "q5", "q9", "q11"]
+    assert karas.last == ("problems",)
+
+
+@pytest.mark.parametrize(
+    ("key", "wording"),
+    [
+        ("q1", "I felt as if the virtual body I saw when I looked down was my own body."),
+        ("q5", "I felt as if the character I saw when looking in the mirror was another person."),
+        ("q7", "The movements of the virtual body were caused by my movements."),
+        (
+            "q12",
+            (
+                "I felt as if my (real) body were drifting towards the virtual body or as if the "
+                "virtual body were drifting towards my real body."
+            ),
+        ),
+        ("q13", "I felt as if my real body were turning into an 'avatar' body."),
+        ("q14", "I felt that the motion of the virtual body was simultaneous to my movement."),
+        ("problems", "Something that caused me problems or that I struggled with was..."),
+    ],
+)
+def test_wordings_of_the_embodiment_questionnaire(key: str, wording: str) -> None:
+    """Karas 2020, appendix A.3: item wordings are data and stay exact."""
+    assert shipped("karas2020").by_key[key].text["en"] == wording
+
+
+def test_demographics_ask_what_the_tasks_need() -> None:
+    """Handedness decides the direction of the hand task; the participant's code is never asked."""
+    demographics: Instrument = shipped("demographics")
+    choices = {key: [c.key for c in demographics.by_key[key].choices] for key in HANDS_AND_FEET}
+    assert choices == HANDS_AND_FEET
+    assert demographics.by_key["height_cm"].unit == "cm"
+    assert not demographics.by_key["weight_kg"].required
+    assert not any("id" in item.key.split("_") for item in demographics.items)
+
+
+HANDS_AND_FEET = {"handedness": ["left", "right"], "footedness": ["left", "right", "both"]}

@@ -1,0 +1,142 @@
+"""The language of score formulas: its laws, its limits and its refusals."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.science.instruments import FormulaError
+from app.science.instruments.evaluation import evaluate
+from app.science.instruments.formula import MAX_DEPTH, names_in, parse_formula
+from app.science.instruments.tokens import MAX_LENGTH, MAX_TOKENS
+
+NAMES = frozenset({"q1", "q2", "q3"})
+numbers = st.floats(-100, 100).map(lambda value: round(value, 3))
+
+
+def value_of(text: str, **values: float) -> float:
+    """The formula's value for one person; NaN where it has none."""
+    arrays = {key: np.array([value]) for key, value in values.items()}
+    return float(np.ravel(evaluate(parse_formula(text, values.keys()), arrays))[0])
+
+
+@given(numbers, numbers, numbers)
+def test_operators_group_as_in_arithmetic(a: float, b: float, c: float) -> None:
+    """Products bind tighter than sums, and equal operators group from the left."""
+    assert value_of("q1 + q2 * q3", q1=a, q2=b, q3=c) == a + b * c
+    assert value_of("q1 - q2 - q3", q1=a, q2=b, q3=c) == (a - b) - c
+    assert value_of("-q1 * q2 - -q3", q1=a, q2=b, q3=c) == -a * b + c
+    assert value_of("q1 - (q2 - q3)", q1=a, q2=b, q3=c) == a - (b - c)
+
+
+@given(numbers, numbers, numbers)
+def test_functions_take_any_number_of_values(a: float, b: float, c: float) -> None:
+    """mean, sum, min and max mean what they say."""
+    given_values = {"q1": a, "q2": b, "q3": c}
+    assert value_of("mean(q1, q2, q3)", **given_values) == (a + b + c) / 3
+    assert value_of("sum(q1, q2, q3)", **given_values) == a + b + c
+    assert value_of("min(q1, q2, q3)", **given_values) == min(a, b, c)
+    assert value_of("max(q1, max(q2, q3))", **given_values) == max(a, b, c)
+
+
+@pytest.mark.parametrize(
+    "formula", ["q1 + q2", "0 * q1", "min(q1, q2)", "max(q2, q1)", "mean(q1, q2)", "q1 / q1", "-q1"]
+)
+def test_whatever_a_missing_answer_enters_has_no_value(formula: str) -> None:
+    """Missing is never silently skipped, not even by a minimum or a factor of zero."""
+    assert math.isnan(value_of(formula, q1=math.nan, q2=1.0))
+
+
+@pytest.mark.parametrize("formula", ["1 / 0", "0 / 0", "q1 / (q1 - q1)", "1 / (1 / 0)"])
+def test_dividing_by_zero_gives_no_value(formula: str) -> None:
+    """An infinity appears neither as a result nor on the way to one."""
+    assert math.isnan(value_of(formula, q1=2.0))
+
+
+def test_a_column_has_the_values_of_its_rows() -> None:
+    """Evaluating a column is evaluating each person alone."""
+    column = np.array([1.0, np.nan, 3.0])
+    result = evaluate(parse_formula("(q1 + 1) * 2", {"q1"}), {"q1": column})
+    np.testing.assert_array_equal(result, [4.0, np.nan, 8.0])
+
+
+def test_names_are_what_the_formula_reads() -> None:
+    """Functions are no names; each item counts once."""
+    assert names_in(parse_formula("mean(q1, -q2) / (q1 + 4)", NAMES)) == {"q1", "q2"}
+
+
+def test_zero_has_no_sign() -> None:
+    """A negative zero would look odd in a table."""
+    assert math.copysign(1, value_of("-q1", q1=0.0)) == 1
+
+
+@pytest.mark.parametrize(
+    ("formula", "position", "said"),
+    [
+        ("q1 + q9", 5, "'q9' is not known"),
+        ("q1 + ", 4, "the formula ends"),
+        ("", 0, "the formula ends"),
+        ("q1 q2", 3, "cannot go on"),
+        ("(q1 + q2", 8, "not closed"),
+        ("q1)", 2, "cannot go on"),
+        ("mean q1", 5, "in parentheses"),
+        ("mean()", 5, "there is ')'"),
+        ("q1 ** 2", 4, "there is '*'"),
+        ("q1 // 2", 4, "there is '/'"),
+        ("q1 % 2", 3, "'%' does not begin"),
+        ("q1.real", 2, "'.' does not begin"),
+        ("__import__('os')", 11, "does not begin"),
+        ("__import__(1)", 0, "'__import__' is not known"),
+        ("q1 + 1e5", 5, "'1' does not begin"),
+        ("q1 if q2 else q3", 3, "cannot go on"),
+        ("Q1", 0, "'Q1' is not known"),
+    ],
+)
+def test_a_formula_is_refused_at_the_right_character(
+    formula: str, position: int, said: str
+) -> None:
+    """The error points at the first character that cannot be understood, and says why."""
+    with pytest.raises(FormulaError, match=r".") as caught:
+        parse_formula(formula, NAMES)
+    assert caught.value.position == position
+    assert said in caught.value.message
+    assert caught.value.remedy
+
+
+def test_a_misspelt_name_gets_a_suggestion() -> None:
+    """The remedy names the closest key and all that are known."""
+    with pytest.raises(FormulaError, match="Did you mean ownership"):
+        parse_formula("ownershp / 5", {"ownership", "q1"})
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "(" * (MAX_DEPTH + 1) + "q1" + ")" * (MAX_DEPTH + 1),
+        "-" * (MAX_DEPTH + 1) + "q1",
+        "+".join(["1"] * MAX_TOKENS),
+        "q1" + " " * MAX_LENGTH,
+    ],
+)
+def test_formulas_over_the_limits_are_refused(formula: str) -> None:
+    """Nesting, number of parts and length are limited, so no formula can exhaust the program."""
+    with pytest.raises(FormulaError, match="more than"):
+        parse_formula(formula, NAMES)
+
+
+def test_formulas_at_the_limits_are_evaluated() -> None:
+    """The longest chain and the deepest nesting that are read can be computed, too."""
+    assert value_of("+".join(["1"] * 200)) == 200
+    assert value_of("(" * MAX_DEPTH + "q1" + ")" * MAX_DEPTH, q1=3.0) == 3
+
+
+@given(st.text("q123+-*/(),. meansumxi", max_size=40))
+def test_any_text_is_a_formula_or_a_formula_error(text: str) -> None:
+    """No other exception ever leaves the parser."""
+    try:
+        tree = parse_formula(text, NAMES)
+    except FormulaError:
+        return
+    assert names_in(tree) <= NAMES
