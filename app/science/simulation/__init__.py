@@ -1,0 +1,27 @@
+"""The simulated participant: how a person moves through the tasks and answers afterwards."""
+
+from app.science.simulation.answers import (
+    Aspect,
+    SimulatedItem,
+    agreement,
+    simulated_answers,
+)
+from app.science.simulation.goal import Goal, GoalKind, SimulationError
+from app.science.simulation.idle import idle_movement, relaxed_pose
+from app.science.simulation.participant import SimulatedParticipant
+from app.science.simulation.traits import MovementTraits, drawn_traits
+
+__all__ = [
+    "Aspect",
+    "Goal",
+    "GoalKind",
+    "MovementTraits",
+    "SimulatedItem",
+    "SimulatedParticipant",
+    "SimulationError",
+    "agreement",
+    "drawn_traits",
+    "idle_movement",
+    "relaxed_pose",
+    "simulated_answers",
+]

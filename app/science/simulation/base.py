@@ -1,0 +1,75 @@
+"""The movement a person makes anyway, under whatever the task asks for."""
+
+from typing import cast
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.rotations.scalars import Quaternion, Vector
+from app.science.simulation.goal import SimulationError
+from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, Movement
+from app.science.skeleton.movement import mean_rotations
+
+# How much of the base movement remains around its mean while a task is done. A walk must not stride
+# in front of the boxes, yet a body does not freeze: legs are placed by the steps instead.
+_TASK_GAIN = {"Hips": 0.25, "Neck": 0.6, "Head": 0.6}
+_TASK_GAIN_ELSE = 0.35
+_LEG_JOINTS = range(JOINT_INDEX["LeftUpperLeg"], JOINT_COUNT)
+_SWAY_GAIN = 0.25
+
+
+class BaseMovement:
+    """Plays a looping movement at any time, whole or damped for a task."""
+
+    def __init__(self, movement: Movement, offset_s: float) -> None:
+        if not movement.loops:
+            raise SimulationError("The base movement must loop: pass it through `loop` first.")
+        q, root = movement.rotations, movement.root_positions_m
+        self._rate_hz, self._frames, self._offset_s = movement.rate_hz, q.shape[0], offset_s
+        mean = mean_rotations(q)
+        q = q * np.where(np.einsum("ji,ji->j", q[0], mean) < 0.0, -1.0, 1.0)[:, np.newaxis]
+        # The first frame once more, in the last one's hemisphere, makes the seam like any frame.
+        again = q[0] * np.where(np.einsum("ji,ji->j", q[0], q[-1]) < 0.0, -1.0, 1.0)[:, np.newaxis]
+        self._rotations = np.concatenate((q, again[np.newaxis]))
+        self._roots = np.concatenate((root, root[:1]))
+        gains = np.full((JOINT_COUNT, 1), _TASK_GAIN_ELSE)
+        for name, gain in _TASK_GAIN.items():
+            gains[JOINT_INDEX[name]] = gain
+        gains[_LEG_JOINTS] = 0.0
+        self._gains, self._rest = gains, (1.0 - gains) * mean
+        self._middle = root.mean(axis=0)
+
+    def _where(self, time_s: float) -> tuple[int, float]:
+        place = ((time_s + self._offset_s) * self._rate_hz) % self._frames
+        frame = min(int(place), self._frames - 1)
+        return frame, place - frame
+
+    def _blend(self, time_s: float) -> FloatArray:
+        frame, share = self._where(time_s)
+        rows = self._rotations
+        blended: FloatArray = rows[frame] * (1.0 - share) + rows[frame + 1] * share
+        return blended
+
+    def root(self, time_s: float) -> Vector:
+        """Return the hips' place, x and z around the origin, as recorded."""
+        frame, share = self._where(time_s)
+        here, after = self._roots[frame], self._roots[frame + 1]
+        return cast("Vector", tuple((here * (1.0 - share) + after * share).tolist()))
+
+    def sway(self, time_s: float) -> tuple[float, float]:
+        """Return the damped sway of the hips while a task is done: x and z in metres."""
+        x, _, z = self.root(time_s)
+        return _SWAY_GAIN * (x - float(self._middle[0])), _SWAY_GAIN * (z - float(self._middle[2]))
+
+    def whole(self, time_s: float) -> list[Quaternion]:
+        """Return the 22 local rotations as recorded."""
+        return _unit_rows(self._blend(time_s))
+
+    def damped(self, time_s: float) -> list[Quaternion]:
+        """Return the 22 local rotations drawn to their mean; the legs rest at theirs."""
+        return _unit_rows(self._rest + self._gains * self._blend(time_s))
+
+
+def _unit_rows(rows: FloatArray) -> list[Quaternion]:
+    length = np.sqrt(np.einsum("ji,ji->j", rows, rows))
+    return cast("list[Quaternion]", (rows / length[:, np.newaxis]).tolist())

@@ -1,0 +1,60 @@
+"""What the task asks the simulated participant to do next."""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from app.science.rotations.scalars import Vector
+
+_HANDS = ("LeftHand", "RightHand")
+_FEET = ("LeftFoot", "RightFoot")
+
+
+class SimulationError(ValueError):
+    """The simulated participant was asked for something impossible."""
+
+
+class GoalKind(StrEnum):
+    """Touch with a hand, step with a foot, walk the whole body somewhere, or stand at rest."""
+
+    REACH = "reach"
+    STEP = "step"
+    WALK_TO = "walk_to"
+    REST = "rest"
+
+
+@dataclass(frozen=True)
+class Goal:
+    """One goal; a goal that is equal to the one before is the same goal.
+
+    Attributes:
+        kind: what to do.
+        effector: "LeftHand" or "RightHand" to reach, "LeftFoot" or "RightFoot" to step; else None.
+        target_m: world point for the finger tip, for the middle of the sole, or on the floor for
+            the middle of the body; None to rest.
+        near_m: half width of what has to be met: it sets pace and scatter.
+        approach_m: from the target out through the open side, as long as the way out is: +z out of
+            a hand box, +y out of a foot box. It is the way in and, at the next goal, the way out.
+            For walking only its height is used, to lift the feet over edges.
+    """
+
+    kind: GoalKind
+    effector: str | None = None
+    target_m: Vector | None = None
+    near_m: float = 0.05
+    approach_m: Vector = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        """Refuse goals that cannot be followed."""
+        valid = {GoalKind.REACH: _HANDS, GoalKind.STEP: _FEET}.get(self.kind, (None,))
+        if self.effector not in valid:
+            raise SimulationError(
+                f"A goal to {self.kind} cannot use {self.effector!r}: valid are {valid}."
+            )
+        if (self.target_m is None) != (self.kind is GoalKind.REST):
+            raise SimulationError(f"A goal to {self.kind} and target {self.target_m} do not fit.")
+        numbers = (*(self.target_m or ()), *self.approach_m, self.near_m)
+        if not all(math.isfinite(number) for number in numbers) or self.near_m <= 0.0:
+            raise SimulationError(
+                f"Goal numbers must be finite and near_m above zero, got {numbers}."
+            )

@@ -1,0 +1,200 @@
+"""A simulated participant: a body that moves like a person and does what the task asks.
+
+What one sees of it, frame by frame:
+
+- without a goal (free roam) the base movement, a looped capture or an idle one, in place;
+- with a goal the body stands. Trunk, head and the free arm keep a damped share of the base
+  movement; the legs do not stride but stand and step (inverse kinematics to flat feet), so a
+  walking capture cannot walk through the boxes; the asked hand or foot goes to the goal;
+- the body leans and side-steps as far as a reach needs it, and no further;
+- to walk somewhere it steps there facing ahead, backwards if need be. Obstacles are not seen: give
+  way-points as goals, one after the other, to go round something.
+
+The loop is closed from outside: the task rules judge the delayed avatar, and the goal changes when
+they say so. Until then the limb stays where it arrived. A touch that had no effect for longer than
+the person's patience plus the delay is made once more.
+
+All chance comes from `rng`: the same seed, times and goals give the same movement.
+"""
+
+from typing import cast
+
+import numpy as np
+
+from app.science.rotations import rotate
+from app.science.rotations.scalars import Quaternion, Vector, q_blend
+from app.science.simulation.aiming import Aim
+from app.science.simulation.base import BaseMovement
+from app.science.simulation.goal import Goal, GoalKind, SimulationError
+from app.science.simulation.hands import Hand
+from app.science.simulation.paths import minimum_jerk
+from app.science.simulation.placement import Placement, ReachPlan
+from app.science.simulation.posture import SIDE_NAMES, Posture
+from app.science.simulation.stance import Stance
+from app.science.simulation.traits import MovementTraits, drawn_traits
+from app.science.skeleton import JOINT_INDEX, Movement, Pose, Skeleton, forward_kinematics
+
+_TO_TASK_S = 0.8
+_LONGEST_FRAME_S = 0.1
+_PRESS_M = 0.012
+
+
+class SimulatedParticipant:
+    """One person in one session.
+
+    Args:
+        skeleton: the person's body.
+        base: looping movement underneath everything: `loop(resample(retarget(...), 90.0))` or
+            `idle_movement(...)`.
+        rng: source of all chance; seed it and keep the seed.
+        traits: how the person moves; drawn from rng where left out.
+        home_m: (x, z) where the person stands at first and for hand tasks.
+
+    Raises:
+        SimulationError: the base movement does not loop.
+    """
+
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        base: Movement,
+        rng: np.random.Generator,
+        *,
+        traits: MovementTraits | None = None,
+        home_m: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        self.traits = traits or drawn_traits(rng)
+        self.latency_s = 0.0
+        self._rng, self._skeleton = rng, skeleton
+        self._base = BaseMovement(base, rng.uniform(0.0, base.duration_s))
+        self._posture, self._stance = Posture(skeleton), Stance(skeleton, home_m)
+        self._placement = Placement(self._posture, home_m)
+        self._hands = (Hand(), Hand())
+        self._goal: Goal | None = None
+        self._time_s: float | None = None
+        self._pose: Pose | None = None
+        self._plan: tuple[Hand, ReachPlan] | None = None
+        self._task = 0.0
+
+    @property
+    def aimed_m(self) -> Vector | None:
+        """Where the present goal's limb will end, scatter included; None before it has set off."""
+        if self._goal is None or self._goal.effector is None:
+            return None
+        for limb in (*self._hands, self._stance):
+            if limb.goal == self._goal:
+                return limb.aimed_m
+        return None
+
+    def set_latency(self, latency_s: float) -> None:
+        """Tell the delay the person now sees: delayed feedback slows movements (see `traits`).
+
+        Raises:
+            SimulationError: below zero or not finite.
+        """
+        if not 0.0 <= latency_s < float("inf"):
+            raise SimulationError(f"A latency of {latency_s} s is not valid: zero or more is.")
+        self.latency_s = latency_s
+
+    def pose(self, time_s: float, goal: Goal | None) -> Pose:
+        """Return the body at a time, pursuing a goal; call once a frame, in order of time.
+
+        Raises:
+            SimulationError: time goes back, or a goal cannot be walked to.
+        """
+        before = time_s if self._time_s is None else self._time_s
+        if not before <= time_s < float("inf"):
+            raise SimulationError(f"Time went from {before} s to {time_s} s: poses go in order.")
+        # After a pause the springs need not race through the gap.
+        step_s = min(time_s - before, _LONGEST_FRAME_S)
+        self._time_s = time_s
+        if goal != self._goal:
+            self._take(goal, time_s)
+        change = step_s / _TO_TASK_S
+        self._task = min(1.0, self._task + change) if goal else max(0.0, self._task - change)
+        if self._task == 0.0 and not goal:
+            root, local = self._roaming(time_s)
+        else:
+            root, local = self._at_task(time_s, step_s)
+        self._pose = Pose(np.array(root), np.array(local))
+        return self._pose
+
+    def _take(self, goal: Goal | None, time_s: float) -> None:
+        """Pass a new goal to the limbs it concerns, and let the others rest."""
+        if self._task == 0.0:
+            x, y, z = self._roaming(time_s)[0]
+            self._stance.place_at(self._stance.centre_m)
+            self._placement.put((x, z), y)
+        self._goal, self._plan = goal, None
+        reaction_s = self.traits.reaction(self._rng)
+        reaching = goal is not None and goal.kind is GoalKind.REACH
+        for side, hand in enumerate(self._hands):
+            asked = reaching and goal is not None and goal.effector == f"{SIDE_NAMES[side]}Hand"
+            if asked and goal is not None:
+                plan = self._placement.plan_reach(goal, side, hand.fingers)
+                hand.ask(goal, time_s, reaction_s, plan.settle_s)
+                self._plan = (hand, plan)
+            elif hand.goal is not None or not hand.idle:
+                hand.ask(None, time_s, 0.0)
+        stepping = goal is not None and goal.kind in {GoalKind.STEP, GoalKind.WALK_TO}
+        self._stance.ask(goal if stepping else None, time_s, reaction_s)
+        if not reaching:
+            self._placement.stay()
+
+    def _roaming(self, time_s: float) -> tuple[Vector, list[Quaternion]]:
+        """Return the base movement, in place over the feet's middle."""
+        x, y, z = self._base.root(time_s)
+        cx, cz = self._stance.centre_m
+        return (x + cx, y, z + cz), self._base.whole(time_s)
+
+    def _at_task(self, time_s: float, step_s: float) -> tuple[Vector, list[Quaternion]]:
+        local = self._base.damped(time_s)
+        root = self._stand(local, time_s, step_s)
+        for side, hand in enumerate(self._hands):
+            if hand.idle:
+                continue
+            tip = self._tip(side) if hand.work == 0.0 else None
+            aim = Aim(self.traits, self.latency_s, 1.0, _PRESS_M)
+            hand.follow(time_s, step_s, tip, aim, self._rng)
+            if hand.work > 0.0:
+                missing = self._posture.arm(local, root, side, hand.tip_m, hand.fingers, hand.work)
+                if hand.goal is not None:
+                    self._placement.catch_up(missing, step_s)
+        if self._task >= 1.0:
+            return root, local
+        share = minimum_jerk(self._task)
+        free_root, free = self._roaming(time_s)
+        mixed = [q_blend(a, b, share) for a, b in zip(free, local, strict=True)]
+        blended = [a + share * (b - a) for a, b in zip(free_root, root, strict=True)]
+        return cast("Vector", tuple(blended)), mixed
+
+    def _stand(self, local: list[Quaternion], time_s: float, step_s: float) -> Vector:
+        """Place feet, hips and trunk; return the hips' place."""
+        posture, stance, placement = self._posture, self._stance, self._placement
+        aim = Aim(self.traits, self.latency_s, self.traits.foot_tempo, 0.0)
+        stance.follow(time_s, aim, self._rng)
+        # The hips are seen at once and the arm late, so they wait until the arm is seen to be out.
+        if self._plan and time_s >= self._plan[0].out_s + self.latency_s:
+            placement.go(self._plan[1])
+            self._plan = None
+        reaching = self._goal is not None and self._goal.kind is GoalKind.REACH
+        x, z = placement.follow(stance, step_s, reaching=reaching)
+        sway_x, sway_z = self._base.sway(time_s)
+        x, z = x + sway_x, z + sway_z
+        posture.lean(local, placement.lean(step_s))
+        ankles = tuple(stance.ankle(foot, posture.ankle_height_m) for foot in (0, 1))
+        left, right = ankles
+        highest = posture.highest_hips((x, z), local[0], (left, right))
+        root = (x, placement.height(highest, step_s), z)
+        posture.legs(local, root, (left, right))
+        return root
+
+    def _tip(self, side: int) -> Vector:
+        """Return where a hanging hand's finger tip was in the last frame."""
+        if self._pose is None:
+            root, local = self._roaming(self._time_s or 0.0)
+            self._pose = Pose(np.array(root), np.array(local))
+        world = forward_kinematics(self._skeleton, self._pose.root_position_m, self._pose.rotations)
+        hand = JOINT_INDEX[f"{SIDE_NAMES[side]}Hand"]
+        tip = world.positions_m[hand] + rotate(world.rotations[hand], self._skeleton.ends_m[hand])
+        return cast("Vector", tuple(tip.tolist()))

@@ -1,0 +1,76 @@
+"""Smooth paths through way-points.
+
+One movement from a to b in the time d follows the minimum-jerk profile (Flash and Hogan 1985,
+J. Neuroscience 5:1688-1703)
+
+    x(t) = a + (b - a) (10 s^3 - 15 s^4 + 6 s^5),   s = t / d.
+
+Several movements overlap a little and add up, which rounds the corners at the way-points
+(superposition of submovements: Flash and Henis 1991, J. Cognitive Neuroscience 3:220-230).
+"""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from math import sqrt
+
+from app.science.rotations.scalars import Vector, v_length, v_subtract
+
+_OVERLAP = 0.25
+
+
+def minimum_jerk(progress: float) -> float:
+    """Return the travelled share, 0 to 1, at a share of the time; held outside 0 to 1."""
+    if progress <= 0.0:
+        return 0.0
+    if progress >= 1.0:
+        return 1.0
+    return progress**3 * (10.0 + progress * (6.0 * progress - 15.0))
+
+
+@dataclass(frozen=True)
+class SmoothPath:
+    """A path in time: where it starts and the movements (start time, duration, displacement)."""
+
+    start_m: Vector
+    moves: tuple[tuple[float, float, Vector], ...]
+
+    @property
+    def end_s(self) -> float:
+        """When the last movement ends."""
+        return max(start + duration for start, duration, _ in self.moves)
+
+    def waiting_to_enter(self, leg: int, until_s: float) -> "SmoothPath":
+        """Return the path with everything from this leg on put off so that it begins then."""
+        delay_s = max(until_s - self.moves[leg][0], 0.0)
+        later = tuple((begins + delay_s, lasts, way) for begins, lasts, way in self.moves[leg:])
+        return SmoothPath(self.start_m, self.moves[:leg] + later)
+
+    def at(self, time_s: float) -> Vector:
+        """Return the point at a time; held before the start and after the end."""
+        x, y, z = self.start_m
+        for start, duration, (dx, dy, dz) in self.moves:
+            share = minimum_jerk((time_s - start) / duration)
+            x, y, z = x + share * dx, y + share * dy, z + share * dz
+        return (x, y, z)
+
+
+def path_length(points: list[Vector]) -> float:
+    """Return the length of straight lines through the points."""
+    return sum(v_length(v_subtract(b, a)) for a, b in pairwise(points))
+
+
+def path_through(points: list[Vector], start_s: float, duration_s: float) -> SmoothPath:
+    """Make a path through two or more points that takes `duration_s` in all.
+
+    A longer leg gets more time, by the square root of its length: legs of equal acceleration.
+    """
+    legs = [v_subtract(b, a) for a, b in pairwise(points)]
+    shares = [sqrt(v_length(leg)) + 1e-3 for leg in legs]
+    # Every leg but the last hands over before its end, so the legs together take less time.
+    stretch = duration_s / (sum(shares) - _OVERLAP * sum(shares[:-1]))
+    moves, begins = [], start_s
+    for leg, share in zip(legs, shares, strict=True):
+        lasts = share * stretch
+        moves.append((begins, lasts, leg))
+        begins += lasts * (1.0 - _OVERLAP)
+    return SmoothPath(points[0], tuple(moves))

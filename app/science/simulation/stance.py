@@ -1,0 +1,149 @@
+"""Two feet that stand or step, and the place of the body between them."""
+
+import numpy as np
+
+from app.science.rotations.scalars import Vector, v_length
+from app.science.simulation.aiming import Aim
+from app.science.simulation.goal import Goal, GoalKind
+from app.science.simulation.paths import SmoothPath, path_through
+from app.science.simulation.steps import (
+    LEFT,
+    RIGHT,
+    Feet,
+    Step,
+    distance_on_floor,
+    plan_to_stand,
+    plan_to_step_on,
+)
+from app.science.skeleton import Skeleton
+
+_LEAST_LIFT_M = 0.06
+_STEP_S, _STEP_S_PER_M = 0.35, 0.45
+_STILL: Vector = (0.0, 0.0, 0.0)
+
+
+class Stance:
+    """The feet by the middle of their soles, their steps, and the ankles' middle on the floor."""
+
+    def __init__(self, skeleton: Skeleton, centre_m: tuple[float, float]) -> None:
+        stature = skeleton.stature_m
+        self._half_width_m = 0.055 * stature
+        # The ankle is a quarter of the foot (.152 H) before the heel, so the middle is ahead of it.
+        self._sole_ahead_m = 0.038 * stature
+        self._stride_m = 0.72 * skeleton.leg_length_m
+        self.goal: Goal | None = None
+        self.aimed_m: Vector | None = None
+        # Places once stepped into are known to be free of edges: the other foot may use them too.
+        self._boxes: dict[Vector, Vector] = {}
+        self.place_at(centre_m)
+
+    def place_at(self, centre_m: tuple[float, float]) -> None:
+        """Put both feet on the floor under a body at (x, z), at once."""
+        left, right = self._places((centre_m[0], 0.0, centre_m[1]))
+        self.soles: list[Vector] = [left, right]
+        self._edges: list[Vector] = [_STILL, _STILL]
+        self._swing: tuple[int, SmoothPath] | None = None
+        self._queue: list[Step] = []
+        self._wanted: Goal | None = None
+        self._react_s = 0.0
+        self._since_s = 0.0
+
+    @property
+    def busy(self) -> bool:
+        """Whether a foot is in the air or will be without further asking."""
+        return self._swing is not None or bool(self._queue) or self._wanted is not None
+
+    @property
+    def bearing_foot(self) -> int | None:
+        """The foot with the weight: the one that stands, or has just stepped; None for both."""
+        if self._swing is not None:
+            return 1 - self._swing[0]
+        if self.goal is None or self.goal.kind is not GoalKind.STEP:
+            return None
+        return _foot_of(self.goal)
+
+    @property
+    def centre_m(self) -> tuple[float, float]:
+        """The middle between the ankles, (x, z)."""
+        left, right = self.soles
+        return (left[0] + right[0]) / 2.0, (left[2] + right[2]) / 2.0 + self._sole_ahead_m
+
+    def ankle(self, foot: int, ankle_height_m: float) -> Vector:
+        """Return the ankle of a flat foot."""
+        x, y, z = self.soles[foot]
+        return (x, y + ankle_height_m, z + self._sole_ahead_m)
+
+    def ask(self, goal: Goal | None, time_s: float, reaction_s: float) -> None:
+        """Take a new goal to step or walk, or None to stay; it is acted on after reacting."""
+        self._wanted, self._react_s = goal, time_s + reaction_s
+        self._queue.clear()
+        if goal is None:
+            self.goal = None
+
+    def side_step(self, centre_m: tuple[float, float]) -> None:
+        """Step so that the body stands at (x, z); ignored while steps are under way."""
+        if not self.busy:
+            places = self._places((centre_m[0], 0.0, centre_m[1]))
+            self._queue = plan_to_stand(self._feet(), places, self._stride_m)
+
+    def follow(self, time_s: float, aim: Aim, rng: np.random.Generator) -> None:
+        """Go on by one frame."""
+        if self._swing is not None:
+            foot, path = self._swing
+            self.soles[foot] = path.at(time_s)
+            if time_s < path.end_s:
+                return
+            self._swing, self._since_s = None, time_s
+        if self._wanted is not None and time_s >= self._react_s:
+            self.goal, self._wanted = self._wanted, None
+            self._plan(self.goal)
+        elif self._wants_again(time_s, aim) and self.goal is not None:
+            self._plan(self.goal)
+        if self._queue:
+            self._lift_off(time_s, aim, rng)
+
+    def _feet(self) -> Feet:
+        return (self.soles[LEFT], self.soles[RIGHT])
+
+    def _places(self, centre: Vector) -> Feet:
+        x, y, z = centre
+        ahead = z - self._sole_ahead_m
+        return (x - self._half_width_m, y, ahead), (x + self._half_width_m, y, ahead)
+
+    def _plan(self, goal: Goal) -> None:
+        target = goal.target_m or _STILL
+        if goal.kind is GoalKind.STEP:
+            foot, spots = _foot_of(goal), tuple(self._boxes)
+            self._queue = plan_to_step_on(self._feet(), foot, target, self._stride_m, spots)
+            if goal.approach_m[1] > _LEAST_LIFT_M:
+                self._boxes[target] = goal.approach_m
+        else:
+            self._queue = plan_to_stand(self._feet(), self._places(target), self._stride_m)
+
+    def _wants_again(self, time_s: float, aim: Aim) -> bool:
+        """Whether a step has stayed without effect for longer than the person's patience."""
+        if self.goal is None or self.goal.kind is not GoalKind.STEP or self.busy:
+            return False
+        return time_s > self._since_s + aim.traits.patience_s + aim.latency_s
+
+    def _lift_off(self, time_s: float, aim: Aim, rng: np.random.Generator) -> None:
+        foot, place = self._queue.pop(0)
+        here, goal = self.soles[foot], self.goal
+        edge = goal.approach_m[1] if goal is not None else 0.0
+        lift = max(_LEAST_LIFT_M, edge, self._edges[foot][1], self._edges[1 - foot][1])
+        up: Vector = (0.0, lift, 0.0)
+        if goal is not None and goal.kind is GoalKind.STEP and not self._queue:
+            approach = goal.approach_m if v_length(goal.approach_m) > _LEAST_LIFT_M else up
+            into = Goal(goal.kind, goal.effector, place, goal.near_m, approach)
+            path = aim.path(here, up, into, time_s, rng)
+            self.aimed_m, self._edges[foot] = path.at(path.end_s), approach
+        else:
+            over = [(x, y + lift, z) for x, y, z in (here, place)]
+            lasts_s = _STEP_S + _STEP_S_PER_M * distance_on_floor(here, place)
+            path = path_through([here, *over, place], time_s, aim.traits.tempo * lasts_s)
+            self._edges[foot] = self._boxes.get(place, _STILL)
+        self._swing = (foot, path)
+
+
+def _foot_of(goal: Goal) -> int:
+    return LEFT if goal.effector == "LeftFoot" else RIGHT

@@ -1,0 +1,134 @@
+"""How the simulated participant moves: smooth, reproducible, closed loop."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.adapters.bvh import read_bvh
+from app.science import rotations as rot
+from app.science.avatar import DelayBuffer
+from app.science.simulation import (
+    Goal,
+    GoalKind,
+    idle_movement,
+    relaxed_pose,
+)
+from app.science.skeleton import (
+    JOINT_INDEX,
+    Movement,
+    Pose,
+    forward_kinematics,
+    largest_step_rad,
+    loop,
+    resample,
+    retarget,
+)
+from tests.science.simulation.people import (
+    BOXES,
+    IMPATIENT,
+    RATE_HZ,
+    SKELETON,
+    follow,
+    person_of,
+    reach,
+    rng_of,
+    sole,
+    step,
+    tip,
+)
+
+
+def test_the_same_seed_gives_the_same_movement() -> None:
+    """Seed, times and goals decide everything; another seed gives another movement."""
+    goal = reach(BOXES[2])
+    first, again, other = (
+        np.stack([pose.rotations for pose in follow(person_of(seed, None), goal, 0.0, 2.0)])
+        for seed in (4, 4, 5)
+    )
+    assert first.tobytes() == again.tobytes()
+    assert float(np.max(rot.geodesic_angle(first, other))) > 0.05
+
+
+def test_movement_is_smooth_through_every_change_of_goal() -> None:
+    """From roaming to reaching, stepping, walking, resting and back no joint jumps."""
+    person = person_of(traits=None)
+    goals = [
+        None, reach(BOXES[0]), reach(BOXES[3]), reach(BOXES[1], "Left"), None,
+        step((0.2, 0.01, -0.5), "Right"), Goal(GoalKind.WALK_TO, None, (0.0, 0.0, 0.0)),
+        reach(BOXES[2]), Goal(GoalKind.REST), None,
+    ]  # fmt: skip
+    poses = [pose for i, goal in enumerate(goals) for pose in follow(person, goal, 2.0 * i, 2.0)]
+    q = np.stack([pose.rotations for pose in poses])
+    roots = np.stack([pose.root_position_m for pose in poses])
+    # 22 rad/s is a fast elbow; a jump of 15 degrees in one frame would be 24.
+    assert float(np.max(rot.geodesic_angle(q[1:], q[:-1]))) * RATE_HZ < 22.0
+    assert float(np.abs(np.diff(roots, axis=0)).max()) * RATE_HZ < 2.0
+    assert rot.is_unit(q, 1e-9).all()
+
+
+def test_without_a_goal_the_base_movement_is_played_whole() -> None:
+    """Free roam is the base movement itself, in place."""
+    base = idle_movement(SKELETON, rng_of(99))
+    poses = follow(person_of(base=base), None, 0.0, 1.0)
+    nearest = [float(np.min(np.max(rot.geodesic_angle(base.rotations, p.rotations), axis=1)))
+               for p in poses[::10]]  # fmt: skip
+    assert max(nearest) < 0.01
+
+
+def test_a_walking_capture_does_not_stride_at_the_boxes(shared_data: Path) -> None:
+    """While a hand task is done the feet of a walker stand, except for single side steps."""
+    path = shared_data / "motion" / "cmu_bvh" / "02_01.bvh"
+    clip = retarget(read_bvh(path, metres_per_unit=0.056444), SKELETON)
+    base = loop(resample(clip, RATE_HZ))
+    person = person_of(base=base)
+    follow(person, reach(BOXES[2]), 0.0, 2.0)
+    soles = np.array([sole(p, "Left") for p in follow(person, reach(BOXES[2]), 2.0, 2.0)])
+    assert float(np.ptp(soles, axis=0).max()) < 1e-3
+    walking = np.array([sole(p, "Left") for p in follow(person_of(base=base), None, 0.0, 2.0)])
+    assert float(np.ptp(walking[:, 2])) > 0.3
+
+
+@pytest.mark.parametrize("latency_s", [0.0, 0.35])
+def test_closed_loop_through_the_delayed_avatar_goes_on(latency_s: float) -> None:
+    """Goals that change when the delayed avatar arrives are all met, in order, within a minute."""
+    person, buffer = person_of(traits=None), DelayBuffer(latency_s)
+    person.set_latency(latency_s)
+    met, frame = 0, 0
+    while met < 8 and frame < 60 * RATE_HZ:
+        target = BOXES[met % 4]
+        pose = person.pose(frame / RATE_HZ, reach(target))
+        seen = Pose(pose.root_position_m, buffer.push(frame / RATE_HZ, pose.rotations))
+        offset = tip(seen, "Right") - target
+        met += bool(np.abs(offset[:2]).max() < 0.09 and offset[2] <= 0.0)
+        frame += 1
+    assert met == 8
+
+
+def test_a_touch_without_effect_is_made_again() -> None:
+    """When the goal stays, the hand leaves the panel after a while and comes back."""
+    poses = follow(person_of(traits=IMPATIENT), reach(BOXES[2]), 0.0, 6.0)
+    depth = np.array([tip(pose, "Right")[2] for pose in poses]) - BOXES[2][2]
+    begins = np.flatnonzero((depth[1:] <= 0.0) & (depth[:-1] > 0.0))
+    assert len(begins) >= 2
+    assert float(depth[begins[0] : begins[1]].max()) > 0.04
+
+
+def test_the_participant_reacts_before_moving() -> None:
+    """Nothing of the hand moves towards the goal for at least 0.12 s."""
+    person = person_of()
+    follow(person, reach(BOXES[1]), 0.0, 3.0)
+    tips = np.array([tip(p, "Right") for p in follow(person, reach(BOXES[2]), 3.0, 0.12)])
+    assert float(np.ptp(tips, axis=0).max()) < 0.002
+
+
+def test_idle_movement_repeats_without_a_seam() -> None:
+    """The idle loop's seam is a step like any other, and the person stands with hanging arms."""
+    idle = idle_movement(SKELETON, rng_of())
+    inside = largest_step_rad(Movement(idle.rate_hz, idle.root_positions_m, idle.rotations))
+    assert largest_step_rad(idle) <= 1.01 * inside
+    assert idle.duration_s == pytest.approx(30.0)
+    world = forward_kinematics(SKELETON, np.zeros(3), relaxed_pose())
+    hands = world.positions_m[[JOINT_INDEX["LeftHand"], JOINT_INDEX["RightHand"]]]
+    assert float(hands[:, 1].max()) < 0.0
+    assert hands[0, 0] < 0.0 < hands[1, 0]
