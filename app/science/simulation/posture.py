@@ -101,11 +101,7 @@ class Posture:
         Returns the way from where the wrist comes to its place: zero where it is reached.
         """
         sign, first = SIDE_SIGNS[side], JOINT_INDEX[f"{SIDE_NAMES[side]}UpperArm"]
-        place, turn = root_m, local[0]
-        for joint in (*_TRUNK, first - 1):
-            place = v_add(place, q_rotate(turn, self._offsets[joint]))
-            turn = q_multiply(turn, local[joint])
-        shoulder = v_add(place, q_rotate(turn, self._offsets[first]))
+        shoulder, turn = self._shoulder(local, root_m, first)
         wrist = v_subtract(tip_m, v_scale(fingers, self.hand_m))
         pole = (0.35 * sign, -1.0, 0.25)
         way = v_subtract(wrist, shoulder)
@@ -129,6 +125,16 @@ class Posture:
         for joint, rotation in enumerate(solved, first):
             local[joint] = rotation if work >= 1.0 else q_blend(local[joint], rotation, work)
         return v_scale(way, (away - softly) / away)
+
+    def _shoulder(
+        self, local: list[Quaternion], root_m: Vector, upper_arm: int
+    ) -> tuple[Vector, Quaternion]:
+        """Return the shoulder joint's place and world_from_collar_bone."""
+        place, turn = root_m, local[0]
+        for joint in (*_TRUNK, upper_arm - 1):
+            place = v_add(place, q_rotate(turn, self._offsets[joint]))
+            turn = q_multiply(turn, local[joint])
+        return v_add(place, q_rotate(turn, self._offsets[upper_arm])), turn
 
     def _soft_reach(self, away_m: float) -> float:
         """Return how far the arm stretches for a place this far away.
