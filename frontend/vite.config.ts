@@ -26,7 +26,7 @@ function servePagesLikeTheServer(): Plugin {
 export default defineConfig({
   root: source,
   cacheDir: resolve(import.meta.dirname, "node_modules/.vite"),
-  publicDir: resolve(import.meta.dirname, "public"),
+  publicDir: false,
   plugins: [react(), servePagesLikeTheServer()],
   resolve: {
     alias: { "@shared": resolve(source, "shared"), "@charts": resolve(source, "charts") },

@@ -14,8 +14,10 @@ import type { JSX } from "react";
 import { Link, Route, Router, Switch } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
 import { signOut } from "./account";
+import { SessionPage } from "./cockpit/SessionPage";
 import { useTexts } from "./i18n";
 import { StudiesPage } from "./pages/Studies";
+import { StudyPage } from "./pages/study/StudyPage";
 import classes from "./Shell.module.css";
 
 export function Shell({ account }: { readonly account: Account }): JSX.Element {
@@ -36,10 +38,20 @@ export function Shell({ account }: { readonly account: Account }): JSX.Element {
           <AccountMenu account={account} />
         </div>
       </header>
-      <main className={classes.main} id="main" tabIndex={-1}>
+      <main id="main" tabIndex={-1}>
         <Switch>
+          <Route path="/sessions/:id">{({ id }) => <SessionPage key={id} id={id} />}</Route>
+          <Route path="/studies/:key/:tab?">
+            {({ key, tab }) => (
+              <div className={classes.main}>
+                <StudyPage studyKey={key} tab={tab} />
+              </div>
+            )}
+          </Route>
           <Route>
-            <StudiesPage />
+            <div className={classes.main}>
+              <StudiesPage />
+            </div>
           </Route>
         </Switch>
       </main>

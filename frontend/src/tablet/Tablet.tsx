@@ -1,42 +1,67 @@
 /** The participant's tablet: unpaired it asks for a code, paired it shows the session's screen. */
+import { Center, Loader } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
 import { ApiError, isUnauthorised } from "@shared/api/errors";
-import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { useMutation } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef } from "react";
 import { codeFromAddress } from "./code";
+import { Failure } from "./errors";
 import { useTexts } from "./i18n";
+import { pairedBefore, rememberPaired } from "./paired";
+import { Screens } from "./Screens";
 import { Pairing } from "./screens/Pairing";
-
-const STATE = ["tablet", "state"] as const;
+import { useTabletState } from "./useTabletState";
 
 export function Tablet(): JSX.Element {
-  const queries = useQueryClient();
+  const state = useTabletState();
+  const pairing = usePairing(() => void state.query.refetch());
+  useCodeOfAddress(pairing.mutate);
+  const { data, error, isPending } = state.query;
+
+  if (isUnauthorised(error) || pairing.isPending || pairing.isError) {
+    return (
+      <Pairing
+        ended={pairedBefore()}
+        pending={pairing.isPending}
+        error={pairing.error}
+        onCode={pairing.mutate}
+      />
+    );
+  }
+  if (data !== undefined) {
+    return (
+      <Screens
+        state={data}
+        connected={state.connected}
+        refresh={() => void state.query.refetch()}
+      />
+    );
+  }
+  return (
+    <Center mih="100dvh" p="xl">
+      {isPending ? (
+        <Loader />
+      ) : (
+        <Failure error={error} onRetry={() => void state.query.refetch()} />
+      )}
+    </Center>
+  );
+}
+
+function usePairing(onPaired: () => void) {
   const { t } = useTexts();
-  const state = useQuery({ queryKey: STATE, queryFn: tablet.state });
-  const pairing = useMutation({
+  return useMutation({
     mutationFn: async (code: string) => {
       const paired = await tablet.pair(code);
-      if (paired.device !== "tablet") {
-        throw new ApiError(409, {
-          code: "wrong_device",
-          message: t("pair.headset"),
-          remedy: t("pair.headsetRemedy"),
-        });
-      }
+      if (paired.device === "tablet") return rememberPaired();
+      throw new ApiError(409, {
+        code: "wrong_device",
+        message: t("pair.headset"),
+        remedy: t("pair.headsetRemedy"),
+      });
     },
-    onSuccess: () => queries.invalidateQueries({ queryKey: STATE }),
+    onSuccess: onPaired,
   });
-  useCodeOfAddress(pairing.mutate);
-
-  if (state.data !== undefined && !state.isError) return <main>{state.data.screen}</main>;
-  return (
-    <Pairing
-      ended={isUnauthorised(state.error) && state.data !== undefined}
-      pending={pairing.isPending}
-      error={pairing.error}
-      onCode={pairing.mutate}
-    />
-  );
 }
 
 /** A QR link carries the code once: use it, and take it out of the address and the history. */

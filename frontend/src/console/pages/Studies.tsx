@@ -1,8 +1,92 @@
-import { Title } from "@mantine/core";
-import type { JSX } from "react";
+import { Button, Code, Text, Title } from "@mantine/core";
+import type { StudySummary } from "@shared/api/types";
+import { dateTime } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Link } from "wouter";
 import { useTexts } from "../i18n";
+import { studiesQuery } from "../queries";
+import { EmptyState } from "../ui/EmptyState";
+import { KINDS } from "../ui/KindFilter";
+import { Loaded } from "../ui/Loaded";
+import { useTitle } from "../ui/useTitle";
+import { ImportDialog } from "./ImportDialog";
+import classes from "./Studies.module.css";
 
 export function StudiesPage(): JSX.Element {
   const { t } = useTexts();
-  return <Title order={1}>{t("app.studies")}</Title>;
+  const [importing, setImporting] = useState(false);
+  useTitle(t("app.studies"));
+  const add = (
+    <Button leftSection={<Icon name="add" size={18} />} onClick={() => setImporting(true)}>
+      {t("studies.add")}
+    </Button>
+  );
+  return (
+    <>
+      <div className={classes.head}>
+        <div>
+          <Title order={1}>{t("app.studies")}</Title>
+          <Text c="dimmed">{t("studies.lead")}</Text>
+        </div>
+        {add}
+      </div>
+      <Loaded query={useQuery(studiesQuery)}>
+        {(studies) => (studies.length === 0 ? <NoStudies /> : <Cards studies={studies} />)}
+      </Loaded>
+      <ImportDialog opened={importing} studyKey={null} onClose={() => setImporting(false)} />
+    </>
+  );
+}
+
+function NoStudies(): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <EmptyState icon="document" title={t("studies.empty.title")}>
+      <p>{t("studies.empty.body")}</p>
+      <p>
+        {t("studies.empty.file")} <Code>study_configs/reembodiment-latency.yaml</Code>
+      </p>
+    </EmptyState>
+  );
+}
+
+function Cards({ studies }: { readonly studies: readonly StudySummary[] }): JSX.Element {
+  return (
+    <ul className={classes.cards}>
+      {studies.map((study) => (
+        <li key={study.key}>
+          <Card study={study} />
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function Card({ study }: { readonly study: StudySummary }): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <Link href={`/studies/${study.key}`} className={classes.card ?? ""}>
+      <div>
+        <div className={classes.title}>{study.title}</div>
+        <div className={classes.version}>
+          <span>{t("study.version", { version: study.version })}</span>
+          <span>
+            <Icon name={study.frozen ? "lock" : "document"} size={15} />
+            {t(study.frozen ? "study.frozen" : "study.open")}
+          </span>
+          <span>{dateTime(study.created_at, language)}</span>
+        </div>
+      </div>
+      <dl className={`${classes.counts} numbers`}>
+        {KINDS.map((kind) => (
+          <div key={kind}>
+            <dt>{t(`kind.${kind}`)}</dt>
+            <dd>{study.session_counts[kind] ?? 0}</dd>
+          </div>
+        ))}
+      </dl>
+    </Link>
+  );
 }

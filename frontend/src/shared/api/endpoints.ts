@@ -1,6 +1,6 @@
 /** Every request the pages make, by what it is for. */
 import { uuid } from "../uuid";
-import { request } from "./request";
+import { answer, plain, server } from "./request";
 import type {
   Account,
   Administration,
@@ -21,75 +21,91 @@ import type {
   TabletState,
 } from "./types";
 
-const study = (key: string): string => `/api/studies/${encodeURIComponent(key)}`;
-const session = (id: string): string => `/api/sessions/${encodeURIComponent(id)}`;
+const study = (key: string) => ({ params: { path: { key } } });
+const session = (id: string) => ({ params: { path: { session_id: id } } });
 
 export const accounts = {
   login: (username: string, password: string) =>
-    request<{ account: Account }>("POST", "/api/login", { username, password }),
-  logout: () => request<void>("POST", "/api/logout"),
-  me: () => request<{ account: Account }>("GET", "/api/me"),
+    answer<{ account: Account }>(server.POST("/api/login", { body: { username, password } })),
+  logout: () => answer<void>(server.POST("/api/logout")),
+  me: () => answer<{ account: Account }>(server.GET("/api/me")),
 };
 
 export const studies = {
-  list: () => request<readonly StudySummary[]>("GET", "/api/studies"),
-  check: (yaml: string) => request<CheckResult>("POST", "/api/studies/check", { yaml }),
-  add: (yaml: string) => request<StudyDetail>("POST", "/api/studies", { yaml }),
+  list: () => answer<readonly StudySummary[]>(server.GET("/api/studies")),
+  check: (yaml: string) =>
+    answer<CheckResult>(server.POST("/api/studies/check", { body: { yaml } })),
+  add: (yaml: string) => answer<StudyDetail>(server.POST("/api/studies", { body: { yaml } })),
   addVersion: (key: string, yaml: string) =>
-    request<StudyDetail>("POST", `${study(key)}/versions`, { yaml }),
-  get: (key: string) => request<StudyDetail>("GET", study(key)),
-  ledger: (key: string, kind: Kind) => request<Ledger>("GET", `${study(key)}/ledger?kind=${kind}`),
-  sessions: (key: string, kind?: Kind) =>
-    request<readonly SessionSummary[]>(
-      "GET",
-      `${study(key)}/sessions${kind === undefined ? "" : `?kind=${kind}`}`,
+    answer<StudyDetail>(
+      server.POST("/api/studies/{key}/versions", { ...study(key), body: { yaml } }),
     ),
-  join: (
-    key: string,
-    wish: { participant_code: string | null; kind: Kind; language: string; time_scale?: number },
-  ) => request<SessionView>("POST", `${study(key)}/sessions`, wish),
+  get: (key: string) => answer<StudyDetail>(server.GET("/api/studies/{key}", study(key))),
+  ledger: (key: string, kind: Kind) =>
+    answer<Ledger>(
+      server.GET("/api/studies/{key}/ledger", { params: { path: { key }, query: { kind } } }),
+    ),
+  sessions: (key: string) =>
+    answer<readonly SessionSummary[]>(server.GET("/api/studies/{key}/sessions", study(key))),
+  join: (key: string, wish: { participant_code: string | null; kind: Kind; language: string }) =>
+    answer<SessionView>(
+      server.POST("/api/studies/{key}/sessions", {
+        ...study(key),
+        body: { time_scale: 1, ...wish },
+      }),
+    ),
   dashboard: (key: string, kind: Kind) =>
-    request<Dashboard>("GET", `${study(key)}/dashboard?kind=${kind}`),
-  exportUrl: (key: string, kind: Kind) => `${study(key)}/export?kind=${kind}`,
-  codebookUrl: (key: string) => `${study(key)}/codebook`,
+    answer<Dashboard>(plain(`/api/studies/${encodeURIComponent(key)}/dashboard?kind=${kind}`)),
+  exportUrl: (key: string, kind: Kind) =>
+    `/api/studies/${encodeURIComponent(key)}/export?kind=${kind}`,
+  codebookUrl: (key: string) => `/api/studies/${encodeURIComponent(key)}/codebook`,
 };
 
 export const sessions = {
-  get: (id: string) => request<SessionView>("GET", session(id)),
+  get: (id: string) => answer<SessionView>(server.GET("/api/sessions/{session_id}", session(id))),
   command: (id: string, expectedVersion: number, command: Command) =>
-    request<SessionView>("POST", `${session(id)}/commands`, {
-      command_id: uuid(),
-      expected_version: expectedVersion,
-      ...command,
-    }),
-  events: (id: string) => request<readonly SessionEvent[]>("GET", `${session(id)}/events`),
+    answer<SessionView>(
+      server.POST("/api/sessions/{session_id}/commands", {
+        ...session(id),
+        body: { command_id: uuid(), expected_version: expectedVersion, ...command },
+      }),
+    ),
+  events: (id: string) =>
+    answer<readonly SessionEvent[]>(server.GET("/api/sessions/{session_id}/events", session(id))),
   pair: (id: string, device: Device) =>
-    request<Pairing>("POST", `${session(id)}/pairings`, { device }),
+    answer<Pairing>(
+      server.POST("/api/sessions/{session_id}/pairings", { ...session(id), body: { device } }),
+    ),
   revoke: (id: string, deviceId: string) =>
-    request<void>("DELETE", `${session(id)}/devices/${encodeURIComponent(deviceId)}`),
+    answer<void>(
+      server.DELETE("/api/sessions/{session_id}/devices/{device_id}", {
+        params: { path: { session_id: id, device_id: deviceId } },
+      }),
+    ),
   administration: (id: string) =>
-    request<(Administration & { languages: readonly string[] }) | null>(
-      "GET",
-      `${session(id)}/administration`,
+    answer<Administration | null>(
+      server.GET("/api/sessions/{session_id}/administration", session(id)),
     ),
   submit: (id: string, submission: Submission) =>
-    request<Receipt>("POST", `${session(id)}/submissions`, submission),
-  liveUrl: (id: string) => `${session(id)}/live`,
+    answer<Receipt>(
+      server.POST("/api/sessions/{session_id}/submissions", { ...session(id), body: submission }),
+    ),
+  liveUrl: (id: string) => `/api/sessions/${encodeURIComponent(id)}/live`,
 };
 
 export const tablet = {
   pair: (code: string) =>
-    request<{ device: Device; session_id: string; token: string | null }>(
-      "POST",
-      "/api/devices/pair",
-      { code },
+    answer<{ device: Device; session_id: string }>(
+      server.POST("/api/devices/pair", { body: { code, name: "" } }),
     ),
-  state: () => request<TabletState>("GET", "/api/tablet/state"),
+  state: () => answer<TabletState>(server.GET("/api/tablet/state")),
   setLanguage: (language: string) =>
-    request<TabletState>("PUT", "/api/tablet/language", { language }),
+    answer<TabletState>(server.PUT("/api/tablet/language", { body: { language } })),
   submit: (submission: Submission) =>
-    request<Receipt>("POST", "/api/tablet/submissions", submission),
+    answer<Receipt>(server.POST("/api/tablet/submissions", { body: submission })),
   acknowledge: (stepIndex: number) =>
-    request<TabletState>("POST", "/api/tablet/acknowledge", { step_index: stepIndex }),
+    answer<TabletState>(
+      server.POST("/api/tablet/acknowledge", { body: { step_index: stepIndex } }),
+    ),
   liveUrl: "/api/tablet/live",
 };

@@ -1,30 +1,32 @@
-/** One request to the server: JSON in, JSON out, every failure one of `errors.ts`. */
+/** One way to the server: typed by its own description, every failure one of `errors.ts`. */
+import createClient from "openapi-fetch";
 import { errorFromBody, Unreachable } from "./errors";
+import type { paths } from "./schema";
 
-type Method = "GET" | "POST" | "PUT" | "DELETE";
+export const server = createClient<paths>({ credentials: "same-origin" });
 
-export async function request<Answer>(
-  method: Method,
-  path: string,
-  body?: unknown,
-): Promise<Answer> {
-  const response = await reach(method, path, body);
-  if (response.status === 204) return undefined as Answer;
-  const answer: unknown = await response.json().catch(() => null);
-  if (!response.ok) throw errorFromBody(response.status, answer);
-  return answer as Answer;
+interface Outcome {
+  readonly data?: unknown;
+  readonly error?: unknown;
+  readonly response: Response;
 }
 
-/** The response whatever its status; throws `Unreachable` when there is none. */
-export async function reach(method: Method, path: string, body?: unknown): Promise<Response> {
-  const init: RequestInit = { method, credentials: "same-origin" };
-  if (body !== undefined) {
-    init.headers = { "content-type": "application/json" };
-    init.body = JSON.stringify(body);
-  }
-  try {
-    return await fetch(path, init);
-  } catch (cause) {
+/**
+ * The body of an answer. `Body` may tell the described type more exactly, as `types.ts` does.
+ *
+ * Throws ApiError when the server refuses and Unreachable when there is no answer at all.
+ */
+export async function answer<Body>(call: Promise<Outcome>): Promise<Body> {
+  const { data, error, response } = await call.catch((cause: unknown) => {
     throw new Unreachable("The server cannot be reached.", { cause });
-  }
+  });
+  if (!response.ok) throw errorFromBody(response.status, error);
+  return data as Body;
+}
+
+/** A read whose answer the description leaves open. */
+export async function plain(path: string): Promise<Outcome> {
+  const response = await fetch(path, { credentials: "same-origin" });
+  const body: unknown = await response.json().catch(() => null);
+  return response.ok ? { data: body, response } : { error: body, response };
 }

@@ -1,41 +1,48 @@
-/** The values that travel between server and pages; every number carries its unit in its name. */
+/**
+ * The values that travel between server and pages; every number carries its unit in its name.
+ *
+ * Shapes come from the server's own description (`schema.d.ts`, made by `npm run api`). Where that
+ * says no more than "a string" or "an object", the words and shapes of the protocol are added here.
+ */
 import type { Text } from "../text";
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
+/** A type with some of its fields told more exactly. */
+type With<Type, Exact> = Readonly<Omit<Type, keyof Exact> & Exact>;
 
 export type Kind = "people" | "simulated" | "test";
 export type Device = "tablet" | "headset";
 export type Limb = "hand" | "foot";
+export type SessionStatus = "planned" | "active" | "completed" | "aborted" | "withdrawn";
+export type StepKind =
+  | "consent"
+  | "form"
+  | "instructions"
+  | "height"
+  | "materialise"
+  | "free_roam"
+  | "task"
+  | "questionnaire"
+  | "debrief";
+export type StepStatus = "pending" | "current" | "done" | "skipped";
+export type CurrentStatus = "ready" | "preparing" | "running" | "paused" | "walk_back" | "freezing";
+export type CommandType = Schemas["CommandRequest"]["type"];
 
-export interface Account {
-  readonly id: string;
-  readonly username: string;
-  readonly role: string;
-}
+export type Account = Schemas["AccountView"];
+export type StudySummary = Schemas["StudySummary"];
+export type StudyVersion = Schemas["VersionView"];
+export type StudyDetail = With<Schemas["StudyView"], { protocol: StudyProtocol }>;
+export type CheckResult = With<Schemas["CheckResult"], { problems: readonly ConfigProblem[] }>;
 
-export interface StudySummary {
-  readonly key: string;
-  readonly title: string | Text;
-  readonly version: number;
-  readonly content_hash: string;
-  readonly frozen: boolean;
-  readonly session_counts: Readonly<Record<Kind, number>>;
-  readonly created_at: string;
-}
-
-export interface StudyVersion {
-  readonly version: number;
-  readonly content_hash: string;
-  readonly frozen: boolean;
-  readonly created_at: string;
-}
-
-export interface StudyDetail {
-  readonly key: string;
-  readonly title: string | Text;
-  readonly description: string | Text;
-  readonly languages: readonly string[];
-  readonly versions: readonly StudyVersion[];
-  readonly protocol: StudyProtocol;
-  readonly yaml: string;
+export interface ConfigProblem {
+  readonly path: string;
+  readonly line: number;
+  readonly column: number;
+  readonly message: string;
+  readonly value?: unknown;
+  readonly valid?: unknown;
+  readonly remedy?: string | null;
 }
 
 export interface Condition {
@@ -46,10 +53,11 @@ export interface Condition {
 
 export interface SetupStep {
   readonly step: string;
-  readonly text?: string;
+  readonly text?: string | null;
   readonly instrument?: string;
   readonly duration_s?: number;
   readonly latency_ms?: number;
+  readonly title?: Text | null;
 }
 
 export interface TaskPhase {
@@ -61,6 +69,8 @@ export interface TaskPhase {
 }
 
 export interface StudyProtocol {
+  readonly title: Text;
+  readonly description: Text;
   readonly conditions: readonly Condition[];
   readonly orders: {
     readonly design: string;
@@ -77,188 +87,41 @@ export interface StudyProtocol {
   readonly blinding: { readonly operator: boolean };
 }
 
-export interface CheckResult {
-  readonly ok: boolean;
-  readonly problems: readonly ConfigProblem[];
-}
+export type Attempt = Schemas["AttemptView"];
+export type SlotState = "free" | "open" | "completed";
+export type Slot = With<
+  Schemas["SlotRow"],
+  { state: SlotState; attempts: readonly Attempt[]; sequence: readonly number[] | null }
+>;
+export type Ledger = With<Schemas["LedgerView"], { kind: Kind; slots: readonly Slot[] }>;
 
-export interface ConfigProblem {
-  readonly path: string;
-  readonly line: number;
-  readonly column: number;
-  readonly message: string;
-  readonly value?: unknown;
-  readonly valid?: unknown;
-  readonly remedy?: string | null;
-}
-
-export interface Attempt {
-  readonly session_id: string;
-  readonly participant_code: string;
-  readonly outcome: string | null;
-  readonly opened_at: string;
-  readonly closed_at: string | null;
-  readonly reason: string | null;
-}
-
-export interface Slot {
-  readonly index: number;
-  readonly block: number;
-  readonly replicate: number;
-  readonly sequence: readonly number[];
-  readonly state: "free" | "open" | "completed";
-  readonly attempts: readonly Attempt[];
-}
-
-export interface Ledger {
+interface SessionWords {
   readonly kind: Kind;
-  readonly seed: number;
-  readonly when_full: string;
-  readonly sequences: readonly {
-    readonly sequence: readonly number[];
-    readonly completed: number;
-    readonly open: number;
-    readonly total: number;
-  }[];
-  readonly slots: readonly Slot[];
-}
-
-export type SessionStatus = "planned" | "active" | "completed" | "aborted" | "withdrawn";
-
-export interface SessionSummary {
-  readonly id: string;
-  readonly participant_code: string;
-  readonly kind: Kind;
-  readonly simulated: boolean;
   readonly status: SessionStatus;
-  readonly sequence: readonly number[] | null;
-  readonly study_version: number;
-  readonly created_at: string;
-  readonly started_at: string | null;
-  readonly ended_at: string | null;
 }
+export type SessionSummary = With<Schemas["SessionSummary"], SessionWords>;
+export type Step = With<
+  Schemas["StepView"],
+  { kind: StepKind; limb: Limb | null; status: StepStatus }
+>;
+export type Current = With<Schemas["CurrentView"], { status: CurrentStatus }>;
+export type PairedDevice = With<Schemas["DeviceView"], { kind: Device }>;
+export type PhaseSummary = With<Schemas["PhaseView"], { limb: Limb | null }>;
+export type Note = Schemas["NoteView"];
+export type AdministrationScores = Schemas["StoredScores"];
+export type StoredAnswers = Schemas["StoredAnswers"];
+export type SessionEvent = Schemas["EventView"];
 
-export type StepKind =
-  | "consent"
-  | "form"
-  | "instructions"
-  | "height"
-  | "materialise"
-  | "free_roam"
-  | "task"
-  | "questionnaire"
-  | "debrief";
-
-export type StepStatus = "pending" | "current" | "done" | "skipped";
-
-export interface Step {
-  readonly index: number;
-  readonly key: string;
-  readonly kind: StepKind;
-  readonly title: string;
-  readonly block: number | null;
-  readonly latency_ms: number | null;
-  readonly limb: Limb | null;
-  readonly duration_s: number | null;
-  readonly preparation_s: number | null;
-  readonly freeze_s: number | null;
-  readonly instrument: string | null;
-  readonly status: StepStatus;
-  readonly attempt: number;
-  readonly reason: string | null;
-}
-
-export type CurrentStatus = "ready" | "preparing" | "running" | "paused" | "walk_back" | "freezing";
-
-export interface Current {
-  readonly index: number;
-  readonly status: CurrentStatus;
-  readonly active_s: number;
-  readonly duration_s: number | null;
-  readonly pause_reason: string | null;
-}
-
-export interface PairedDevice {
-  readonly id: string;
-  readonly kind: Device;
-  readonly name: string | null;
-  readonly paired_at: string;
-  readonly connected: boolean;
-  readonly last_seen_at: string | null;
-}
-
-export interface PhaseSummary {
-  readonly phase_id: string;
-  readonly step_index: number;
-  readonly attempt: number;
-  readonly limb: Limb | null;
-  readonly latency_ms: number | null;
-  readonly status: string;
-  readonly active_s: number;
-  readonly completions: number;
-  readonly side_contacts: number;
-  readonly side_contact_s: number;
-  readonly started_at: string | null;
-  readonly ended_at: string | null;
-}
-
-export interface Note {
-  readonly id: string;
-  readonly text: string;
-  readonly at: string;
-  readonly by: string;
-}
-
-export interface AdministrationScores {
-  readonly administration: string;
-  readonly step_index: number;
-  readonly instrument: string;
-  readonly scores: Readonly<Record<string, number | null>>;
-}
-
-export type CommandType =
-  | "start"
-  | "complete_step"
-  | "begin_phase"
-  | "materialise"
-  | "pause"
-  | "resume"
-  | "redo"
-  | "skip"
-  | "abort"
-  | "withdraw"
-  | "note";
-
-export interface SessionView {
-  readonly id: string;
-  readonly study_key: string;
-  readonly study_title: string;
-  readonly study_version: number;
-  readonly participant_code: string;
-  readonly kind: Kind;
-  readonly simulated: boolean;
-  readonly avatar: string;
-  readonly language: string;
-  readonly version: number;
-  readonly status: SessionStatus;
-  readonly time_scale: number;
-  readonly created_at: string;
-  readonly started_at: string | null;
-  readonly ended_at: string | null;
-  readonly sequence: readonly number[] | null;
-  readonly slot: {
-    readonly index: number;
-    readonly block: number;
-    readonly replicate: number;
-  } | null;
-  readonly steps: readonly Step[];
-  readonly current: Current | null;
-  readonly allowed: readonly CommandType[];
-  readonly devices: readonly PairedDevice[];
-  readonly phases: readonly PhaseSummary[];
-  readonly notes: readonly Note[];
-  readonly scores: readonly AdministrationScores[];
-}
+export type SessionView = With<
+  Schemas["SessionView"],
+  SessionWords & {
+    readonly steps: readonly Step[];
+    readonly current: Current | null;
+    readonly allowed: readonly CommandType[];
+    readonly devices: readonly PairedDevice[];
+    readonly phases: readonly PhaseSummary[];
+  }
+>;
 
 export interface Command {
   readonly type: CommandType;
@@ -267,30 +130,17 @@ export interface Command {
   readonly height_m?: { readonly stated: number; readonly matched: number };
 }
 
+/** What the headset reports several times a second; not part of the OpenAPI description. */
 export interface Telemetry {
-  readonly phase_id: string | null;
+  readonly phase_id: number;
   readonly active_s: number;
   readonly fps: number | null;
-  readonly target?: unknown;
   readonly completions?: number;
   readonly side_contacts?: number;
-  readonly joint_error_deg?: Readonly<Record<string, number>>;
+  readonly joint_error_deg?: Readonly<Record<string, number | null>>;
 }
 
-export interface Pairing {
-  readonly code: string;
-  readonly url: string;
-  readonly qr_svg: string;
-  readonly expires_at: string;
-}
-
-export interface SessionEvent {
-  readonly seq: number;
-  readonly type: string;
-  readonly at: string;
-  readonly by: string | null;
-  readonly data: Readonly<Record<string, unknown>>;
-}
+export type Pairing = With<Schemas["PairingView"], { device: Device }>;
 
 export type ItemType = "likert" | "integer" | "number" | "text" | "boolean" | "choice";
 
@@ -301,69 +151,40 @@ export interface Item {
   readonly required?: boolean;
   readonly minimum?: number | null;
   readonly maximum?: number | null;
+  readonly max_length?: number | null;
   readonly unit?: string | null;
-  readonly choices?: readonly Choice[] | null;
+  readonly choices?: readonly Choice[];
 }
 
 export interface Choice {
-  readonly value: string | number;
-  readonly text: Text;
+  readonly key: string;
+  readonly label: Text;
+}
+
+export interface Scale {
+  readonly minimum: number;
+  readonly maximum: number;
+  /** One label for each step, or two for both ends, or none. */
+  readonly labels: readonly Text[];
 }
 
 export interface Instrument {
   readonly key: string;
-  readonly version: string | number;
+  readonly version: number;
   readonly title: Text;
   readonly stem?: Text | null;
   readonly instructions?: Text | null;
   readonly languages: readonly string[];
   readonly items: readonly Item[];
-  readonly scale?: {
-    readonly minimum: number;
-    readonly maximum: number;
-    readonly labels: readonly Text[];
-  } | null;
-  readonly last?: readonly string[];
+  readonly scale?: Scale | null;
 }
 
-export interface Administration {
-  readonly key: string;
-  readonly step_index: number;
-  readonly instrument: Instrument;
-  readonly item_order: readonly string[];
-  readonly seed: number;
-}
-
-export interface TabletState {
-  readonly session_id: string;
-  readonly language: string;
-  readonly languages: readonly string[];
-  readonly screen: "waiting" | "consent" | "instructions" | "form" | "finished";
-  readonly title: string | null;
-  readonly text: string | null;
-  readonly next: string | null;
-  readonly step_index?: number | null;
-  readonly administration: Administration | null;
-}
+export type Administration = With<Schemas["Administration"], { instrument: Instrument }>;
+export type TabletState = With<Schemas["TabletState"], { administration: Administration | null }>;
 
 export type Answer = string | number | boolean | null;
-
-export interface Submission {
-  readonly idempotency_key: string;
-  readonly administration: string;
-  readonly answers: Readonly<Record<string, Answer>>;
-  readonly shown_order: readonly string[];
-  readonly seed: number;
-  readonly language: string;
-  readonly started_at_utc: string;
-  readonly timings?: Readonly<Record<string, number>>;
-}
-
-export interface Receipt {
-  readonly receipt_id: string;
-  readonly stored_at: string;
-  readonly duplicate: boolean;
-}
+export type Submission = Schemas["SubmissionRequest"];
+export type Receipt = Schemas["Receipt"];
 
 export interface Dashboard {
   readonly kind: Kind;

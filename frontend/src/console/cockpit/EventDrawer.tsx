@@ -1,0 +1,72 @@
+/** The session's own record, event by event, as the server appended it. */
+import { Drawer } from "@mantine/core";
+import type { SessionEvent, SessionView } from "@shared/api/types";
+import { timeOfDay } from "@shared/format";
+import { useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { useTexts } from "../i18n";
+import { eventsQuery } from "../queries";
+import { Loaded } from "../ui/Loaded";
+import classes from "./Panels.module.css";
+
+interface EventDrawerProps {
+  readonly session: SessionView;
+  readonly opened: boolean;
+  readonly onClose: () => void;
+}
+
+export function EventDrawer({ session, opened, onClose }: EventDrawerProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Drawer
+      opened={opened}
+      onClose={onClose}
+      position="right"
+      size="lg"
+      title={t("log.title")}
+      closeButtonProps={{ "aria-label": t("action.close") }}
+    >
+      {opened && <Events session={session} />}
+    </Drawer>
+  );
+}
+
+function Events({ session }: { readonly session: SessionView }): JSX.Element {
+  const query = useQuery(eventsQuery(session.id, session.version));
+  return <Loaded query={query}>{(events) => <EventTable events={events} />}</Loaded>;
+}
+
+function EventTable({ events }: { readonly events: readonly SessionEvent[] }): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <table className={`${classes.table} numbers`}>
+      <thead>
+        <tr>
+          <th scope="col">{t("log.number")}</th>
+          <th scope="col">{t("log.time")}</th>
+          <th scope="col">{t("log.event")}</th>
+          <th scope="col">{t("log.by")}</th>
+        </tr>
+      </thead>
+      <tbody>
+        {[...events].reverse().map((event) => (
+          <tr key={event.seq}>
+            <td>{event.seq}</td>
+            <td>{timeOfDay(event.at, language)}</td>
+            <td>
+              {event.type.replaceAll("_", " ")}
+              <div className={classes.nothing}>{detailsOf(event)}</div>
+            </td>
+            <td>{event.by ?? "–"}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+const detailsOf = (event: SessionEvent): string =>
+  Object.entries(event.data)
+    .filter(([, value]) => value !== null && typeof value !== "object")
+    .map(([name, value]) => `${name.replaceAll("_", " ")}: ${String(value)}`)
+    .join(" · ");

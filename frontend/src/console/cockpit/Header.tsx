@@ -1,0 +1,86 @@
+/** Who, which study, which order, and whether this page is up to date. */
+import { ActionIcon, Button, Tooltip } from "@mantine/core";
+import type { FeedState } from "@shared/api/live";
+import type { SessionView } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { type JSX, useEffect, useState } from "react";
+import { Link } from "wouter";
+import { useTexts } from "../i18n";
+import { KindBadge } from "../ui/KindBadge";
+import { Order } from "../ui/Order";
+import { StatusBadge } from "../ui/StatusBadge";
+import classes from "./Cockpit.module.css";
+
+interface HeaderProps {
+  readonly session: SessionView;
+  readonly feed: FeedState;
+  readonly onLog: () => void;
+  readonly onHelp: () => void;
+}
+
+export function Header({ session, feed, onLog, onHelp }: HeaderProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.head}>
+      <div>
+        <h1 className={classes.participant}>{session.participant_code}</h1>
+        <div className={classes.study}>
+          <Link href={`/studies/${session.study_key}/sessions`}>{session.study_title}</Link>
+          {" · "}
+          {t("study.version", { version: session.study_version })}
+          {session.slot !== null && ` · ${t("head.slot", { number: session.slot.index + 1 })}`}
+        </div>
+      </div>
+      <KindBadge kind={session.kind} />
+      <StatusBadge status={session.status} />
+      {session.sequence === null ? (
+        <span className={classes.hiddenOrder}>
+          <Icon name="lock" size={15} />
+          {t("order.hidden")}
+        </span>
+      ) : (
+        <Order sequence={session.sequence} />
+      )}
+      <div className={classes.tools}>
+        <Feed state={feed} />
+        <Button
+          variant="default"
+          size="xs"
+          leftSection={<Icon name="list" size={16} />}
+          onClick={onLog}
+        >
+          {t("head.log")}
+        </Button>
+        <Tooltip label={t("keys.title")}>
+          <ActionIcon variant="default" size="md" aria-label={t("keys.title")} onClick={onHelp}>
+            <Icon name="help" size={18} />
+          </ActionIcon>
+        </Tooltip>
+      </div>
+    </div>
+  );
+}
+
+/** A short break of the line is not worth a warning; one that lasts is. */
+const WARN_AFTER_MS = 1500;
+
+function Feed({ state }: { readonly state: FeedState }): JSX.Element {
+  const { t } = useTexts();
+  const [shown, setShown] = useState(state);
+  useEffect(() => {
+    const timer = setTimeout(() => setShown(state), state === "lost" ? WARN_AFTER_MS : 0);
+    return () => clearTimeout(timer);
+  }, [state]);
+  return (
+    <span className={`${classes.feed} ${shown === "lost" ? classes.feedLost : ""}`} role="status">
+      <svg width="10" height="10" viewBox="0 0 10 10" aria-hidden="true">
+        {shown === "live" ? (
+          <circle cx="5" cy="5" r="4.5" fill="var(--accent)" />
+        ) : (
+          <path d="M5 1 9.5 9.2H.5Z" fill="none" stroke="currentColor" strokeWidth="1.4" />
+        )}
+      </svg>
+      {t(`feed.${shown}`)}
+    </span>
+  );
+}

@@ -1,0 +1,71 @@
+/** Scores of the questionnaires as they arrive, newest first. */
+import type { AdministrationScores, SessionView } from "@shared/api/types";
+import { latency, number } from "@shared/format";
+import { milliseconds } from "@shared/units";
+import type { JSX } from "react";
+import { useTexts } from "../i18n";
+import { stepName } from "../steps";
+import cockpit from "./Cockpit.module.css";
+import classes from "./Panels.module.css";
+
+export function ScoresPanel({ session }: { readonly session: SessionView }): JSX.Element {
+  const { t } = useTexts();
+  const scored = session.scores.filter(({ scores }) => Object.keys(scores).length > 0);
+  return (
+    <section>
+      <h2 className={cockpit.sectionTitle}>{t("scores.title")}</h2>
+      {scored.length === 0 ? (
+        <p className={classes.nothing}>{t("scores.empty")}</p>
+      ) : (
+        <div className={classes.scores}>
+          {[...scored].reverse().map((one) => (
+            <Scores key={one.administration} session={session} one={one} />
+          ))}
+        </div>
+      )}
+    </section>
+  );
+}
+
+interface ScoresProps {
+  readonly session: SessionView;
+  readonly one: AdministrationScores;
+}
+
+function Scores({ session, one }: ScoresProps): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <div>
+      <div className={classes.scoreTitle}>{whereOf(session, one, t)}</div>
+      <dl className={`${classes.score} numbers`}>
+        {Object.entries(one.scores).map(([key, value]) => (
+          <div key={key} style={{ display: "contents" }}>
+            <dt>{readable(key)}</dt>
+            <dd>{value === null ? t("scores.incomplete") : number(value, language)}</dd>
+          </div>
+        ))}
+      </dl>
+    </div>
+  );
+}
+
+/** Which phase the answers are about: the task before the questionnaire, and its condition. */
+function whereOf(
+  session: SessionView,
+  one: AdministrationScores,
+  t: ReturnType<typeof useTexts>["t"],
+): string {
+  const step = session.steps[one.step_index];
+  if (step === undefined) return one.instrument;
+  const task = session.steps
+    .slice(0, one.step_index)
+    .findLast((before) => before.kind === "task" && before.block === step.block);
+  const name = task === undefined || step.block === null ? t(stepName(step)) : t(stepName(task));
+  return step.latency_ms === null ? name : `${name} · ${latency(milliseconds(step.latency_ms))}`;
+}
+
+/** `soe_thesis` becomes `Soe thesis`: a score's key is its only name here. */
+function readable(key: string): string {
+  const words = key.replaceAll("_", " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}

@@ -1,0 +1,90 @@
+/** The cockpit: everything one experimenter needs while a participant is in the headset. */
+import { useDisclosure } from "@mantine/hooks";
+import type { SessionView } from "@shared/api/types";
+import { Notice } from "@shared/ui/Notice";
+import { type JSX, useState } from "react";
+import { useTexts } from "../i18n";
+import { Loaded } from "../ui/Loaded";
+import { useTitle } from "../ui/useTitle";
+import { currentStep, primaryAction } from "./action";
+import classes from "./Cockpit.module.css";
+import { CommandFailure } from "./CommandFailure";
+import { CurrentStep } from "./CurrentStep";
+import { DevicesPanel } from "./DevicesPanel";
+import { EventDrawer } from "./EventDrawer";
+import { Header } from "./Header";
+import { KeyboardHelp } from "./KeyboardHelp";
+import { NotesPanel } from "./NotesPanel";
+import { OperatorEntry } from "./OperatorEntry";
+import { ReasonDialog, type Reasoned } from "./ReasonDialog";
+import { ScoresPanel } from "./ScoresPanel";
+import { TelemetryCard } from "./TelemetryCard";
+import { Timeline } from "./Timeline";
+import { useKeys } from "./useKeys";
+import { useSession } from "./useSession";
+
+export function SessionPage({ id }: { readonly id: string }): JSX.Element {
+  const live = useSession(id);
+  return (
+    <Loaded query={live.query}>{(session) => <Cockpit session={session} live={live} />}</Loaded>
+  );
+}
+
+interface CockpitProps {
+  readonly session: SessionView;
+  readonly live: ReturnType<typeof useSession>;
+}
+
+function Cockpit({ session, live }: CockpitProps): JSX.Element {
+  const { t } = useTexts();
+  const [asking, setAsking] = useState<Reasoned | null>(null);
+  const [log, logs] = useDisclosure();
+  const [help, helps] = useDisclosure();
+  const [entry, entries] = useDisclosure();
+  useTitle(session.participant_code);
+  const ask = (type: Reasoned) => {
+    if (session.allowed.includes(type)) setAsking(type);
+  };
+  useKeys({
+    primary: () => {
+      const action = primaryAction(session);
+      if (action !== null) live.send(action.command);
+    },
+    pause: () =>
+      session.allowed.includes("resume") ? live.send({ type: "resume" }) : ask("pause"),
+    redo: () => ask("redo"),
+    skip: () => ask("skip"),
+    note: () => document.getElementById("note")?.focus(),
+    log: logs.toggle,
+    help: helps.toggle,
+    step: `${session.current?.index} ${session.current?.status}`,
+  });
+  return (
+    <div className={classes.cockpit}>
+      <Header session={session} feed={live.feed} onLog={logs.open} onHelp={helps.open} />
+      <Timeline session={session} />
+      <div className={classes.centre}>
+        {session.simulated && (
+          <Notice tone="sim" title={t("simulated.session", { scale: session.time_scale })} />
+        )}
+        <CommandFailure live={live} />
+        <CurrentStep session={session} live={live} onAsk={ask} onEnterAnswers={entries.open} />
+        <TelemetryCard session={session} store={live.store} />
+      </div>
+      <aside className={classes.side} aria-label={t("side.label")}>
+        <DevicesPanel session={session} />
+        <NotesPanel session={session} send={live.send} sending={live.sending} />
+        <ScoresPanel session={session} />
+      </aside>
+      <ReasonDialog type={asking} live={live} onClose={() => setAsking(null)} />
+      <EventDrawer session={session} opened={log} onClose={logs.close} />
+      <KeyboardHelp opened={help} onClose={helps.close} />
+      <OperatorEntry
+        session={session}
+        step={currentStep(session)}
+        opened={entry}
+        onClose={entries.close}
+      />
+    </div>
+  );
+}

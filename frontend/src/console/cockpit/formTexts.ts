@@ -1,0 +1,18 @@
+import type { FormTexts } from "@shared/forms/FormView";
+import { useTexts } from "../i18n";
+
+/** The words around a form that the operator fills in. */
+export function useFormTexts(): FormTexts {
+  const { t } = useTexts();
+  return {
+    yes: t("form.yes"),
+    no: t("form.no"),
+    optional: t("form.optional"),
+    back: t("form.back"),
+    next: t("form.next"),
+    submit: t("form.submit"),
+    page: (number, total) => t("form.page", { number, total }),
+    range: (low, high, unit) =>
+      low === null || high === null ? unit : t("form.range", { low, high, unit }).trim(),
+  };
+}

@@ -1,0 +1,64 @@
+/** The cockpit's keys. They rest while a dialog is open or something is being typed. */
+import { useEffect, useRef } from "react";
+
+export interface Keys {
+  readonly primary: () => void;
+  readonly pause: () => void;
+  readonly redo: () => void;
+  readonly skip: () => void;
+  readonly note: () => void;
+  readonly log: () => void;
+  readonly help: () => void;
+  /** Changes whenever the primary action means something else. */
+  readonly step: string;
+}
+
+/** After a step has changed, a key held or hit twice must not trigger the next step's action. */
+const ARM_AFTER_MS = 700;
+
+const BINDINGS: Readonly<Record<string, Exclude<keyof Keys, "step">>> = {
+  Enter: "primary",
+  " ": "primary",
+  p: "pause",
+  r: "redo",
+  s: "skip",
+  n: "note",
+  l: "log",
+  "?": "help",
+};
+
+export function useKeys(keys: Keys): void {
+  const latest = useRef(keys);
+  const changedAt = useRef(0);
+  useEffect(() => {
+    latest.current = keys;
+  });
+  // biome-ignore lint/correctness/useExhaustiveDependencies: the time is of the change of the step
+  useEffect(() => {
+    changedAt.current = performance.now();
+  }, [keys.step]);
+  useEffect(() => {
+    const onKey = (event: KeyboardEvent) => {
+      const binding = BINDINGS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+      if (binding === undefined || event.repeat || isBusy(event)) return;
+      const waited = performance.now() - changedAt.current;
+      if (binding === "primary" && (isControl(event.target) || waited < ARM_AFTER_MS)) return;
+      event.preventDefault();
+      latest.current[binding]();
+    };
+    document.addEventListener("keydown", onKey);
+    return () => document.removeEventListener("keydown", onKey);
+  }, []);
+}
+
+function isBusy(event: KeyboardEvent): boolean {
+  if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return true;
+  const target = event.target as HTMLElement;
+  if (target.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName)) return true;
+  return document.querySelector('[role="dialog"], [role="menu"]') !== null;
+}
+
+/** Enter on a focused button or link already means that button or link. */
+const isControl = (target: EventTarget | null): boolean =>
+  target instanceof HTMLElement &&
+  target.closest("button, a, [role=button], [tabindex='0']") !== null;

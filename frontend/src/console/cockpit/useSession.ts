@@ -1,0 +1,83 @@
+/** A session as the server sees it, kept current by its live feed, and the way to command it. */
+import { sessions } from "@shared/api/endpoints";
+import { isApiError } from "@shared/api/errors";
+import { type FeedState, openFeed } from "@shared/api/live";
+import type { Command, SessionView, Telemetry } from "@shared/api/types";
+import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { useEffect, useMemo, useState } from "react";
+import { sessionQuery } from "../queries";
+import { type Change, changesBetween } from "./changes";
+import { TelemetryStore } from "./telemetryStore";
+
+/** A command that came too late: another operator was first. */
+export interface Overtaken {
+  readonly command: Command;
+  readonly changes: readonly Change[];
+}
+
+export type Send = (command: Command, onDone?: () => void) => void;
+
+export function useSession(id: string) {
+  const queries = useQueryClient();
+  const query = useQuery(sessionQuery(id));
+  const store = useMemo(() => new TelemetryStore(), []);
+  const [feed, setFeed] = useState<FeedState>("connecting");
+  const [overtaken, setOvertaken] = useState<Overtaken | null>(null);
+  const { queryKey } = sessionQuery(id);
+
+  const accept = (view: SessionView) =>
+    queries.setQueryData<SessionView>(queryKey, (known) => newer(known, view));
+
+  // biome-ignore lint/correctness/useExhaustiveDependencies: one feed for one session
+  useEffect(
+    () =>
+      openFeed({
+        url: sessions.liveUrl(id),
+        onState: setFeed,
+        on: {
+          session: (data) => accept(data as SessionView),
+          telemetry: (data) => store.put(data as Telemetry),
+        },
+      }),
+    [id],
+  );
+
+  const command = useMutation({
+    mutationFn: ({ view, command }: { view: SessionView; command: Command }) =>
+      sessions.command(id, view.version, command),
+    onSuccess: (view) => {
+      setOvertaken(null);
+      accept(view);
+    },
+    onError: async (error, sent) => {
+      if (!isApiError(error, "stale")) return;
+      const fresh = await sessions.get(id);
+      accept(fresh);
+      setOvertaken({ command: sent.command, changes: changesBetween(sent.view, fresh) });
+    },
+  });
+
+  const send: Send = (order, onDone) => {
+    if (query.data === undefined || command.isPending) return;
+    command.mutate({ view: query.data, command: order }, { onSuccess: () => onDone?.() });
+  };
+
+  return {
+    query,
+    store,
+    feed,
+    send,
+    sending: command.isPending,
+    error: isApiError(command.error, "stale") ? null : command.error,
+    overtaken,
+    dismiss: () => {
+      command.reset();
+      setOvertaken(null);
+    },
+  };
+}
+
+/** Answers and live events may cross on the line; the view with the higher version stays. */
+function newer(known: SessionView | undefined, view: SessionView): SessionView {
+  return known !== undefined && known.version > view.version ? known : view;
+}

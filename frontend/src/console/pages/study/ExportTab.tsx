@@ -1,0 +1,103 @@
+/** Tidy CSV for analysis: what is in the archive, and the archive. */
+import { Anchor, Button, Group, Paper, Progress, Stack, Text, Title } from "@mantine/core";
+import { studies } from "@shared/api/endpoints";
+import type { Kind, StudyDetail } from "@shared/api/types";
+import { number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { type JSX, useState } from "react";
+import { Failure } from "../../errors";
+import { useTexts } from "../../i18n";
+import { KindFilter } from "../../ui/KindFilter";
+import classes from "./ExportTab.module.css";
+import { useDownload } from "./useDownload";
+
+const FILES = [
+  "sessions",
+  "phases",
+  "answers",
+  "scores",
+  "completions",
+  "contacts",
+  "jointErrors",
+  "samples",
+  "codebook",
+] as const;
+
+export function ExportTab({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.grid}>
+      <Paper>
+        <Title order={2} mb="md">
+          {t("export.files")}
+        </Title>
+        <dl className={classes.files}>
+          {FILES.map((file) => (
+            <div key={file}>
+              <dt>{t(`export.file.${file}`)}</dt>
+              <dd>{t(`export.about.${file}`)}</dd>
+            </div>
+          ))}
+        </dl>
+        <Text mt="lg" c="dimmed">
+          {t("export.conventions")}
+        </Text>
+        <Anchor href={studies.codebookUrl(study.key)} target="_blank" rel="noreferrer" mt="sm">
+          {t("export.codebook")}
+        </Anchor>
+      </Paper>
+      <Download study={study} />
+    </div>
+  );
+}
+
+function Download({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t, language } = useTexts();
+  const [kind, setKind] = useState<Kind>("people");
+  const { state, start, stop } = useDownload();
+  const megabytes = (bytes: number): string => `${number(bytes / 1e6, language, 1)} MB`;
+  return (
+    <Paper>
+      <Title order={2} mb="md">
+        {t("export.download")}
+      </Title>
+      <Stack>
+        <KindFilter kind={kind} onChange={setKind} />
+        {kind === "simulated" && <Notice tone="sim">{t("simulated.body")}</Notice>}
+        {state.phase === "running" ? (
+          <>
+            <Progress
+              value={state.total === null ? 100 : (state.received / state.total) * 100}
+              animated={state.total === null}
+              aria-label={t("export.progress")}
+            />
+            <Group justify="space-between">
+              <Text className="numbers">
+                {state.received === 0 ? t("export.preparing") : megabytes(state.received)}
+              </Text>
+              <Button variant="default" size="xs" onClick={stop}>
+                {t("action.stop")}
+              </Button>
+            </Group>
+          </>
+        ) : (
+          <Button
+            leftSection={<Icon name="download" size={18} />}
+            onClick={() =>
+              void start(studies.exportUrl(study.key, kind), `${study.key}-${kind}.zip`)
+            }
+          >
+            {t("export.start", { kind: t(`kind.${kind}`) })}
+          </Button>
+        )}
+        {state.phase === "done" && (
+          <Notice tone="info" icon="check" title={t("export.done")}>
+            {t("export.doneBody", { name: state.name, size: megabytes(state.received) })}
+          </Notice>
+        )}
+        {state.phase === "failed" && <Failure error={state.error} />}
+      </Stack>
+    </Paper>
+  );
+}

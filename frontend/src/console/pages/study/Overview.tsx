@@ -1,0 +1,109 @@
+/** What the study is: its question, its conditions, its orders, and the visit minute by minute. */
+import { Paper, Title } from "@mantine/core";
+import type { StudyDetail, StudyProtocol } from "@shared/api/types";
+import { latency } from "@shared/format";
+import { inLanguage } from "@shared/text";
+import { milliseconds } from "@shared/units";
+import type { JSX } from "react";
+import { useTexts } from "../../i18n";
+import classes from "./Overview.module.css";
+import { Procedure } from "./Procedure";
+
+export function Overview({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <>
+      <p className={classes.lead}>{inLanguage(study.protocol.description, language)}</p>
+      <div className={classes.grid}>
+        <Paper className={classes.wide ?? ""}>
+          <Title order={2} mb="md">
+            {t("overview.procedure")}
+          </Title>
+          <Procedure protocol={study.protocol} />
+        </Paper>
+        <Paper>
+          <Title order={2} mb="md">
+            {t("overview.conditions")}
+          </Title>
+          <Conditions protocol={study.protocol} />
+        </Paper>
+        <Paper>
+          <Title order={2} mb="md">
+            {t("overview.design")}
+          </Title>
+          <Design study={study} />
+        </Paper>
+      </div>
+    </>
+  );
+}
+
+function Conditions({ protocol }: { readonly protocol: StudyProtocol }): JSX.Element {
+  const { t, language } = useTexts();
+  const longest = Math.max(1, ...protocol.conditions.map((condition) => condition.latency_ms));
+  return (
+    <table className={classes.conditions}>
+      <thead>
+        <tr>
+          <th scope="col">{t("overview.condition")}</th>
+          <th scope="col">{t("overview.addedLatency")}</th>
+          <td />
+        </tr>
+      </thead>
+      <tbody>
+        {protocol.conditions.map((condition) => (
+          <tr key={condition.key}>
+            <td>{inLanguage(condition.label, language)}</td>
+            <td className="numbers">{latency(milliseconds(condition.latency_ms))}</td>
+            <td aria-hidden="true" width="40%">
+              <div
+                className={classes.bar}
+                style={{ width: `${(condition.latency_ms / longest) * 100}%` }}
+              />
+            </td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function Design({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t } = useTexts();
+  const { orders, conditions, blinding, on_disconnect, procedure } = study.protocol;
+  const count = factorial(conditions.length);
+  const facts: readonly (readonly [string, string])[] = [
+    [
+      t("design.orders"),
+      t("design.ordersValue", {
+        count,
+        replicates: orders.replicates,
+        total: count * orders.replicates,
+      }),
+    ],
+    [t("design.whenFull"), t(orders.when_full === "grow" ? "design.grow" : "design.closed")],
+    [
+      t("design.limbs"),
+      t(procedure.block.limb_order === "fixed" ? "design.fixed" : "design.alternate"),
+    ],
+    [t("design.blinding"), t(blinding.operator ? "design.blinded" : "design.open")],
+    [t("design.disconnect"), t(on_disconnect === "pause" ? "design.pause" : "design.continue")],
+    [
+      t("design.languages"),
+      study.languages.map((tag) => t(tag === "de" ? "language.de" : "language.en")).join(", "),
+    ],
+    [t("design.seed"), String(orders.seed)],
+  ];
+  return (
+    <dl className={classes.facts}>
+      {facts.map(([name, value]) => (
+        <div key={name} style={{ display: "contents" }}>
+          <dt>{name}</dt>
+          <dd>{value}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}
+
+const factorial = (n: number): number => (n <= 1 ? 1 : n * factorial(n - 1));

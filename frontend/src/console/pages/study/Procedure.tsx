@@ -1,0 +1,116 @@
+/** The procedure of one visit from left to right; timed parts carry their seconds, phases to scale. */
+import type { SetupStep, StudyProtocol, TaskPhase } from "@shared/api/types";
+import { duration } from "@shared/format";
+import { Icon, type IconName } from "@shared/ui/Icon";
+import { seconds } from "@shared/units";
+import type { JSX } from "react";
+import { type Key, useTexts } from "../../i18n";
+import { STEP_ICONS, stepNameKey } from "../../steps";
+import { ownTime } from "./ownTime";
+import classes from "./Procedure.module.css";
+
+export function Procedure({ protocol }: { readonly protocol: StudyProtocol }): JSX.Element {
+  const { t } = useTexts();
+  const { before, block, after } = protocol.procedure;
+  return (
+    <>
+      <div className={classes.row}>
+        <Part name={t("procedure.before")} kind="before" steps={before} />
+        <div className={`${classes.part} ${classes.block}`}>
+          <span className={classes.label}>
+            {t("procedure.block", { count: protocol.conditions.length })}
+          </span>
+          <ol className={classes.steps}>
+            {block.phases.map((phase) => (
+              <Phase key={phase.limb} phase={phase} />
+            ))}
+          </ol>
+        </div>
+        <Part name={t("procedure.after")} kind="after" steps={after} />
+      </div>
+      <div className={classes.legend}>
+        <span>{t("procedure.legend")}</span>
+        <span className={classes.total}>
+          {t("procedure.total", { time: duration(ownTime(protocol)) })}
+        </span>
+      </div>
+    </>
+  );
+}
+
+interface PartProps {
+  readonly name: string;
+  readonly kind: "before" | "after";
+  readonly steps: readonly SetupStep[];
+}
+
+function Part({ name, kind, steps }: PartProps): JSX.Element {
+  return (
+    <div className={`${classes.part} ${classes[kind]}`}>
+      <span className={classes.label}>{name}</span>
+      <ol className={classes.steps}>
+        {steps.map((step, index) => (
+          <SmallStep
+            // biome-ignore lint/suspicious/noArrayIndexKey: the steps of a protocol never change places
+            key={index}
+            icon={STEP_ICONS[step.step] ?? "flag"}
+            name={stepNameKey(step.step)}
+          >
+            {step.duration_s === undefined ? null : duration(seconds(step.duration_s))}
+          </SmallStep>
+        ))}
+      </ol>
+    </div>
+  );
+}
+
+interface SmallStepProps {
+  readonly icon: IconName;
+  readonly name: Key;
+  readonly children?: string | null;
+}
+
+function SmallStep({ icon, name, children }: SmallStepProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <li className={classes.step}>
+      <Icon name={icon} />
+      <span>
+        {t(name)}
+        {children != null && <span className={classes.time}>{children}</span>}
+      </span>
+    </li>
+  );
+}
+
+function Phase({ phase }: { readonly phase: TaskPhase }): JSX.Element {
+  const { t } = useTexts();
+  const segments = [
+    ["preparation", phase.preparation_s],
+    ["active", phase.duration_s],
+    ["freeze", phase.freeze_s],
+  ] as const;
+  return (
+    <>
+      <li className={`${classes.step} ${classes.phase}`}>
+        <span className={classes.phaseName}>
+          <Icon name={phase.limb} />
+          {t(`step.task.${phase.limb}`)}
+        </span>
+        <span className={`${classes.scale} numbers`}>
+          {segments.map(([name, time]) => (
+            <span
+              key={name}
+              className={`${classes.segment} ${name === "active" ? classes.active : ""}`}
+              style={{ flexGrow: time }}
+              title={t(`procedure.${name}`)}
+            >
+              {time} s
+            </span>
+          ))}
+        </span>
+      </li>
+      {phase.questionnaire !== null && <SmallStep icon="form" name="step.questionnaire" />}
+    </>
+  );
+}

@@ -1,0 +1,114 @@
+/** One study: its design, its ledger, its sessions, what they show, and its files. */
+import { Button, Tabs, Title } from "@mantine/core";
+import type { StudyDetail } from "@shared/api/types";
+import { inLanguage } from "@shared/text";
+import { Icon, type IconName } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Link, useLocation } from "wouter";
+import { useTexts } from "../../i18n";
+import { studyQuery } from "../../queries";
+import { Loaded } from "../../ui/Loaded";
+import { useTitle } from "../../ui/useTitle";
+import { DashboardTab } from "./DashboardTab";
+import { ExportTab } from "./ExportTab";
+import { LedgerTab } from "./LedgerTab";
+import { NewSession } from "./NewSession";
+import { Overview } from "./Overview";
+import { ProtocolTab } from "./ProtocolTab";
+import { SessionsTab } from "./SessionsTab";
+import classes from "./StudyPage.module.css";
+
+const TABS = ["overview", "ledger", "sessions", "dashboard", "export", "protocol"] as const;
+type Tab = (typeof TABS)[number];
+
+const ICONS: Readonly<Record<Tab, IconName>> = {
+  overview: "info",
+  ledger: "list",
+  sessions: "people",
+  dashboard: "chart",
+  export: "download",
+  protocol: "document",
+};
+
+const CONTENT: Readonly<Record<Tab, (props: { study: StudyDetail }) => JSX.Element>> = {
+  overview: Overview,
+  ledger: LedgerTab,
+  sessions: SessionsTab,
+  dashboard: DashboardTab,
+  export: ExportTab,
+  protocol: ProtocolTab,
+};
+
+interface StudyPageProps {
+  readonly studyKey: string;
+  readonly tab: string | undefined;
+}
+
+export function StudyPage({ studyKey, tab }: StudyPageProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <>
+      <Link href="/" className={classes.crumbs ?? ""}>
+        <Icon name="back" size={16} />
+        {t("app.studies")}
+      </Link>
+      <Loaded query={useQuery(studyQuery(studyKey))}>
+        {(study) => <Study study={study} tab={TABS.find((known) => known === tab) ?? "overview"} />}
+      </Loaded>
+    </>
+  );
+}
+
+function Study({ study, tab }: { readonly study: StudyDetail; readonly tab: Tab }): JSX.Element {
+  const { t } = useTexts();
+  const [, navigate] = useLocation();
+  const Content = CONTENT[tab];
+  return (
+    <>
+      <Head study={study} />
+      <Tabs
+        value={tab}
+        onChange={(value) => navigate(`/studies/${study.key}/${value ?? "overview"}`)}
+        keepMounted={false}
+      >
+        <Tabs.List>
+          {TABS.map((name) => (
+            <Tabs.Tab key={name} value={name} leftSection={<Icon name={ICONS[name]} size={17} />}>
+              {t(`study.tab.${name}`)}
+            </Tabs.Tab>
+          ))}
+        </Tabs.List>
+        <Tabs.Panel value={tab} className={classes.panel ?? ""}>
+          <Content study={study} />
+        </Tabs.Panel>
+      </Tabs>
+    </>
+  );
+}
+
+function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t, language } = useTexts();
+  const [joining, setJoining] = useState(false);
+  const title = inLanguage(study.protocol.title, language);
+  useTitle(title);
+  return (
+    <div className={classes.head}>
+      <div>
+        <Title order={1}>{title}</Title>
+        <div className={classes.meta}>
+          <span>{study.key}</span>
+          <span>{t("study.version", { version: study.version })}</span>
+          <span>
+            <Icon name={study.frozen ? "lock" : "document"} size={15} />
+            {t(study.frozen ? "study.frozenLong" : "study.openLong")}
+          </span>
+        </div>
+      </div>
+      <Button leftSection={<Icon name="add" size={18} />} onClick={() => setJoining(true)}>
+        {t("join.open")}
+      </Button>
+      <NewSession study={study} opened={joining} onClose={() => setJoining(false)} />
+    </div>
+  );
+}

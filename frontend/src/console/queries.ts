@@ -1,0 +1,33 @@
+/** The console's reads of the server, each with the key under which it is kept. */
+import { sessions, studies } from "@shared/api/endpoints";
+import type { Kind } from "@shared/api/types";
+import { queryOptions } from "@tanstack/react-query";
+
+export const studiesQuery = queryOptions({ queryKey: ["studies"], queryFn: studies.list });
+
+export const studyQuery = (key: string) =>
+  queryOptions({ queryKey: ["studies", key], queryFn: () => studies.get(key) });
+
+export const ledgerQuery = (key: string, kind: Kind) =>
+  queryOptions({
+    queryKey: ["studies", key, "ledger", kind],
+    queryFn: () => studies.ledger(key, kind),
+  });
+
+export const sessionsQuery = (key: string) =>
+  queryOptions({ queryKey: ["studies", key, "sessions"], queryFn: () => studies.sessions(key) });
+
+export const dashboardQuery = (key: string, kind: Kind) =>
+  queryOptions({
+    queryKey: ["studies", key, "dashboard", kind],
+    queryFn: () => studies.dashboard(key, kind),
+  });
+
+export const sessionQuery = (id: string) =>
+  queryOptions({ queryKey: ["sessions", id], queryFn: () => sessions.get(id) });
+
+export const eventsQuery = (id: string, version: number) =>
+  queryOptions({
+    queryKey: ["sessions", id, "events", version],
+    queryFn: () => sessions.events(id),
+  });

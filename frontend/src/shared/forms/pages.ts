@@ -1,0 +1,60 @@
+/**
+ * How the items of a form are spread over pages.
+ *
+ * A page holds few items of one kind, so that nothing has to be scrolled and each answer gets its
+ * own look; the items keep the order they are given in, because that order is part of the data.
+ */
+import type { Item } from "../api/types";
+
+type Family = "scale" | "facts" | "prose";
+
+/** At most so many items on a page: what fits a tablet in both directions without scrolling. */
+const MOST: Readonly<Record<Family, number>> = { scale: 3, facts: 3, prose: 2 };
+
+export function pagesOf(items: readonly Item[]): readonly (readonly Item[])[] {
+  return joinShortEnd(runsOf(items).flatMap(({ family, items: run }) => evenly(run, MOST[family])));
+}
+
+export function familyOf(item: Item): Family {
+  if (item.type === "likert") return "scale";
+  return item.type === "text" && isLong(item) ? "prose" : "facts";
+}
+
+const SHORT_TEXT = 200;
+
+/** Texts without a limit, or with a large one, get a field of several lines. */
+export const isLong = (item: Item): boolean =>
+  (item.max_length ?? Number.POSITIVE_INFINITY) > SHORT_TEXT;
+
+function runsOf(items: readonly Item[]): readonly { family: Family; items: Item[] }[] {
+  const runs: { family: Family; items: Item[] }[] = [];
+  for (const item of items) {
+    const family = familyOf(item);
+    const last = runs.at(-1);
+    if (last?.family === family) last.items.push(item);
+    else runs.push({ family, items: [item] });
+  }
+  return runs;
+}
+
+/** As few pages as `most` allows, and as equally full as they can be. */
+function evenly(items: readonly Item[], most: number): readonly (readonly Item[])[] {
+  const count = Math.ceil(items.length / most);
+  const pages: (readonly Item[])[] = [];
+  for (let page = 0, start = 0; page < count; page += 1) {
+    const size = Math.ceil((items.length - start) / (count - page));
+    pages.push(items.slice(start, start + size));
+    start += size;
+  }
+  return pages;
+}
+
+/** A single open question shares the page before it, where that one has room. */
+function joinShortEnd(pages: readonly (readonly Item[])[]): readonly (readonly Item[])[] {
+  const last = pages.at(-1);
+  const before = pages.at(-2);
+  if (last === undefined || before === undefined) return pages;
+  const fits =
+    last.length === 1 && before.length <= 2 && last.every((item) => familyOf(item) === "prose");
+  return fits ? [...pages.slice(0, -2), [...before, ...last]] : pages;
+}

@@ -1,0 +1,46 @@
+/**
+ * Bring one queued form to the server, and say how it ended.
+ *
+ *     stored       the server has it (or had it already): the tablet forgets it
+ *     later        no connection, or the server cannot take it now: try again
+ *     unpaired     the tablet has lost its session: kept until it is paired again
+ *     held         this form is not due now: kept, the experimenter decides
+ *     superseded   the experimenter has recorded this form already: the tablet forgets it
+ *     refused      the answers do not fit: given back to be mended
+ */
+import { ApiError } from "@shared/api/errors";
+import type { Receipt, Submission } from "@shared/api/types";
+import type { DraftStore } from "./store";
+
+export type Delivery =
+  | { readonly kind: "stored" | "later" | "unpaired" | "superseded" }
+  | { readonly kind: "held" | "refused"; readonly error: ApiError };
+
+export type Submit = (submission: Submission) => Promise<Receipt>;
+
+export async function deliver(
+  store: DraftStore,
+  id: string,
+  submission: Submission,
+  submit: Submit,
+): Promise<Delivery> {
+  try {
+    await submit(submission);
+  } catch (error) {
+    const delivery = deliveryOf(error);
+    if (delivery.kind === "refused") await store.reopen(id);
+    if (delivery.kind === "superseded") await store.forget(id);
+    return delivery;
+  }
+  await store.forget(id);
+  return { kind: "stored" };
+}
+
+function deliveryOf(error: unknown): Delivery {
+  if (!(error instanceof ApiError)) return { kind: "later" };
+  if (error.status === 401) return { kind: "unpaired" };
+  if (error.code === "not_now") return { kind: "held", error };
+  if (error.code === "conflict") return { kind: "superseded" };
+  if (error.status === 422 || error.status === 413) return { kind: "refused", error };
+  return { kind: "later" };
+}

@@ -1,0 +1,97 @@
+/** A form, kept on the tablet with every answer until the server has it. */
+import { Button, Center, Loader } from "@mantine/core";
+import type { Administration, TabletState } from "@shared/api/types";
+import { Notice } from "@shared/ui/Notice";
+import { type JSX, lazy, Suspense } from "react";
+import { type FormPhase, useKeptForm } from "../drafts/useKeptForm";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { useFormTexts } from "./formTexts";
+import classes from "./screens.module.css";
+
+const FormView = lazy(async () => ({ default: (await import("@shared/forms/FormView")).FormView }));
+
+interface FormScreenProps {
+  readonly state: TabletState;
+  readonly administration: Administration;
+  readonly refresh: () => void;
+}
+
+export function FormScreen({ state, administration, refresh }: FormScreenProps): JSX.Element {
+  const texts = useFormTexts();
+  const form = useKeptForm(state.session_id, administration, state.language, refresh);
+  const { phase } = form;
+  if (phase.name !== "filling") return <Between phase={phase} refresh={refresh} />;
+  return (
+    <Suspense fallback={<Opening />}>
+      {phase.refused !== null && <Failure error={phase.refused} />}
+      <FormView
+        administration={administration}
+        language={state.language}
+        texts={texts}
+        draft={phase.kept.draft}
+        startedAt={new Date(phase.kept.startedAt)}
+        busy={false}
+        onChange={form.keep}
+        onSubmit={form.send}
+      />
+    </Suspense>
+  );
+}
+
+function Opening(): JSX.Element {
+  return (
+    <Center flex={1}>
+      <Loader />
+    </Center>
+  );
+}
+
+interface BetweenProps {
+  readonly phase: Exclude<FormPhase, { name: "filling" }>;
+  readonly refresh: () => void;
+}
+
+/** Before the form is there, and after it was sent. */
+function Between({ phase, refresh }: BetweenProps): JSX.Element {
+  const { t } = useTexts();
+  switch (phase.name) {
+    case "opening":
+      return <Opening />;
+    case "sending":
+      return (
+        <div className={classes.calm} role="status">
+          <Loader type="dots" size="lg" />
+          <h1 className={classes.calmTitle}>
+            {t(phase.offline ? "sending.offline" : "sending.title")}
+          </h1>
+          <p className={classes.calmText}>
+            {t(phase.offline ? "sending.offlineBody" : "sending.body")}
+          </p>
+        </div>
+      );
+    case "held":
+      return (
+        <div className={classes.calm}>
+          <Notice
+            tone="warn"
+            title={t("held.title")}
+            actions={
+              <Button variant="default" onClick={refresh}>
+                {t("error.retry")}
+              </Button>
+            }
+          >
+            {t("held.body")}
+          </Notice>
+        </div>
+      );
+    case "done":
+      return (
+        <div className={classes.calm} role="status">
+          <h1 className={classes.calmTitle}>{t("sent.title")}</h1>
+          <p className={classes.calmText}>{t("sent.body")}</p>
+        </div>
+      );
+  }
+}
