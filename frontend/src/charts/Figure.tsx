@@ -23,7 +23,7 @@ export function Figure({
   height = 320,
   ...texts
 }: FigureProps): JSX.Element {
-  const root = useRef<HTMLDivElement>(null);
+  const root = useRef<HTMLElement>(null);
   const scheme = useComputedColorScheme("light");
   const [state, setState] = useState<State>("loading");
   useEffect(() => {
@@ -44,7 +44,7 @@ export function Figure({
           )}
         </Center>
       )}
-      <div ref={root} role="img" aria-label={label} style={{ height: "100%" }} />
+      <section ref={root} aria-label={label} style={{ height: "100%" }} />
     </div>
   );
 }

@@ -70,6 +70,7 @@ function LanguageButton(): JSX.Element {
     <Button
       variant="subtle"
       color="gray"
+      fw={450}
       size="compact-sm"
       lang={language === "en" ? "de" : "en"}
       onClick={() => setLanguage(language === "en" ? "de" : "en")}

@@ -1,6 +1,9 @@
 /** How quantities are written for people: always with their unit, in the language of the page. */
 import type { Milliseconds, Seconds } from "./units";
 
+/** English dates and times are written day first and in 24 hours, as logs of a laboratory are. */
+const locale = (language: string): string => (language === "en" ? "en-GB" : language);
+
 /** `0:07`, `1:00`, `12:30`: minutes and whole seconds, cut off and not rounded, as clocks do. */
 export function clockFace(time: Seconds): string {
   const whole = Math.max(0, Math.floor(time + 1e-6));
@@ -23,25 +26,34 @@ export const latency = (value: Milliseconds): string => `${value} ms`;
 
 /** A number with at most `digits` decimals in the language's own notation. */
 export function number(value: number, language: string, digits = 2): string {
-  return new Intl.NumberFormat(language, { maximumFractionDigits: digits }).format(value);
+  return new Intl.NumberFormat(locale(language), { maximumFractionDigits: digits }).format(value);
 }
 
 /** Date and time of day in the reader's own time zone, from UTC ISO 8601. */
 export function dateTime(iso: string, language: string): string {
-  return new Intl.DateTimeFormat(language, { dateStyle: "medium", timeStyle: "short" }).format(
-    new Date(iso),
-  );
+  return new Intl.DateTimeFormat(locale(language), {
+    dateStyle: "medium",
+    timeStyle: "short",
+  }).format(new Date(iso));
+}
+
+/** The day alone. */
+export function day(iso: string, language: string): string {
+  return new Intl.DateTimeFormat(locale(language), { dateStyle: "medium" }).format(new Date(iso));
 }
 
 /** Time of day with seconds, for logs. */
 export function timeOfDay(iso: string, language: string): string {
-  return new Intl.DateTimeFormat(language, { timeStyle: "medium" }).format(new Date(iso));
+  return new Intl.DateTimeFormat(locale(language), { timeStyle: "medium" }).format(new Date(iso));
 }
 
 /** `10 s ago` as a relative time; `now` is given so that the text can be tested. */
 export function ago(iso: string, now: Date, language: string): string {
   const passed = Math.round((now.getTime() - new Date(iso).getTime()) / 1000);
-  const relative = new Intl.RelativeTimeFormat(language, { numeric: "auto", style: "short" });
+  const relative = new Intl.RelativeTimeFormat(locale(language), {
+    numeric: "auto",
+    style: "short",
+  });
   if (Math.abs(passed) < 60) return relative.format(-passed, "second");
   if (Math.abs(passed) < 3600) return relative.format(-Math.round(passed / 60), "minute");
   if (Math.abs(passed) < 86_400) return relative.format(-Math.round(passed / 3600), "hour");

@@ -7,6 +7,7 @@ import { Icon } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useEffect } from "react";
+import { useSweep } from "./drafts/useSweep";
 import { useTexts } from "./i18n";
 import classes from "./Screens.module.css";
 import { Finished } from "./screens/Finished";
@@ -23,6 +24,7 @@ interface ScreensProps {
 
 export function Screens({ state, connected, refresh }: ScreensProps): JSX.Element {
   const { t, setLanguage, language } = useTexts();
+  useSweep(state, connected);
   useEffect(() => {
     const spoken = state.language === "de" ? "de" : "en";
     if (spoken !== language) setLanguage(spoken);

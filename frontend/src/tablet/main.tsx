@@ -1,5 +1,6 @@
 import { mountPage } from "@shared/ui/Page";
 import { translations } from "./i18n";
 import { Tablet } from "./Tablet";
+import "./tablet.css";
 
-mountPage({ translations, scale: 1.125, children: <Tablet /> });
+mountPage({ translations, children: <Tablet /> });

@@ -100,7 +100,7 @@ function Primary({ session, live, onAsk, onEnterAnswers }: CurrentStepProps): JS
     return (
       <Button
         size="lg"
-        variant="light"
+        variant="outline"
         className={classes.primary ?? ""}
         leftSection={<Icon name="pause" />}
         rightSection={<Key name="P" />}
@@ -140,6 +140,7 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
         <Button
           variant="subtle"
           color="gray"
+          px="sm"
           rightSection={<Key name="R" />}
           onClick={() => onAsk("redo")}
         >
@@ -150,6 +151,7 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
         <Button
           variant="subtle"
           color="gray"
+          px="sm"
           rightSection={<Key name="S" />}
           onClick={() => onAsk("skip")}
         >
@@ -159,7 +161,12 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
       {dangers.length > 0 && (
         <Menu position="bottom-end" width={280}>
           <Menu.Target>
-            <Button variant="subtle" color="red" rightSection={<Icon name="down" size={14} />}>
+            <Button
+              variant="subtle"
+              color="red"
+              px="sm"
+              rightSection={<Icon name="down" size={14} />}
+            >
               {t("do.end")}
             </Button>
           </Menu.Target>

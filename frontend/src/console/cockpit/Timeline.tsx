@@ -12,7 +12,8 @@ import classes from "./Timeline.module.css";
 export function Timeline({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
   return (
-    <nav className={cockpit.steps} aria-label={t("timeline.label")}>
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls has to take the focus
+    <nav className={cockpit.steps} tabIndex={0} aria-label={t("timeline.label")}>
       {groupSteps(session.steps).map((group) => (
         <Group key={group.steps[0]?.index} group={group} session={session} />
       ))}

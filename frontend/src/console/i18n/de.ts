@@ -408,6 +408,7 @@ export const de: Record<keyof typeof en, string> = {
   "form.yes": "Ja",
   "form.no": "Nein",
   "form.optional": "freiwillig",
+  "form.required": "Bitte beantworten Sie diese Frage.",
   "form.back": "Zurück",
   "form.next": "Weiter",
   "form.submit": "Antworten speichern",

@@ -1,6 +1,6 @@
 import { Button, Code, Text, Title } from "@mantine/core";
 import type { StudySummary } from "@shared/api/types";
-import { dateTime } from "@shared/format";
+import { day } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
@@ -76,9 +76,10 @@ function Card({ study }: { readonly study: StudySummary }): JSX.Element {
             <Icon name={study.frozen ? "lock" : "document"} size={15} />
             {t(study.frozen ? "study.frozen" : "study.open")}
           </span>
-          <span>{dateTime(study.created_at, language)}</span>
+          <span>{day(study.created_at, language)}</span>
         </div>
       </div>
+      <p className={classes.about}>{study.description}</p>
       <dl className={`${classes.counts} numbers`}>
         {KINDS.map((kind) => (
           <div key={kind}>

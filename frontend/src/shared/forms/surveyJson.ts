@@ -7,6 +7,8 @@ export interface FormWords {
   readonly yes: string;
   readonly no: string;
   readonly optional: string;
+  /** Said where an answer is missing. */
+  readonly required: string;
   /** What a number may be: `{low}`, `{high}` and `{unit}` are filled in. */
   readonly range: (low: number | null, high: number | null, unit: string) => string;
 }
@@ -33,6 +35,7 @@ export function surveyJson(administration: Administration, options: FormOptions)
     autoFocusFirstError: true,
     checkErrorsMode: "onNextPage",
     textUpdateMode: "onTyping",
+    questionErrorLocation: "bottom",
     requiredMark: "",
     // Which question is required is said in words, at the few that are not.
     pages: pagesOf(ordered).map((items, index) => ({
@@ -51,6 +54,7 @@ function element(item: Item, instrument: Instrument, options: FormOptions): Json
     name: item.key,
     title: isRequired(item) || mayOmit ? text : `${text} (${words.optional})`,
     isRequired: isRequired(item) && !mayOmit,
+    requiredErrorText: words.required,
     ...kindOf(item, instrument.scale ?? null, options),
   };
 }

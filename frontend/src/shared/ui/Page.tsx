@@ -1,5 +1,5 @@
 /** What every page starts with: theme, data cache, notices. */
-import { createTheme, MantineProvider, mergeThemeOverrides } from "@mantine/core";
+import { MantineProvider } from "@mantine/core";
 import { Notifications } from "@mantine/notifications";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
 import type { i18n } from "i18next";
@@ -25,11 +25,9 @@ const queries = new QueryClient({
 interface PageProps {
   readonly translations: i18n;
   readonly children: ReactNode;
-  /** Multiplies every size; the tablet is read at arm's length. */
-  readonly scale?: number;
 }
 
-function Page({ translations, children, scale = 1 }: PageProps): JSX.Element {
+function Page({ translations, children }: PageProps): JSX.Element {
   useEffect(() => {
     const follow = (language: string) => {
       document.documentElement.lang = language;
@@ -40,10 +38,7 @@ function Page({ translations, children, scale = 1 }: PageProps): JSX.Element {
   }, [translations]);
   return (
     <StrictMode>
-      <MantineProvider
-        theme={mergeThemeOverrides(theme, createTheme({ scale }))}
-        defaultColorScheme="auto"
-      >
+      <MantineProvider theme={theme} defaultColorScheme="auto">
         <I18nextProvider i18n={translations}>
           <QueryClientProvider client={queries}>
             <Notifications position="bottom-right" autoClose={5000} />

@@ -21,6 +21,8 @@ const RETRY_MS = 3000;
 interface KeptForm {
   readonly phase: FormPhase;
   readonly keep: (draft: FormDraft) => void;
+  /** Try once more to bring a held form to the server. */
+  readonly again: () => void;
   readonly send: (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => void;
 }
 
@@ -94,7 +96,13 @@ export function useKeptForm(
     const submission = submissionOf(opened, administration, language, answers, draft);
     void drafts.queue(opened.id, submission).then((queued) => attempt(opened.id, queued));
   };
-  return { phase, keep, send };
+  const again = () => {
+    setPhase({ name: "sending", offline: false });
+    void drafts.open(sessionId, administration.key, new Date()).then(({ id, queued }) => {
+      if (queued !== null) void attempt(id, queued);
+    });
+  };
+  return { phase, keep, send, again };
 }
 
 function submissionOf(

@@ -39,6 +39,7 @@ export const en = {
   "form.yes": "Yes",
   "form.no": "No",
   "form.optional": "optional",
+  "form.required": "Please answer this question.",
   "form.back": "Back",
   "form.next": "Next",
   "form.submit": "Send answers",

@@ -21,7 +21,7 @@ export function FormScreen({ state, administration, refresh }: FormScreenProps):
   const texts = useFormTexts();
   const form = useKeptForm(state.session_id, administration, state.language, refresh);
   const { phase } = form;
-  if (phase.name !== "filling") return <Between phase={phase} refresh={refresh} />;
+  if (phase.name !== "filling") return <Between phase={phase} again={form.again} />;
   return (
     <Suspense fallback={<Opening />}>
       {phase.refused !== null && <Failure error={phase.refused} />}
@@ -49,11 +49,11 @@ function Opening(): JSX.Element {
 
 interface BetweenProps {
   readonly phase: Exclude<FormPhase, { name: "filling" }>;
-  readonly refresh: () => void;
+  readonly again: () => void;
 }
 
 /** Before the form is there, and after it was sent. */
-function Between({ phase, refresh }: BetweenProps): JSX.Element {
+function Between({ phase, again }: BetweenProps): JSX.Element {
   const { t } = useTexts();
   switch (phase.name) {
     case "opening":
@@ -77,7 +77,7 @@ function Between({ phase, refresh }: BetweenProps): JSX.Element {
             tone="warn"
             title={t("held.title")}
             actions={
-              <Button variant="default" onClick={refresh}>
+              <Button variant="default" onClick={again}>
                 {t("error.retry")}
               </Button>
             }

@@ -44,11 +44,11 @@ export function Reading({ state, screen }: ReadingProps): JSX.Element {
       </div>
       <div className={classes.foot}>
         <div>
-          <Button variant="subtle" color="gray" size="md" onClick={() => setAsking("question")}>
+          <Button variant="subtle" color="gray" size="sm" onClick={() => setAsking("question")}>
             {t("ask.question")}
           </Button>
           {screen === "consent" && (
-            <Button variant="subtle" color="gray" size="md" onClick={() => setAsking("decline")}>
+            <Button variant="subtle" color="gray" size="sm" onClick={() => setAsking("decline")}>
               {t("ask.decline")}
             </Button>
           )}

@@ -8,6 +8,7 @@ export function useFormTexts(): FormTexts {
     yes: t("form.yes"),
     no: t("form.no"),
     optional: t("form.optional"),
+    required: t("form.required"),
     back: t("form.back"),
     next: t("form.next"),
     submit: t("form.submit"),

@@ -52,7 +52,9 @@ function Figures({ dashboard }: { readonly dashboard: Dashboard }): JSX.Element 
         <div className={classes.figures}>
           {dashboard.figures.map((figure) => (
             <figure key={figure.key} className={classes.figure}>
-              <Title order={3}>{figure.title}</Title>
+              <Title order={2} size="h3">
+                {figure.title}
+              </Title>
               <Figure
                 figure={figure.figure}
                 label={figure.title}
