@@ -4,17 +4,23 @@ SQLite runs in WAL mode with synchronous FULL, so that a commit survives a power
 writer: writing transactions start with BEGIN IMMEDIATE (a deferred transaction that upgrades from
 reading to writing fails at once, whatever the busy time-out) and queue on an in-process lock, which
 keeps their waiting fair and short. PostgreSQL needs neither and gets neither.
+
+A request's transaction may begin and end on different threads. So the lock belongs to nobody in
+particular, and requests wait for it on threads of their own: if they waited on the threads that run
+endpoints, the one that holds the lock could find no thread to finish on.
 """
 
 import sqlite3
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from alembic import command
 from alembic.config import Config
+from anyio import CapacityLimiter
+from anyio.to_thread import run_sync
 from sqlalchemy import Connection, Engine, MetaData, create_engine, event, make_url
 from sqlalchemy.engine.interfaces import DBAPIConnection
 from sqlalchemy.orm import DeclarativeBase, Session
@@ -43,7 +49,8 @@ class Database:
     """An engine with its two ways in: `reading()` and `writing()`."""
 
     engine: Engine
-    _write_lock: threading.RLock = field(default_factory=threading.RLock)
+    _write_lock: threading.Lock = field(default_factory=threading.Lock)
+    _waiting_room: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(1000))
 
     @property
     def is_sqlite(self) -> bool:
@@ -58,17 +65,27 @@ class Database:
 
     @contextmanager
     def writing(self) -> Iterator[Session]:
-        """One transaction: committed as the block ends, rolled back if it raises."""
-        writer = self.engine.execution_options(reembody_writes=True)
-        with self.write_turn(), Session(writer, expire_on_commit=False) as session:
+        """One transaction: committed as the block ends, rolled back if it raises. Not nestable."""
+        with self._write_lock if self.is_sqlite else nullcontext(), self._writer() as session:
             yield session
             session.commit()
 
-    @contextmanager
-    def write_turn(self) -> Iterator[None]:
-        """Hold the single-writer turn of SQLite; nothing to hold on PostgreSQL."""
-        with self._write_lock if self.is_sqlite else nullcontext():
-            yield
+    @asynccontextmanager
+    async def writing_async(self) -> AsyncIterator[Session]:
+        """The same for a request: waits and commits without holding up the event loop."""
+        if self.is_sqlite:
+            await run_sync(self._write_lock.acquire, limiter=self._waiting_room)
+        try:
+            with self._writer() as session:
+                yield session
+                await run_sync(session.commit)
+        finally:
+            if self.is_sqlite:
+                self._write_lock.release()
+
+    def _writer(self) -> Session:
+        engine = self.engine.execution_options(reembody_writes=True)
+        return Session(engine, expire_on_commit=False)
 
     def close(self) -> None:
         """Return every connection."""

@@ -64,6 +64,39 @@ def token(
         fail(str(error))
 
 
+@app.command()
+def rehearse(
+    url: Annotated[str | None, typer.Option(help="Server; without it one is started.")] = None,
+    token: Annotated[str | None, typer.Option(help="Bearer token for --url.")] = None,
+    capture: Annotated[Path | None, typer.Option(help="BVH capture to move by.")] = None,
+    speed: Annotated[float, typer.Option(help="Seconds of study time per second.")] = 1.0,
+    seed: Annotated[int, typer.Option(help="Seed of everything that is drawn.")] = 1,
+    study: Annotated[str, typer.Option(help="Key of the study.")] = "reembodiment-latency",
+    data: Annotated[
+        Path | None, typer.Option(help="Keep the started server's data in this folder.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
+) -> None:
+    """Take a simulated participant through a whole session."""
+    from app.cli.rehearsing import run_rehearsal
+
+    try:
+        print(
+            run_rehearsal(
+                url=url,
+                token=token,
+                capture=capture,
+                speed=speed,
+                seed=seed,
+                study=study,
+                data=data,
+                as_json=as_json,
+            )
+        )
+    except (ValueError, RuntimeError) as error:
+        fail(str(error))
+
+
 def fail(message: str) -> None:
     """Say what is wrong and leave with the status for unusable input."""
     print(f"reembody: {message}", file=sys.stderr)

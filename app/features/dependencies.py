@@ -3,7 +3,7 @@
 `Writing` commits before the response leaves, so whoever hears "stored" can rely on it.
 """
 
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -49,8 +49,8 @@ def _reading(context: Context) -> Iterator[Session]:
         yield db
 
 
-def _writing(context: Context) -> Iterator[Session]:
-    with context.database.writing() as db:
+async def _writing(context: Context) -> AsyncIterator[Session]:
+    async with context.database.writing_async() as db:
         yield db
 
 

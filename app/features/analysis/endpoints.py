@@ -1,5 +1,29 @@
-"""Dashboards over HTTP."""
+"""Dashboards and the codebook over HTTP."""
 
 from fastapi import APIRouter
 
+from app.features.analysis.schemas import ColumnView
+from app.features.dependencies import Reading, SignedIn
+from app.features.studies.service import study_by_key
+
 router = APIRouter(tags=["analysis"])
+
+
+@router.get("/studies/{key}/codebook")
+def get_codebook(key: str, db: Reading, _: SignedIn) -> list[ColumnView]:
+    """What every column of the study's export holds."""
+    # Loads pandas, which the start of the server need not wait for.
+    from app.features.analysis.codebook import CODEBOOK
+
+    study_by_key(db, key)
+    return [
+        ColumnView(
+            table=column.table,
+            column=column.name,
+            meaning=column.meaning,
+            unit=column.unit,
+            type=column.type,
+            levels=column.levels,
+        )
+        for column in CODEBOOK
+    ]

@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 
 from fastapi import APIRouter
 from fastapi.sse import EventSourceResponse, ServerSentEvent
+from sqlalchemy import select
 
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn, Writing
@@ -23,10 +24,12 @@ from app.features.sessions.schemas import (
     NewSession,
     SessionSummary,
     SessionView,
+    StreamView,
 )
 from app.features.sessions.service import apply_command, is_repeated, join, session_by_id
 from app.features.sessions.view import event_views, list_sessions, session_view
 from app.features.studies.service import study_by_key
+from app.models import TelemetryStream
 
 router = APIRouter(tags=["sessions"])
 HEARTBEAT_S = 10.0
@@ -112,6 +115,26 @@ def post_submission(
         db, context, session, request, mode="operator", actor=caller.actor
     )
     return Receipt(receipt_id=submission.id, stored_at=submission.submitted_at, duplicate=duplicate)
+
+
+@router.get("/sessions/{session_id}/streams")
+def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
+    """How much of each stream of each run of the headset is on disk."""
+    session_by_id(db, session_id)
+    return [
+        StreamView(
+            stream=row.stream,
+            epoch=row.epoch,
+            next_seq=row.next_seq,
+            frames_stored=row.frames_stored,
+            frames_flagged=row.frames_flagged,
+        )
+        for row in db.scalars(
+            select(TelemetryStream)
+            .where(TelemetryStream.session_id == session_id)
+            .order_by(TelemetryStream.epoch, TelemetryStream.stream)
+        )
+    ]
 
 
 @router.get("/sessions/{session_id}/live", response_class=EventSourceResponse)

@@ -177,3 +177,13 @@ class EventView(BaseModel):
     by: str
     data: dict[str, Any]
     hash: str
+
+
+class StreamView(BaseModel):
+    """How much of one stream of one run of the headset is on disk."""
+
+    stream: str
+    epoch: int
+    next_seq: int
+    frames_stored: int
+    frames_flagged: int

@@ -1,0 +1,44 @@
+"""Exporting a study from the command line."""
+
+import sys
+from pathlib import Path
+
+from app.clock import Clock
+from app.database import migrate, open_database
+from app.features.analysis.tables import KINDS, Kind
+from app.features.exports.service import export_study, snapshot, usual_kind
+from app.settings import Settings
+
+
+def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
+    """Export a study of this installation to a folder; one sentence on what was written.
+
+    Without a `kind`: people's sessions, or what there is if there are none of people. Says on
+    standard error which file it is at. Raises ValueError for an unknown kind, ReembodyError for an
+    unknown study or a folder that is not ours to replace, OSError where it cannot be written.
+    """
+    url = Settings().resolved_database_url
+    migrate(url)
+    database = open_database(url)
+    try:
+        with snapshot(database) as db:
+            chosen = usual_kind(db, study) if kind is None else _known(kind)
+            done = export_study(
+                db, study, chosen, to, now=Clock().utc_now(), progress=_tell_progress
+            )
+    finally:
+        database.close()
+    return f"{done.sessions} session(s) of kind {done.kind} in {done.files} files: {to}"
+
+
+def _known(kind: str) -> Kind:
+    for known in KINDS:
+        if kind == known:
+            return known
+    raise ValueError(f"unknown kind {kind!r}; valid are {', '.join(KINDS)}")
+
+
+def _tell_progress(path: str) -> None:
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r\033[Kwriting {path}" if path != "README.txt" else "\r\033[K")
+        sys.stderr.flush()

@@ -1,0 +1,61 @@
+"""The columns of answers.csv and scores.csv."""
+
+from app.features.analysis.codebook.column import Column, Describe
+from app.features.analysis.codebook.common import place_columns, session_columns
+
+_A = Describe("answers")
+_S = Describe("scores")
+
+
+def _form_columns(table: str) -> tuple[Column, ...]:
+    of = Describe(table)
+    return (
+        of.text("submission_id", "The filled-in form."),
+        of.text("administration", "Which filling-in: the step and its attempt."),
+        of.text("instrument", "Key of the questionnaire."),
+        of.integer("instrument_version", "Version of the questionnaire.", levels="1 and up"),
+        of.integer("step_index", "Step of the procedure.", levels="0 and up"),
+        *place_columns(table),
+        of.integer(
+            "attempt", "Which attempt at the step; redone steps count up.", levels="1 and up"
+        ),
+        of.boolean(
+            "valid",
+            "Whether the row may be analysed: the form was not superseded by a later attempt, the "
+            "phase it asks about was not skipped, and the session was neither aborted nor "
+            "withdrawn.",
+        ),
+        of.text("mode", "How it was entered.", "tablet, operator"),
+    )
+
+
+ANSWERS: tuple[Column, ...] = (
+    *session_columns("answers"),
+    *_form_columns("answers"),
+    _A.text("language", "Language the form was shown in.", "ISO 639-1 code"),
+    _A.text("item", "Key of the item in the questionnaire."),
+    _A.text("item_type", "What kind of item.", "likert, integer, number, text, boolean, choice"),
+    _A.integer("shown_position", "Place at which the item was shown.", levels="1 and up"),
+    _A.number(
+        "value_number",
+        "The answer as given, before any recoding; yes is 1 and no is 0. Empty if left out.",
+        "the item's unit",
+        "the item's range",
+    ),
+    _A.text("value_text", "The answer to an open question, or the key of the choice."),
+    _A.number("response_s", "Time at the item, as the tablet reported it.", "s"),
+    _A.time("started_at_utc", "When the form was opened, by the tablet's clock."),
+    _A.time("submitted_at_utc", "When it was stored."),
+)
+
+SCORES: tuple[Column, ...] = (
+    *session_columns("scores"),
+    *_form_columns("scores"),
+    _S.text("score", "Key of the score in the questionnaire."),
+    _S.number(
+        "value", "The score; empty if one of its items was left out.", levels="minimum to maximum"
+    ),
+    _S.number("minimum", "Lowest value that the score can have."),
+    _S.number("maximum", "Highest value that the score can have."),
+    _S.time("submitted_at_utc", "When the form was stored."),
+)

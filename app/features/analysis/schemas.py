@@ -1,0 +1,41 @@
+"""A dashboard and a codebook as they travel to a page."""
+
+from typing import Any, Literal
+
+from pydantic import BaseModel
+
+Kind = Literal["people", "simulated", "test", "all"]
+DashboardKind = Literal["people", "simulated", "test"]
+
+
+class FigureView(BaseModel):
+    """A figure for plotly.js, or in plain words what is missing for it; `n` participants."""
+
+    key: str
+    title: str
+    caption: str
+    figure: dict[str, Any] | None
+    empty: str | None
+    n: int
+
+
+class DashboardView(BaseModel):
+    """The figures of a study's sessions of one kind."""
+
+    kind: str
+    simulated: bool
+    n_sessions: int
+    n_completed: int
+    avatar: list[str]
+    figures: list[FigureView]
+
+
+class ColumnView(BaseModel):
+    """A column of an export."""
+
+    table: str
+    column: str
+    meaning: str
+    unit: str
+    type: str
+    levels: str

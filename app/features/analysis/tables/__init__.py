@@ -1,0 +1,29 @@
+"""The record as tidy tables: SQL in, pandas out, one function each.
+
+Every function takes a study and a kind (people, simulated, test or all) and gives a DataFrame whose
+columns are those of the codebook, in their order. Nothing is left out: redone phases, superseded
+forms and broken-off sessions are there with `valid` false. Texts are `object`, whole numbers
+`Int64`, numbers `float64`, booleans `bool`, times `datetime64[us, UTC]`; missing values are NA.
+"""
+
+from app.features.analysis.schemas import Kind
+from app.features.analysis.tables.context import KINDS
+from app.features.analysis.tables.events import events_table
+from app.features.analysis.tables.joint_errors import joint_errors_table
+from app.features.analysis.tables.phases import phases_table
+from app.features.analysis.tables.questionnaires import answers_table, scores_table
+from app.features.analysis.tables.sessions import sessions_table
+from app.features.analysis.tables.tasks import completions_table, contacts_table
+
+__all__ = [
+    "KINDS",
+    "Kind",
+    "answers_table",
+    "completions_table",
+    "contacts_table",
+    "events_table",
+    "joint_errors_table",
+    "phases_table",
+    "scores_table",
+    "sessions_table",
+]

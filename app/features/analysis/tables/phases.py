@@ -1,0 +1,93 @@
+"""The table of phases, with what each came to."""
+
+from collections.abc import Iterable
+
+import pandas as pd
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.features.analysis.schemas import Kind
+from app.features.analysis.tables.context import finished, of_kind, phases_context, read
+from app.features.studies.service import study_by_key
+from app.models import Completion, Contact, Phase, Study, StudySession
+from app.science.tasks.summaries import union
+from app.science.tasks.surfaces import side_unit
+
+_KEYS = ["session_id", "phase_id"]
+
+
+def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per phase, in order of session and phase."""
+    study = study_by_key(db, study_key)
+    frame = phases_context(db, study_key, kind)
+    for more in (_details(db, study, kind), _completions(db, study, kind), _red(db, study, kind)):
+        frame = frame.merge(more, on=_KEYS, how="left")
+    for name in ("completions", "side_contacts", "side_red_s"):
+        frame[name] = [0 if pd.isna(value) else value for value in frame[name]]
+    return finished(frame, "phases")
+
+
+def red_spans(
+    contacts: Iterable[tuple[str, float, float]],
+) -> dict[str, tuple[tuple[float, float], ...]]:
+    """When each side was red, from (surface, begin, end) of its contacts: the union over parts."""
+    by_side: dict[str, list[tuple[float, float]]] = {}
+    for surface, begin_s, end_s in contacts:
+        by_side.setdefault(side_unit(surface) or surface, []).append((begin_s, end_s))
+    return {side: union(spans) for side, spans in by_side.items()}
+
+
+def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(
+            Phase.session_id,
+            Phase.phase_id,
+            Phase.step_key,
+            Phase.active_s,
+            Phase.paused_count,
+            Phase.walk_back_count,
+            Phase.client_started_s,
+            Phase.client_ended_s,
+            Phase.prepared_at,
+            Phase.started_at,
+            Phase.ended_at,
+        )
+        .join(StudySession, StudySession.id == Phase.session_id)
+        .where(of_kind(study, kind))
+    )
+    names = ("step_key", "active_s", "paused_count", "walk_back_count", "client_started_s")
+    times = ("client_ended_s", "prepared_at_utc", "started_at_utc", "ended_at_utc")
+    return read(db, query, (*_KEYS, *names, *times))
+
+
+def _completions(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(Completion.session_id, Completion.phase_id, func.count())
+        .join(StudySession, StudySession.id == Completion.session_id)
+        .where(of_kind(study, kind))
+        .group_by(Completion.session_id, Completion.phase_id)
+    )
+    return read(db, query, (*_KEYS, "completions"))
+
+
+def _red(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(
+            Contact.session_id,
+            Contact.phase_id,
+            Contact.surface,
+            Contact.begin_active_s,
+            Contact.end_active_s,
+        )
+        .join(StudySession, StudySession.id == Contact.session_id)
+        .where(of_kind(study, kind), Contact.surface_kind == "side")
+    )
+    by_phase: dict[tuple[str, int], list[tuple[str, float, float]]] = {}
+    for session_id, phase_id, surface, begin_s, end_s in db.execute(query):
+        by_phase.setdefault((session_id, phase_id), []).append((surface, begin_s, end_s))
+    rows = []
+    for (session_id, phase_id), contacts in by_phase.items():
+        spans = [span for side in red_spans(contacts).values() for span in side]
+        red_s = sum((end - begin for begin, end in spans), 0.0)
+        rows.append((session_id, phase_id, len(spans), red_s))
+    return pd.DataFrame(rows, columns=[*_KEYS, "side_contacts", "side_red_s"], dtype=object)

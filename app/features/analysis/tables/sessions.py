@@ -1,0 +1,86 @@
+"""The table of sessions."""
+
+import pandas as pd
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.analysis.schemas import Kind
+from app.features.analysis.tables.context import (
+    BROKEN_OFF,
+    finished,
+    of_kind,
+    read,
+    sessions_context,
+)
+from app.features.sessions.contents import content_body
+from app.features.studies.service import protocol_of, study_by_key, versions_of
+from app.models import LedgerSlot, SessionContent, SlotAttempt, Study, StudySession, StudyVersion
+
+
+def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per session, oldest first."""
+    study = study_by_key(db, study_key)
+    frame = sessions_context(db, study_key, kind).rename(columns={"session_status": "status"})
+    frame = frame.merge(_details(db, study, kind), on="session_id")
+    frame = frame.merge(_heights(db, study, kind), on="session_id", how="left")
+    latencies = _latencies(db, study)
+    frame["order"] = [
+        " ".join(f"{latencies[version, key]:g}" for key in sequence or ())
+        for version, sequence in zip(frame["study_version"], frame["sequence"], strict=True)
+    ]
+    frame["valid"] = ~frame["status"].isin(BROKEN_OFF)
+    return finished(frame, "sessions")
+
+
+def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(
+            StudySession.id,
+            StudySession.language,
+            StudySession.time_scale,
+            StudySession.created_at,
+            StudySession.started_at,
+            StudySession.ended_at,
+            StudyVersion.content_hash,
+            LedgerSlot.position,
+            LedgerSlot.block,
+            LedgerSlot.replicate,
+            LedgerSlot.sequence,
+        )
+        .join(StudyVersion, StudyVersion.id == StudySession.study_version_id)
+        .join(SlotAttempt, SlotAttempt.session_id == StudySession.id)
+        .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
+        .where(of_kind(study, kind))
+    )
+    names = ("session_id", "language", "time_scale")
+    times = ("created_at_utc", "started_at_utc", "ended_at_utc", "study_content_hash")
+    return read(
+        db, query, (*names, *times, "slot_index", "slot_block", "slot_replicate", "sequence")
+    )
+
+
+def _heights(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    """The newest heights of each session; none once they were erased."""
+    contents = db.scalars(
+        select(SessionContent)
+        .join(StudySession, StudySession.id == SessionContent.session_id)
+        .where(of_kind(study, kind), SessionContent.kind == "height")
+        .order_by(SessionContent.created_at, SessionContent.id)
+    )
+    newest = {row.session_id: content_body(row) for row in contents}
+    rows = [
+        (session_id, body.get("stated"), body.get("matched"))
+        for session_id, body in newest.items()
+        if isinstance(body, dict)
+    ]
+    columns = ["session_id", "height_stated_m", "height_matched_m"]
+    return pd.DataFrame(rows, columns=columns, dtype=object)
+
+
+def _latencies(db: Session, study: Study) -> dict[tuple[int, str], float]:
+    """Added latency in ms by study version and condition."""
+    return {
+        (version.number, condition.key): condition.latency_ms
+        for version in versions_of(db, study)
+        for condition in protocol_of(version).conditions
+    }

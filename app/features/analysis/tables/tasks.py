@@ -1,0 +1,65 @@
+"""The tables of contacts and completed tasks."""
+
+import pandas as pd
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.analysis.schemas import Kind
+from app.features.analysis.tables.context import finished, of_kind, phases_context, read
+from app.features.studies.service import study_by_key
+from app.models import Completion, Contact, StudySession
+
+_KEYS = ["session_id", "phase_id"]
+
+
+def contacts_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per contact interval, by phase and begin."""
+    query = (
+        select(
+            Contact.session_id,
+            Contact.phase_id,
+            Contact.surface,
+            Contact.surface_kind,
+            Contact.box,
+            Contact.side,
+            Contact.body_part,
+            Contact.effect,
+            Contact.begin_s,
+            Contact.end_s,
+            Contact.begin_active_s,
+            Contact.end_active_s,
+        )
+        .join(StudySession, StudySession.id == Contact.session_id)
+        .where(of_kind(study_by_key(db, study_key), kind))
+        .order_by(Contact.begin_s, Contact.surface, Contact.body_part, Contact.id)
+    )
+    names = ("surface", "surface_kind", "box", "side", "body_part", "effect")
+    times = ("begin_s", "end_s", "begin_active_s", "end_active_s")
+    contacts = read(db, query, (*_KEYS, *names, *times))
+    frame = phases_context(db, study_key, kind).merge(contacts, on=_KEYS)
+    frame["duration_s"] = frame["end_active_s"] - frame["begin_active_s"]
+    return finished(frame, "contacts")
+
+
+def completions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per completed task, by phase and number."""
+    query = (
+        select(
+            Completion.session_id,
+            Completion.phase_id,
+            Completion.number,
+            Completion.at_s,
+            Completion.active_s,
+            Completion.duration_s,
+            Completion.order,
+            Completion.out_of_order_touches,
+        )
+        .join(StudySession, StudySession.id == Completion.session_id)
+        .where(of_kind(study_by_key(db, study_key), kind))
+        .order_by(Completion.number)
+    )
+    names = ("number", "at_s", "active_s", "duration_s", "panels", "out_of_order_touches")
+    done = read(db, query, (*_KEYS, *names))
+    frame = phases_context(db, study_key, kind).merge(done, on=_KEYS)
+    frame["panel_order"] = [" ".join(str(box) for box in panels) for panels in frame["panels"]]
+    return finished(frame, "completions")

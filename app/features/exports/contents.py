@@ -1,0 +1,107 @@
+"""What an export holds: each file with its pieces, in the order in which they are written.
+
+Folder and archive are two ways of writing the same members, so they cannot differ. A member is read
+from the database while it is written; only the README at the end knows what came of it.
+"""
+
+import hashlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from datetime import datetime
+
+import pandas as pd
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.analysis.codebook import codebook_frame
+from app.features.analysis.tables import (
+    Kind,
+    answers_table,
+    completions_table,
+    contacts_table,
+    events_table,
+    joint_errors_table,
+    phases_table,
+    scores_table,
+    sessions_table,
+)
+from app.features.exports.cells import csv_pieces
+from app.features.exports.names import samples_path
+from app.features.exports.readme import FileCount, Origin, readme_text
+from app.features.exports.samples import SampleFile
+from app.features.studies.service import study_by_key
+from app.models import StudyVersion
+
+TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
+    "sessions": sessions_table,
+    "phases": phases_table,
+    "answers": answers_table,
+    "scores": scores_table,
+    "contacts": contacts_table,
+    "completions": completions_table,
+    "joint_errors": joint_errors_table,
+    "events": events_table,
+}
+README = "README.txt"
+TOP_LEVEL = frozenset({*(f"{name}.csv" for name in (*TABLE_FILES, "codebook")), README})
+
+
+@dataclass(frozen=True)
+class Member:
+    """A file of an export: its path inside, made by us, and its bytes in pieces."""
+
+    path: str
+    pieces: Iterator[bytes]
+
+
+@dataclass
+class Contents:
+    """The members of one export. Iterate once; `files` and `sessions` fill as members are used."""
+
+    db: Session
+    study_key: str
+    kind: Kind
+    now: datetime
+    files: list[FileCount] = field(default_factory=list)
+    sessions: int = 0
+
+    def members(self) -> Iterator[Member]:
+        """Tables, codebook, the frames of each session, and the README last."""
+        sessions = sessions_table(self.db, self.study_key, self.kind)
+        self.sessions = len(sessions)
+        for name, table in TABLE_FILES.items():
+            frame = sessions if name == "sessions" else table(self.db, self.study_key, self.kind)
+            yield self._member(f"{name}.csv", csv_pieces(name, frame))
+        yield self._member("codebook.csv", csv_pieces("codebook", codebook_frame()))
+        rows = sessions[["participant_code", "session_id", "simulated", "avatar"]]
+        for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
+            samples = SampleFile(self.db, session_id, bool(simulated), avatar)
+            yield self._member(samples_path(code, session_id), samples.pieces())
+        yield Member(README, iter([self._readme(sessions).encode()]))
+
+    def _member(self, path: str, pieces: Iterator[bytes]) -> Member:
+        return Member(path, self._counted(path, pieces))
+
+    def _counted(self, path: str, pieces: Iterator[bytes]) -> Iterator[bytes]:
+        """The same pieces; what they came to is noted once the last is out."""
+        digest, lines = hashlib.sha256(), 0
+        for piece in pieces:
+            digest.update(piece)
+            lines += piece.count(b"\n")
+            yield piece
+        self.files.append(FileCount(path, lines, digest.hexdigest()))
+
+    def _readme(self, sessions: pd.DataFrame) -> str:
+        study = study_by_key(self.db, self.study_key)
+        used = {int(number) for number in sessions["study_version"].dropna()}
+        versions = self.db.scalars(
+            select(StudyVersion)
+            .where(StudyVersion.study_id == study.id)
+            .order_by(StudyVersion.number)
+        ).all()
+        hashes = {
+            row.number: row.content_hash for row in versions if not used or row.number in used
+        }
+        statuses = {str(key): int(n) for key, n in sessions["status"].value_counts().items()}
+        origin = Origin(self.study_key, self.kind, self.now, hashes, statuses)
+        return readme_text(origin, self.files)

@@ -1,0 +1,85 @@
+"""The README that travels with an export."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+
+from app import __version__
+
+MARK = "Reembody export"
+"""How an export's README begins, by which we know our own folders again."""
+
+_READING = """\
+Reading the files
+  codebook.csv describes every column: meaning, unit, type and range.
+  CSV in UTF-8, lines end with LF, quoted as in RFC 4180. Missing values are empty cells, booleans
+  true and false, times UTC in ISO 8601. Numbers stand in full precision.
+  Redone phases, superseded forms and broken-off sessions are included: use rows with valid = true.
+  A text that a spreadsheet would run as a formula has an apostrophe in front of it.
+  samples/ holds one file per session. Target and actual body stand side by side, joined on epoch
+  and seq; the cells of a stream are empty where it has no frame. Positions in metres (world: x to
+  the right, y up, -z ahead), quaternions w, x, y, z. Frames stand as they came: NaN and Infinity
+  are values that were sent, and such rows are flagged.
+  The hips carry no latency. latency_ms is what was added to the delay of the equipment.
+"""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where an export comes from: `versions` maps numbers to content hashes."""
+
+    study_key: str
+    kind: str
+    now: datetime
+    versions: Mapping[int, str]
+    statuses: Mapping[str, int]
+
+
+@dataclass(frozen=True)
+class FileCount:
+    """What a file came to; `lines` counts the header and the line breaks inside of quotes too."""
+
+    path: str
+    lines: int
+    sha256: str
+
+
+def readme_text(origin: Origin, files: Sequence[FileCount]) -> str:
+    """The text: version, study with content hashes, when, kind, counts, files with hashes."""
+    when = origin.now.astimezone(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
+    statuses = ", ".join(f"{count} {status}" for status, count in sorted(origin.statuses.items()))
+    head = [
+        MARK,
+        "",
+        f"Reembody version  {__version__}",
+        f"Study             {origin.study_key}",
+        *(f"  version {number}, content {hash_}" for number, hash_ in origin.versions.items()),
+        f"Exported          {when}",
+        f"Kind of sessions  {origin.kind}",
+        f"Sessions          {sum(origin.statuses.values())}"
+        + (f" ({statuses})" if statuses else ""),
+        *_warning(origin.kind),
+        "",
+    ]
+    listing = [
+        f"  {file.sha256}  {file.lines:>9}  {file.path}"
+        for file in sorted(files, key=lambda file: file.path)
+    ]
+    return "\n".join(
+        [*head, _READING, "Files (SHA-256, lines with the header, name)", *listing, ""]
+    )
+
+
+def _warning(kind: str) -> list[str]:
+    match kind:
+        case "simulated":
+            return ["", "These data were made by a simulation. They say nothing about people."]
+        case "test":
+            return ["", "These are test sessions. They are not results."]
+        case "all":
+            return [
+                "",
+                "Kinds are together in these files: never analyse them as one (column kind).",
+            ]
+        case _:
+            return []

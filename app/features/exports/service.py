@@ -1,0 +1,78 @@
+"""Exporting a study: one consistent look at the database, as a folder or as an archive."""
+
+from collections.abc import Generator, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.database import Database
+from app.features.analysis.tables import Kind
+from app.features.exports.archive import zip_pieces
+from app.features.exports.contents import Contents
+from app.features.exports.folder import Progress, silent, write_folder
+from app.features.studies.service import study_by_key
+from app.models import StudySession
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What was written where."""
+
+    to: Path
+    kind: Kind
+    sessions: int
+    files: int
+
+
+@contextmanager
+def snapshot(database: Database) -> Iterator[Session]:
+    """A session that sees one moment, however long it reads and whatever is stored meanwhile."""
+    with database.reading() as db:
+        if not database.is_sqlite:
+            # On SQLite every transaction is such a look; PostgreSQL must be asked for it.
+            db.connection(execution_options={"isolation_level": "REPEATABLE READ"})
+        yield db
+
+
+def export_study(
+    db: Session,
+    study_key: str,
+    kind: Kind,
+    to: Path,
+    *,
+    now: datetime,
+    progress: Progress = silent,
+) -> Exported:
+    """Write the study's sessions of one kind to the folder `to`.
+
+    Raises NotFound for an unknown study, Conflict where something else is at `to`, OSError where it
+    cannot be written; in each case nothing has changed.
+    """
+    contents = Contents(db, study_key, kind, now)
+    write_folder(contents.members(), to, progress=progress)
+    return Exported(to, kind, contents.sessions, len(contents.files) + 1)
+
+
+def study_archive(
+    database: Database, study_key: str, kind: Kind, *, now: datetime
+) -> Generator[bytes]:
+    """The same as one ZIP file, in pieces; close the iterator to stop early."""
+    with snapshot(database) as db:
+        yield from zip_pieces(Contents(db, study_key, kind, now).members(), now)
+
+
+def usual_kind(db: Session, study_key: str) -> Kind:
+    """The kind to export when none was named: people, or what there is if there are no people.
+
+    So a rehearsed study can be exported without a word, and simulated sessions never stand beside
+    people's unless somebody asks for all.
+    """
+    study = study_by_key(db, study_key)
+    there = set(db.scalars(select(StudySession.kind).where(StudySession.study_id == study.id)))
+    if "people" in there or not there:
+        return "people"
+    return "simulated" if "simulated" in there else "test"

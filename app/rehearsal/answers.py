@@ -1,0 +1,79 @@
+"""What the simulated participant writes into forms: drawn from the seed, no person's answers."""
+
+import re
+from typing import Any
+
+import numpy as np
+
+from app.rehearsal.body import Person
+from app.science.simulation.answers import Aspect, SimulatedItem, simulated_answers
+
+OPEN_PROMPT = "Simulated answer of a rehearsal."
+
+
+def fill_in(
+    instrument: dict[str, Any],
+    person: Person,
+    latency_ms: float | None,
+    limb: str | None,
+    rng: np.random.Generator,
+) -> dict[str, Any]:
+    """Answers to every item of an instrument (as the tablet receives it)."""
+    likert = [item for item in instrument["items"] if item["type"] == "likert"]
+    answers: dict[str, Any] = {}
+    if likert:
+        scale = instrument["scale"]
+        aspects = _aspects(instrument)
+        answers |= simulated_answers(
+            [
+                SimulatedItem(
+                    item["key"],
+                    scale["minimum"],
+                    scale["maximum"],
+                    aspects.get(item["key"], Aspect.OWNERSHIP),
+                )
+                for item in likert
+            ],
+            {item["key"]: -1 if item["reverse_keyed"] else 1 for item in likert},
+            latency_ms or 0.0,
+            limb or "hand",
+            rng,
+        )
+    for item in instrument["items"]:
+        if item["type"] != "likert":
+            answers[item["key"]] = _answer(item, person, rng)
+    return answers
+
+
+def _aspects(instrument: dict[str, Any]) -> dict[str, Aspect]:
+    """Items that a score named like an aspect is made of follow that aspect's curve."""
+    return {
+        item["key"]: aspect
+        for aspect in Aspect
+        for score in instrument["scores"]
+        if score["key"] == aspect.value
+        for item in instrument["items"]
+        if re.search(rf"\b{re.escape(item['key'])}\b", score["formula"])
+    }
+
+
+def _answer(item: dict[str, Any], person: Person, rng: np.random.Generator) -> Any:
+    own = {
+        "handedness": person.handedness,
+        "footedness": person.footedness,
+        "age": person.age,
+        "height_cm": round(person.stature_m * 100),
+    }
+    if item["key"] in own:
+        return own[item["key"]]
+    match item["type"]:
+        case "boolean":
+            # Normal or corrected vision and stereo vision are what takes part.
+            return item["key"] in ("vision", "stereo_vision")
+        case "choice":
+            keys = [choice["key"] for choice in item["choices"]]
+            return keys[int(rng.integers(len(keys)))]
+        case "integer" | "number":
+            return int(rng.integers(int(item["minimum"] or 0), int(item["maximum"] or 10) + 1))
+        case _:
+            return OPEN_PROMPT if item["required"] or rng.random() < 0.5 else None

@@ -1,0 +1,205 @@
+"""The scripted headset: moves a body, delays its copy, plays the tasks, streams everything.
+
+The remote avatar is the same movement with every joint but the hips delayed by the block's latency
+(`delayed_copy`); contacts come from its body parts against the boxes.
+"""
+
+import asyncio
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.client.telemetry import TelemetryClient
+from app.protocol import Tasks
+from app.rehearsal.body import FRAME_RATE_HZ, Person
+from app.rehearsal.goals import goal_of
+from app.rehearsal.task_run import BoxRun
+from app.rehearsal.timed_run import FreeRun, TimedRun
+from app.science.avatar.delay import DelayBuffer
+from app.science.skeleton import JOINT_NAMES, Pose, body_part_segments, forward_kinematics
+from app.science.tasks import Laterality, TaskRules
+from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
+from app.wire.batch import ACTIVE
+from app.wire.messages import HeadsetState, MaterialisedReport, PhaseOrder, ReportBody
+
+FRAMES_PER_BATCH = 6
+T_POSE_S = 2.0
+
+
+@dataclass
+class Buffers:
+    """The frames of the batch that is being filled."""
+
+    times_s: NDArray[np.float64] = field(default_factory=lambda: np.zeros(FRAMES_PER_BATCH))
+    flags: NDArray[np.uint8] = field(
+        default_factory=lambda: np.zeros(FRAMES_PER_BATCH, dtype=np.uint8)
+    )
+    target: NDArray[np.float32] = field(
+        default_factory=lambda: np.zeros((FRAMES_PER_BATCH, VALUES_PER_FRAME), dtype=np.float32)
+    )
+    actual: NDArray[np.float32] = field(
+        default_factory=lambda: np.zeros((FRAMES_PER_BATCH, VALUES_PER_FRAME), dtype=np.float32)
+    )
+    count: int = 0
+
+
+class Headset:
+    """Runs until the session is over or recording ends with the debriefing.
+
+    `speed`: seconds of the headset's clock per real second (at most; a busy machine is slower).
+    """
+
+    def __init__(self, client: TelemetryClient, person: Person, tasks: Tasks, speed: float) -> None:
+        self.client = client
+        self.frames_sent: dict[str, int] = {name.value: 0 for name in StreamName}
+        self.completions = 0
+        self.contacts = 0
+        self._person, self._speed = person, speed
+        self._layouts = {"hand": tasks.hand.layout(), "foot": tasks.foot.layout()}
+        self._delay = DelayBuffer(0.0)
+        self._run: TimedRun | None = None
+        self._phase_id = 0
+        self._buffers = Buffers()
+        self._frame = 0
+        self._t_pose_since_s: float | None = None
+        self._materialised = False
+        self._started_s = time.monotonic()
+
+    @property
+    def t_s(self) -> float:
+        """The headset's monotonic clock: the time of the present frame."""
+        return self._frame / FRAME_RATE_HZ
+
+    async def run(self) -> None:
+        """Draw frame after frame while the session lasts."""
+        self._started_s = time.monotonic()
+        while True:
+            state = self.client.state
+            if state is None or state.status in ("completed", "aborted", "withdrawn"):
+                break
+            await self._follow(state)
+            for _ in range(FRAMES_PER_BATCH):
+                await self._draw(recording=state.recording)
+            await self._sleep_until_due()
+        await self._flush()
+        await self.client.drained()
+
+    async def _sleep_until_due(self) -> None:
+        """Keep the pace; a machine that is behind goes on at once but lets others run."""
+        due_s = self._started_s + self.t_s / self._speed
+        await asyncio.sleep(max(0.0, due_s - time.monotonic()))
+
+    async def _follow(self, state: HeadsetState) -> None:
+        """Converge to the session's state."""
+        if state.step_kind == "materialise" and not state.materialised:
+            await self._materialise()
+        order = state.phase
+        if self._run is not None and order is not None:
+            if self._run.order.phase_id == order.phase_id:
+                await self._report(self._run.follow(order, self.t_s))
+                return
+            # Another phase was called: the one under way was voided.
+            await self._leave_phase()
+        if order is None or self._has_ended(order):
+            if self._run is not None:
+                await self._leave_phase()
+            return
+        await self._enter_phase(order)
+
+    def _has_ended(self, order: PhaseOrder) -> bool:
+        """Whether the state is older than our own report that the phase has ended."""
+        return self._run is None and order.phase_id <= self._phase_id
+
+    async def _materialise(self) -> None:
+        if self._t_pose_since_s is None:
+            self._t_pose_since_s = self.t_s
+        elif self.t_s - self._t_pose_since_s >= T_POSE_S and not self._materialised:
+            self._materialised = True
+            await self.client.report(MaterialisedReport(t_s=self.t_s))
+
+    async def _enter_phase(self, order: PhaseOrder) -> None:
+        await self._flush()
+        self._phase_id = order.phase_id
+        self._delay.set_delay(order.latency_ms / 1000.0)
+        self._person.participant.set_latency(order.latency_ms / 1000.0)
+        if order.limb is None:
+            self._run = FreeRun(order, self.t_s)
+        else:
+            hand = Laterality(self._person.handedness)
+            rules = TaskRules(self._layouts[order.limb], hand)
+            self._run = BoxRun(order, rules, JOINT_NAMES, self.t_s)
+
+    async def _leave_phase(self) -> None:
+        await self._flush()
+        self._run = None
+        self._delay.set_delay(0.0)
+        self._person.participant.set_latency(0.0)
+
+    async def _draw(self, *, recording: bool) -> None:
+        """One frame: the person's pose, the delayed avatar, its contacts, and the record."""
+        self._frame += 1
+        t_s, run = self.t_s, self._run
+        goal = None
+        if isinstance(run, BoxRun):
+            foot = "right" if self._person.footedness == "both" else self._person.footedness
+            goal = goal_of(run.state, Laterality(foot))
+        pose = self._person.participant.pose(t_s, goal)
+        avatar = self._delay.push(t_s, pose.rotations)
+        if recording:
+            self._record(t_s, pose, avatar)
+        if run is not None:
+            skeleton = self._person.skeleton
+            world = forward_kinematics(skeleton, pose.root_position_m, avatar)
+            parts = body_part_segments(skeleton, world)
+            reports = run.frame(t_s, parts.axes_m, parts.radii_m, connected=self.client.connected)
+            await self._report(reports)
+            if run.ended:
+                await self._leave_phase()
+        if self._buffers.count == FRAMES_PER_BATCH:
+            await self._flush()
+
+    def _record(self, t_s: float, pose: Pose, avatar: NDArray[np.float64]) -> None:
+        buffers, at = self._buffers, self._buffers.count
+        buffers.times_s[at] = t_s
+        buffers.flags[at] = ACTIVE if self._run is not None and self._run.clock_runs else 0
+        for values, rotations in ((buffers.target, pose.rotations), (buffers.actual, avatar)):
+            values[at, :3] = pose.root_position_m
+            values[at, 3:] = rotations.ravel()
+        buffers.count += 1
+
+    async def _flush(self) -> None:
+        """Send the frames so far; a batch never spans two phases."""
+        buffers, count = self._buffers, self._buffers.count
+        if count == 0:
+            return
+        seq_first = self.frames_sent[StreamName.TARGET]
+        for stream, values in (
+            (StreamName.TARGET, buffers.target),
+            (StreamName.ACTUAL, buffers.actual),
+        ):
+            message = encode_batch(
+                stream,
+                epoch=self.client.epoch,
+                phase_id=0 if self._run is None else self._phase_id,
+                seq_first=seq_first,
+                times_s=buffers.times_s[:count],
+                flags=buffers.flags[:count],
+                values=values[:count],
+                active_s=0.0 if self._run is None else self._run.active_s(self.t_s),
+                closed_at_s=self.t_s,
+            )
+            await self.client.send_batch(stream, seq_first + count, message)
+            self.frames_sent[stream] += count
+        buffers.count = 0
+
+    async def _report(self, reports: Sequence[ReportBody]) -> None:
+        if reports:
+            # Frames first: whoever reads a report finds the movement that led to it.
+            await self._flush()
+        for body in reports:
+            self.contacts += body.kind == "contact"
+            self.completions += body.kind == "completion"
+            await self.client.report(body)

@@ -1,0 +1,129 @@
+"""A hand or foot phase on the headset: the task rules between the avatar and the reports."""
+
+from collections.abc import Sequence
+
+from app.rehearsal.timed_run import FloatArray, TimedRun
+from app.science.tasks import (
+    ActiveClock,
+    CommandKind,
+    ContactInterval,
+    EventKind,
+    SurfaceArrays,
+    SurfaceKind,
+    TaskEvent,
+    TaskRules,
+    TaskRun,
+    TaskState,
+    completions,
+    touching_and_near,
+)
+from app.wire.messages import CompletionReport, ContactReport, PhaseOrder, ReportBody
+
+RELEASE_MARGIN_M = 0.005
+_EFFECTS = {
+    EventKind.PANEL_GREEN: "green",
+    EventKind.OUT_OF_ORDER: "out_of_order",
+    EventKind.WRONG_PART: "wrong_part",
+    EventKind.TARGET_EARLY: "early",
+    EventKind.TASK_COMPLETED: "completed",
+}
+
+
+class BoxRun(TimedRun):
+    """The boxes: contacts become intervals, intervals and completions become reports."""
+
+    def __init__(
+        self, order: PhaseOrder, rules: TaskRules, parts: Sequence[str], t_s: float
+    ) -> None:
+        super().__init__(order, t_s)
+        self._run = TaskRun(rules, tuple(parts))
+        self._surfaces = SurfaceArrays.of(rules.layout)
+        self._completed_before = order.completions
+        self._told_events = 0
+        self._told_intervals = 0
+        self._told_completions = 0
+
+    @property
+    def state(self) -> TaskState:
+        """Where the task stands."""
+        return self._run.state
+
+    @property
+    def clock(self) -> ActiveClock:
+        """The active clock of the task rules."""
+        return self._run.state.clock
+
+    def command(self, kind: CommandKind, t_s: float) -> None:
+        """Start, pause, resume or freeze the task."""
+        self._run.command(kind, t_s)
+
+    def touch(self, t_s: float, axes_m: FloatArray, radii_m: FloatArray) -> None:
+        """Give the rules one frame of touches."""
+        touched, near = touching_and_near(self._surfaces, axes_m, radii_m, RELEASE_MARGIN_M)
+        self._run.frame(t_s, touched, near)
+
+    def news(self, _t_s: float) -> list[ReportBody]:
+        """Contacts that closed, tasks completed, walks back that began or ended."""
+        events = self._run.events[self._told_events :]
+        intervals = self._run.intervals[self._told_intervals :]
+        self._told_events += len(events)
+        self._told_intervals += len(intervals)
+        reports: list[ReportBody] = [self._contact(interval) for interval in intervals]
+        if any(event.kind is EventKind.TASK_COMPLETED for event in events):
+            reports += self._new_completions()
+        return [*reports, *self._walks_back(events)]
+
+    def _walks_back(self, events: Sequence[TaskEvent]) -> list[ReportBody]:
+        what = {
+            EventKind.WALK_BACK_BEGUN: "walk_back_started",
+            EventKind.WALK_BACK_ENDED: "walk_back_ended",
+        }
+        return [
+            self.report(what[event.kind], event.time_s) for event in events if event.kind in what
+        ]
+
+    def _new_completions(self) -> list[CompletionReport]:
+        done = completions(self._run.events)
+        new = done[self._told_completions :]
+        self._told_completions = len(done)
+        boxes = {surface.key: surface.box for surface in self.state.rules.layout.surfaces}
+        return [
+            CompletionReport(
+                phase_id=self.order.phase_id,
+                number=self._completed_before + one.number,
+                t_s=one.completed_s,
+                active_s=self._spent_s + one.completed_active_s,
+                duration_s=one.duration_s,
+                order=tuple(boxes[key] or 0 for key in one.order),
+                out_of_order_touches=one.out_of_order,
+            )
+            for one in new
+        ]
+
+    def _contact(self, interval: ContactInterval) -> ContactReport:
+        surface = self.state.rules.layout.by_key[interval.surface]
+        return ContactReport(
+            phase_id=self.order.phase_id,
+            surface=surface.key,
+            surface_kind=surface.kind.value,
+            box=surface.box,
+            side=None if surface.side is None else surface.side.value,
+            body_part=interval.part,
+            begin_s=interval.begin_s,
+            end_s=interval.end_s,
+            begin_active_s=self._spent_s + interval.begin_active_s,
+            end_active_s=self._spent_s + interval.end_active_s,
+            effect=self._effect(interval, surface.kind),
+        )
+
+    def _effect(self, interval: ContactInterval, kind: SurfaceKind) -> str:
+        """What the task made of the touch that began the interval."""
+        if kind in (SurfaceKind.SIDE, SurfaceKind.START):
+            return kind.value
+        for event in reversed(self._run.events):
+            if event.time_s < interval.begin_s:
+                break
+            same = event.surface == interval.surface and event.part == interval.part
+            if same and event.time_s == interval.begin_s and event.kind in _EFFECTS:
+                return _EFFECTS[event.kind]
+        return "none"

@@ -1,0 +1,153 @@
+"""A timed phase on the headset's clock: preparation, active time, freeze, and what to report.
+
+The headset runs the phase by itself and tells the server each change with its own monotonic time
+and the active time used up. The clock stands during pauses, during walks back, and while the
+connection is broken, so both sides agree on what counts.
+"""
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.science.tasks import ActiveClock, CommandKind
+from app.wire.messages import PhaseOrder, PhaseReport, ReportBody
+
+FloatArray = NDArray[np.float64]
+
+
+class TimedRun(ABC):
+    """One phase from its preparation to the end of its freeze.
+
+    A client that takes over in mid-phase goes on with the active time that the order tells.
+    """
+
+    def __init__(self, order: PhaseOrder, t_s: float) -> None:
+        self.order = order
+        self.ended = False
+        self._spent_s = order.active_s
+        self._begins_s = t_s + order.preparation_s
+        self._frozen_until_s: float | None = None
+        self._paused = False
+
+    @property
+    @abstractmethod
+    def clock(self) -> ActiveClock:
+        """The active clock of this run, from zero."""
+
+    @abstractmethod
+    def command(self, kind: CommandKind, t_s: float) -> None:
+        """Start, pause, resume or freeze the clock."""
+
+    @abstractmethod
+    def touch(self, t_s: float, axes_m: FloatArray, radii_m: FloatArray) -> None:
+        """Judge one frame of body parts: capsule axes (P, 2, 3) and radii (P,)."""
+
+    @abstractmethod
+    def news(self, t_s: float) -> list[ReportBody]:
+        """What happened since the last call."""
+
+    @property
+    def clock_runs(self) -> bool:
+        """Whether active time passes now."""
+        return self.clock.running_since_s is not None
+
+    def active_s(self, t_s: float) -> float:
+        """Active time used up at `t_s`, at most the phase's duration."""
+        clock = self.clock
+        if clock.last_s is None:
+            return self._spent_s
+        return min(self._spent_s + clock.active_s(max(t_s, clock.last_s)), self.order.duration_s)
+
+    def follow(self, order: PhaseOrder, t_s: float) -> list[ReportBody]:
+        """Do what the operator wants: pause or go on."""
+        self.order = order
+        if order.pausing and self.clock_runs:
+            return self._pause(t_s, "operator")
+        if order.status == "paused" and not order.resuming and self.clock_runs:
+            # The server lost us for a moment that was too short to notice here.
+            return self._pause(t_s, "disconnected")
+        if order.resuming and self._paused:
+            self._paused = False
+            self.command(CommandKind.RESUME, t_s)
+            return [*self.news(t_s), self.report("resumed", t_s)]
+        return []
+
+    def frame(
+        self, t_s: float, axes_m: FloatArray, radii_m: FloatArray, *, connected: bool
+    ) -> list[ReportBody]:
+        """Go on by one frame; what to report of it."""
+        if self._frozen_until_s is not None:
+            return self._thaw(t_s)
+        if not connected:
+            self._begins_s = max(self._begins_s, t_s)
+            return self._pause(t_s, "disconnected") if self.clock_runs else []
+        reports: list[ReportBody] = []
+        if self.clock.last_s is None and t_s >= self._begins_s:
+            self.command(CommandKind.START, t_s)
+            reports.append(self.report("started", t_s))
+        end_s = self.clock.reaches_s(self.order.duration_s - self._spent_s)
+        if end_s is not None and t_s >= end_s:
+            # The phase ends when its time is used up, not when the next frame is drawn.
+            return [*reports, *self._freeze(max(end_s, self.clock.last_s or end_s))]
+        if self.clock.last_s is not None:
+            self.touch(t_s, axes_m, radii_m)
+        return [*reports, *self.news(t_s)]
+
+    def report(self, what: str, t_s: float, cause: str = "headset") -> PhaseReport:
+        """A report of this phase's clock."""
+        return PhaseReport.model_validate(
+            {
+                "phase_id": self.order.phase_id,
+                "what": what,
+                "t_s": t_s,
+                "active_s": self.active_s(t_s),
+                "cause": cause,
+            }
+        )
+
+    def _pause(self, t_s: float, cause: str) -> list[ReportBody]:
+        self._paused = True
+        self.command(CommandKind.PAUSE, t_s)
+        return [*self.news(t_s), self.report("paused", t_s, cause)]
+
+    def _freeze(self, t_s: float) -> list[ReportBody]:
+        self.command(CommandKind.FREEZE, t_s)
+        self._frozen_until_s = t_s + self.order.freeze_s
+        return [*self.news(t_s), self.report("time_up", t_s)]
+
+    def _thaw(self, t_s: float) -> list[ReportBody]:
+        if self.ended or self._frozen_until_s is None or t_s < self._frozen_until_s:
+            return []
+        self.ended = True
+        return [self.report("ended", t_s)]
+
+
+class FreeRun(TimedRun):
+    """Free movement for a time: a clock and nothing to touch."""
+
+    def __init__(self, order: PhaseOrder, t_s: float) -> None:
+        super().__init__(order, t_s)
+        self._clock = ActiveClock()
+
+    @property
+    def clock(self) -> ActiveClock:
+        """The active clock of this run."""
+        return self._clock
+
+    def command(self, kind: CommandKind, t_s: float) -> None:
+        """Start, pause, resume or freeze the clock."""
+        match kind:
+            case CommandKind.START:
+                self._clock = self._clock.begin(t_s)
+            case CommandKind.RESUME:
+                self._clock = self._clock.resume(t_s)
+            case _:
+                self._clock = self._clock.pause(t_s)
+
+    def touch(self, t_s: float, axes_m: FloatArray, radii_m: FloatArray) -> None:
+        """Nothing to touch."""
+
+    def news(self, _t_s: float) -> list[ReportBody]:
+        """Nothing to tell."""
+        return []
