@@ -1,0 +1,1 @@
+"""Tables, codebook and figures."""

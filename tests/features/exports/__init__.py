@@ -1,0 +1,1 @@
+"""Tidy CSV with a codebook."""

@@ -1,0 +1,39 @@
+"""Exporting from the command line."""
+
+from pathlib import Path
+
+import pytest
+
+from app.cli.exporting import export_to_folder
+from app.database import open_database
+from app.errors import NotFound
+from tests.features.builders import STUDY, SessionSpec, build_session, build_study
+
+
+@pytest.fixture
+def installation(database_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The environment of a machine whose database has one simulated session."""
+    monkeypatch.setenv("REEMBODY_DATABASE_URL", database_url)
+    database = open_database(database_url)
+    with database.writing() as db:
+        build_study(db)
+        build_session(db, SessionSpec("SIM-0001", kind="simulated"))
+    database.close()
+
+
+@pytest.mark.usefixtures("installation")
+def test_the_command_writes_a_folder_and_says_what(tmp_path: Path) -> None:
+    """Without a kind it takes what there is, and names it."""
+    said = export_to_folder(STUDY, tmp_path / "out")
+    assert said == f"1 session(s) of kind simulated in 11 files: {tmp_path / 'out'}"
+    assert (tmp_path / "out" / "README.txt").is_file()
+
+
+@pytest.mark.usefixtures("installation")
+def test_the_command_refuses_what_it_does_not_know(tmp_path: Path) -> None:
+    """An unknown kind and an unknown study are told apart, and nothing is written."""
+    with pytest.raises(ValueError, match="valid are people, simulated, test, all"):
+        export_to_folder(STUDY, tmp_path / "out", kind="robots")
+    with pytest.raises(NotFound):
+        export_to_folder("nothing", tmp_path / "out")
+    assert not (tmp_path / "out").exists()
