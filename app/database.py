@@ -99,13 +99,14 @@ def make_engine(url: str) -> Engine:
         parsed = parsed.set(drivername="postgresql+psycopg")
     if parsed.get_backend_name() != "sqlite":
         return create_engine(parsed, pool_size=10, max_overflow=20, pool_pre_ping=True)
-    if parsed.database and parsed.database != ":memory:":
+    if parsed.database:
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
+    # Without a file there is one connection for all, and so no pool to size.
+    pool = {"pool_size": 20, "max_overflow": 40} if parsed.database else {}
     engine = create_engine(
         parsed,
         connect_args={"timeout": BUSY_TIMEOUT_S, "check_same_thread": False},
-        pool_size=20,
-        max_overflow=40,
+        **pool,
     )
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)

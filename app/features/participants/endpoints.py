@@ -4,10 +4,12 @@ from collections import Counter
 from collections.abc import Sequence
 
 from fastapi import APIRouter
+from sqlalchemy.orm import Session
 
 from app.features.dependencies import Reading, SignedIn
 from app.features.participants.service import SlotView, ledger_of, planned_slots
 from app.features.sessions.schemas import Kind
+from app.features.sessions.service import end_reason
 from app.features.studies.schemas import AttemptView, LedgerView, SequenceRow, SlotRow
 from app.features.studies.service import newest_version, protocol_of, study_by_key
 
@@ -21,7 +23,7 @@ def get_ledger(key: str, db: Reading, _: SignedIn, kind: Kind = "people") -> Led
     protocol = protocol_of(version)
     latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
     slots = ledger_of(db, version, kind)
-    rows = [_row(view, latency_ms) for view in slots] or [
+    rows = [_row(db, view, latency_ms) for view in slots] or [
         SlotRow(
             index=index,
             block=index // max(1, len(planned_slots(protocol)) // protocol.orders.replicates),
@@ -43,7 +45,7 @@ def get_ledger(key: str, db: Reading, _: SignedIn, kind: Kind = "people") -> Led
     )
 
 
-def _row(view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
+def _row(db: Session, view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
     return SlotRow(
         index=view.slot.position,
         block=view.slot.block,
@@ -57,6 +59,7 @@ def _row(view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
                 outcome=attempt.outcome,
                 opened_at=attempt.opened_at,
                 closed_at=attempt.closed_at,
+                reason=end_reason(db, session.id) if attempt.closed_at else None,
             )
             for attempt, session, participant in view.attempts
         ],

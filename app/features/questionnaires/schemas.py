@@ -1,7 +1,7 @@
 """Forms as they travel to a tablet and back."""
 
 from datetime import datetime
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -43,14 +43,25 @@ class Receipt(BaseModel):
     duplicate: bool
 
 
+class ScoreView(BaseModel):
+    """A score with its name and the range its instrument states."""
+
+    key: str
+    label: str
+    value: float | None
+    minimum: float | None
+    maximum: float | None
+
+
 class StoredScores(BaseModel):
-    """The scores of one stored form."""
+    """The scores of one stored form: as numbers by key, and as a page shows them."""
 
     administration: str
     step_index: int
     instrument: str
-    mode: str
+    mode: Literal["tablet", "operator"]
     scores: dict[str, float | None]
+    score_views: list[ScoreView]
 
 
 class StoredAnswers(StoredScores):

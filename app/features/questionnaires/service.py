@@ -15,6 +15,7 @@ from app.features.context import AppContext
 from app.features.questionnaires.schemas import (
     Administration,
     AnswerValue,
+    ScoreView,
     StoredAnswers,
     StoredScores,
     SubmissionRequest,
@@ -156,7 +157,9 @@ def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
     answers = db.scalars(
         select(Answer).where(Answer.submission_id == submission.id).order_by(Answer.position)
     )
-    scores = db.scalars(select(ScoreValue).where(ScoreValue.submission_id == submission.id))
+    rows = db.scalars(select(ScoreValue).where(ScoreValue.submission_id == submission.id))
+    scores = {row.score: row.value for row in rows}
+    version = db.get_one(InstrumentVersion, submission.instrument_version_id)
     return StoredAnswers(
         submission_id=submission.id,
         administration=submission.administration,
@@ -170,7 +173,17 @@ def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
             row.item: row.value_number if row.value_text is None else row.value_text
             for row in answers
         },
-        scores={row.score: row.value for row in scores},
+        scores=scores,
+        score_views=[
+            ScoreView(
+                key=score.key,
+                label=score.label.get("en") or score.key,
+                value=scores.get(score.key),
+                minimum=score.minimum,
+                maximum=score.maximum,
+            )
+            for score in instrument_of(version).scores
+        ],
     )
 
 

@@ -8,6 +8,22 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.features.questionnaires.schemas import StoredScores
 
 Kind = Literal["people", "simulated", "test"]
+Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]
+StepKind = Literal[
+    "consent",
+    "form",
+    "instructions",
+    "height",
+    "materialise",
+    "free_roam",
+    "task",
+    "questionnaire",
+    "debrief",
+]
+StepStatus = Literal["pending", "current", "done", "skipped"]
+CurrentStatus = Literal["ready", "preparing", "running", "paused", "walk_back", "freezing"]
+PhaseStatus = Literal["preparing", "running", "paused", "walk_back", "freezing", "done", "voided"]
+LimbName = Literal["hand", "foot"]
 CommandType = Literal[
     "start",
     "complete_step",
@@ -21,6 +37,8 @@ CommandType = Literal[
     "withdraw",
     "note",
 ]
+
+AllowedType = CommandType | Literal["enter_answers"]
 
 
 class NewSession(BaseModel):
@@ -70,16 +88,16 @@ class StepView(BaseModel):
 
     index: int
     key: str
-    kind: str
+    kind: StepKind
     title: str
     block: int | None
     latency_ms: float | None
-    limb: str | None
+    limb: LimbName | None
     preparation_s: float | None
     duration_s: float | None
     freeze_s: float | None
     instrument: str | None
-    status: str
+    status: StepStatus
     attempt: int
     reason: str | None
 
@@ -88,7 +106,7 @@ class CurrentView(BaseModel):
     """The current step; `status` is ready or that of its phase."""
 
     index: int
-    status: str
+    status: CurrentStatus
     active_s: float
     duration_s: float | None
     pausing: bool
@@ -100,7 +118,7 @@ class DeviceView(BaseModel):
     """A paired device."""
 
     id: str
-    kind: str
+    kind: Literal["tablet", "headset"]
     name: str
     paired_at: datetime
     connected: bool
@@ -113,10 +131,10 @@ class PhaseView(BaseModel):
     phase_id: int
     step_index: int
     attempt: int
-    kind: str
-    limb: str | None
+    kind: StepKind
+    limb: LimbName | None
     latency_ms: float | None
-    status: str
+    status: PhaseStatus
     active_s: float
     completions: int
     side_contacts: int
@@ -139,9 +157,9 @@ class SessionSummary(BaseModel):
 
     id: str
     participant_code: str
-    kind: str
+    kind: Kind
     simulated: bool
-    status: str
+    status: Status
     sequence: list[float] | None
     study_version: int
     created_at: datetime
@@ -161,7 +179,7 @@ class SessionView(SessionSummary):
     slot: SlotInfo
     steps: list[StepView]
     current: CurrentView | None
-    allowed: list[str]
+    allowed: list[AllowedType]
     devices: list[DeviceView]
     phases: list[PhaseView]
     notes: list[NoteView]

@@ -1,5 +1,6 @@
 """Running sessions: joining, and applying commands to the event log in one transaction."""
 
+import json
 import secrets
 from dataclasses import dataclass
 from functools import lru_cache
@@ -28,7 +29,7 @@ from app.features.sessions.engine import (
 from app.features.sessions.journal import append_events
 from app.features.sessions.projection import project
 from app.features.studies.service import newest_version, protocol_of, study_by_key
-from app.models import SessionEvent, StudySession, StudyVersion
+from app.models import SessionContent, SessionEvent, StudySession, StudyVersion
 from app.models.ledger import KINDS
 from app.models.types import new_id
 from app.protocol import StudyProtocol, parse_study_json
@@ -193,6 +194,18 @@ def apply_command(
     db.flush()
     context.hub.publish_after_commit(db, session.id)
     return Applied(session, state, tuple(events))
+
+
+def end_reason(db: Session, session_id: str) -> str | None:
+    """Why a session was aborted or withdrawn, in the words of the lab; None once erased."""
+    ended = db.scalar(
+        select(SessionEvent).where(
+            SessionEvent.session_id == session_id, SessionEvent.type == "session_ended"
+        )
+    )
+    content_id = None if ended is None else json.loads(ended.payload)["content_id"]
+    content = db.get(SessionContent, content_id) if content_id else None
+    return None if content is None or content.body is None else str(json.loads(content.body))
 
 
 def is_repeated(db: Session, session_id: str, command_id: str) -> bool:

@@ -1,7 +1,7 @@
 """Studies as pages see them."""
 
 from datetime import datetime
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -61,9 +61,10 @@ class AttemptView(BaseModel):
 
     session_id: str
     participant_code: str
-    outcome: str
+    outcome: Literal["open", "completed", "withdrawn", "aborted"]
     opened_at: datetime
     closed_at: datetime | None
+    reason: str | None
 
 
 class SlotRow(BaseModel):
@@ -73,7 +74,7 @@ class SlotRow(BaseModel):
     block: int
     replicate: int
     sequence: list[float] | None
-    state: str
+    state: Literal["free", "open", "completed"]
     attempts: list[AttemptView]
 
 
