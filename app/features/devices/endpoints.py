@@ -27,13 +27,13 @@ def post_pairing(
         now=context.clock.utc_now(),
         minutes=context.settings.pairing_minutes,
     )
-    path = "tablet" if wish.device == "tablet" else "vr"
-    url = f"{str(request.base_url).rstrip('/')}/{path}?code={made.code}"
+    base = str(request.base_url).rstrip("/")
+    url = f"{base}/tablet?code={made.code}" if wish.device == "tablet" else base
     return PairingView(
         device=wish.device,
         code=made.code,
         url=url,
-        qr_svg=_qr_svg(url),
+        qr_svg=_qr_svg(url) if wish.device == "tablet" else None,
         expires_at=made.expires_at,
     )
 

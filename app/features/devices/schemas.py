@@ -17,12 +17,16 @@ class NewPairing(BaseModel):
 
 
 class PairingView(BaseModel):
-    """A code to type or scan; it works once, until `expires_at`."""
+    """A code that works once, until `expires_at`: `url` and `qr_svg` open the tablet's page with it.
+
+    A headset's client is given the address of the server and types the code; it has no page to
+    scan, so its `qr_svg` is null.
+    """
 
     device: DeviceKind
     code: str
     url: str
-    qr_svg: str
+    qr_svg: str | None
     expires_at: datetime
 
 
