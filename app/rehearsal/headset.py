@@ -69,6 +69,12 @@ class Headset:
         self._started_s = time.monotonic()
 
     @property
+    def _goes_on_alone(self) -> bool:
+        """Whether the study lets a phase run on while the connection is broken."""
+        welcome = self.client.welcome
+        return welcome is not None and welcome.on_disconnect == "continue"
+
+    @property
     def t_s(self) -> float:
         """The headset's monotonic clock: the time of the present frame."""
         return self._frame / FRAME_RATE_HZ
@@ -154,7 +160,12 @@ class Headset:
             skeleton = self._person.skeleton
             world = forward_kinematics(skeleton, pose.root_position_m, avatar)
             parts = body_part_segments(skeleton, world)
-            reports = run.frame(t_s, parts.axes_m, parts.radii_m, connected=self.client.connected)
+            reports = run.frame(
+                t_s,
+                parts.axes_m,
+                parts.radii_m,
+                connected=self.client.connected or self._goes_on_alone,
+            )
             await self._report(reports)
             if run.ended:
                 await self._leave_phase()

@@ -59,6 +59,11 @@ def _compiled(canonical_json: str, sequence: tuple[str, ...], flip: bool) -> tup
     return compile_plan(parse_study_json(canonical_json), sequence, block_limb_flip=flip)
 
 
+def protocol_of_session(db: Session, session: StudySession) -> StudyProtocol:
+    """The protocol of the study version that this session follows."""
+    return protocol_of(db.get_one(StudyVersion, session.study_version_id))
+
+
 def state_of(session: StudySession) -> SessionState:
     """The folded state, from the snapshot."""
     return state_from_json(session.snapshot)

@@ -14,7 +14,12 @@ from sqlalchemy.orm import Session
 from app.errors import ReembodyError
 from app.features.context import AppContext
 from app.features.sessions.engine.commands import HeadsetLost, Materialise, Report
-from app.features.sessions.service import apply_command, session_by_id, state_of
+from app.features.sessions.service import (
+    apply_command,
+    protocol_of_session,
+    session_by_id,
+    state_of,
+)
 from app.features.telemetry.positions import certain_active_s, position
 from app.models import ClientReport, ClockProbe, Completion, Contact, Phase, TelemetryBatch
 from app.models.telemetry import TelemetryStream
@@ -150,10 +155,15 @@ def store_probe(db: Session, session_id: str, epoch: int, probe: Probed, now: da
 
 
 def store_loss(db: Session, context: AppContext, session_id: str, cause: str) -> None:
-    """The headset is gone: a running clock stops at the last active time that is on disk."""
+    """The headset is gone: a running clock stops at the last active time that is on disk.
+
+    Where the study says `on_disconnect: continue`, the headset goes on by its journal.
+    """
     session = session_by_id(db, session_id, lock=True)
     state = state_of(session)
     if state.status != "active" or state.phase is None:
+        return
+    if protocol_of_session(db, session).on_disconnect == "continue":
         return
     active_s = certain_active_s(db, session_id, state.phase.phase_id)
     apply_command(db, context, session, HeadsetLost(active_s=active_s, cause=cause), actor="system")
