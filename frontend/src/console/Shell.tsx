@@ -27,7 +27,7 @@ export function Shell({ account }: { readonly account: Account }): JSX.Element {
       <button type="button" className={classes.skip} onClick={focusMain}>
         {t("app.skip")}
       </button>
-      <header className={classes.header}>
+      <nav className={classes.header} aria-label={t("app.name")}>
         <Link href="/" className={classes.brand ?? ""}>
           <Mark size={26} />
           {t("app.name")}
@@ -37,7 +37,7 @@ export function Shell({ account }: { readonly account: Account }): JSX.Element {
           <AppearanceButton />
           <AccountMenu account={account} />
         </div>
-      </header>
+      </nav>
       <main id="main" tabIndex={-1}>
         <Switch>
           <Route path="/sessions/:id">{({ id }) => <SessionPage key={id} id={id} />}</Route>

@@ -31,3 +31,10 @@ export const eventsQuery = (id: string, version: number) =>
     queryKey: ["sessions", id, "events", version],
     queryFn: () => sessions.events(id),
   });
+
+export const codebookQuery = (key: string) =>
+  queryOptions({
+    queryKey: ["studies", key, "codebook"],
+    queryFn: () => studies.codebook(key),
+    staleTime: Number.POSITIVE_INFINITY,
+  });

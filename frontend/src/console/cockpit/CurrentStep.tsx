@@ -11,8 +11,10 @@ import { Key } from "../ui/Key";
 import { currentStep, guidance, primaryAction } from "./action";
 import classes from "./CurrentStep.module.css";
 import { HeightForm } from "./HeightForm";
+import { PauseReason } from "./PauseReason";
 import { PhaseClock } from "./PhaseClock";
-import type { Reasoned } from "./ReasonDialog";
+import { Readiness } from "./Readiness";
+import type { Reasoned } from "./reasons";
 import type { useSession } from "./useSession";
 
 interface CurrentStepProps {
@@ -40,9 +42,12 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
         </>
       )}
       <p className={classes.guide}>{t(guidance(session))}</p>
+      {step === null && session.status === "planned" && <Readiness session={session} />}
       {step !== null && isTimed(step) && <PhaseClock session={session} store={live.store} />}
+      {session.current?.status === "paused" && <PauseReason live={live} />}
       {step?.kind === "height" && session.allowed.includes("complete_step") ? (
         <HeightForm
+          step={step.index}
           send={live.send}
           sending={live.sending}
           exceptions={<Exceptions {...props} />}
@@ -78,7 +83,7 @@ function Kicker({ session, step }: { readonly session: SessionView; readonly ste
   );
 }
 
-function Primary({ session, live, onAsk, onEnterAnswers }: CurrentStepProps): JSX.Element | null {
+function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Element | null {
   const { t } = useTexts();
   const action = primaryAction(session);
   const step = currentStep(session);
@@ -104,13 +109,14 @@ function Primary({ session, live, onAsk, onEnterAnswers }: CurrentStepProps): JS
         className={classes.primary ?? ""}
         leftSection={<Icon name="pause" />}
         rightSection={<Key name="P" />}
-        onClick={() => onAsk("pause")}
+        loading={live.sending}
+        onClick={() => live.send({ type: "pause" })}
       >
         {t("do.pause")}
       </Button>
     );
   }
-  if (step === null || !isForm(step)) return null;
+  if (session.allowed.includes("resume") || step === null || !isForm(step)) return null;
   return (
     <>
       <span className={classes.waiting}>

@@ -69,7 +69,7 @@ function Paired({ sessionId, device, onPair }: PairedProps): JSX.Element {
     <div className={classes.device}>
       <Icon name={device.kind} size={22} />
       <div>
-        <div className={classes.deviceName}>{device.name ?? t(`device.${device.kind}`)}</div>
+        <div className={classes.deviceName}>{device.name || t(`device.${device.kind}`)}</div>
         <div className={`${classes.deviceState} ${device.connected ? "" : classes.lost}`}>
           <ConnectionMark connected={device.connected} />
           {device.connected ? t("device.connected") : t("device.lost")}

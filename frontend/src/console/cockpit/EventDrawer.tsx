@@ -52,12 +52,12 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
         {[...events].reverse().map((event) => (
           <tr key={event.seq}>
             <td>{event.seq}</td>
-            <td>{timeOfDay(event.at, language)}</td>
+            <td className={classes.nowrap}>{timeOfDay(event.at, language)}</td>
             <td>
               {event.type.replaceAll("_", " ")}
               <div className={classes.nothing}>{detailsOf(event)}</div>
             </td>
-            <td>{event.by ?? "–"}</td>
+            <td className={classes.nowrap}>{actorName(event.by)}</td>
           </tr>
         ))}
       </tbody>
@@ -65,8 +65,21 @@ function EventTable({ events }: { readonly events: readonly SessionEvent[] }): J
   );
 }
 
+/** Identifiers and hashes are for the export; people read the rest. */
+const MACHINE = /(_id|_hash|^by|hash)$/;
+
 const detailsOf = (event: SessionEvent): string =>
   Object.entries(event.data)
-    .filter(([, value]) => value !== null && typeof value !== "object")
-    .map(([name, value]) => `${name.replaceAll("_", " ")}: ${String(value)}`)
+    .filter(([name, value]) => value !== null && typeof value !== "object" && !MACHINE.test(name))
+    .map(([name, value]) => `${name.replaceAll("_", " ")} ${readable(name, value)}`)
     .join(" · ");
+
+/** Steps are counted from 1 on every page, and lengths of time carry three decimals at most. */
+function readable(name: string, value: unknown): string {
+  if (typeof value !== "number") return String(value);
+  return name === "step" ? String(value + 1) : String(Math.round(value * 1000) / 1000);
+}
+
+/** `account:admin` is admin; a device is called by its kind. */
+const actorName = (by: string): string =>
+  by.startsWith("account:") ? by.slice("account:".length) : (by.split(":")[0] ?? by);

@@ -12,12 +12,13 @@ const SHORTEST_CM = 100;
 const TALLEST_CM = 230;
 
 interface HeightFormProps {
+  readonly step: number;
   readonly send: Send;
   readonly sending: boolean;
   readonly exceptions: ReactNode;
 }
 
-export function HeightForm({ send, sending, exceptions }: HeightFormProps): JSX.Element {
+export function HeightForm({ step, send, sending, exceptions }: HeightFormProps): JSX.Element {
   const { t } = useTexts();
   const [stated, setStated] = useState<number | string>("");
   const [matched, setMatched] = useState<number | string>("");
@@ -28,9 +29,16 @@ export function HeightForm({ send, sending, exceptions }: HeightFormProps): JSX.
       stated: metresFromCentimetres(stated),
       matched: metresFromCentimetres(matched),
     };
-    send({ type: "complete_step", height_m });
+    send({ type: "complete_step", step_index: step, height_m });
   };
-  const common = { min: SHORTEST_CM, max: TALLEST_CM, suffix: " cm", decimalScale: 1, size: "md" };
+  const common = {
+    min: SHORTEST_CM,
+    max: TALLEST_CM,
+    suffix: " cm",
+    decimalScale: 1,
+    size: "md",
+    placeholder: "cm",
+  };
   return (
     <form
       onSubmit={(event) => {

@@ -1,5 +1,5 @@
 /** The large clock of active time. It never claims more than the last report supports. */
-import type { SessionView } from "@shared/api/types";
+import type { Current, SessionView } from "@shared/api/types";
 import { activeAt, type ClockReport, isHolding } from "@shared/clock";
 import { clockFace } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
@@ -31,7 +31,7 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
   if (current === null) return null;
   const active = activeAt(report, now);
   const warning = warningOf(session, report, now);
-  const pause = current.status === "paused" ? current.pause_reason : null;
+  const cause = current.status === "paused" ? causeKey(current.pause_reason) : null;
   return (
     <>
       <div className={classes.clockRow}>
@@ -48,8 +48,8 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
           )}
           <span className={`${classes.state} ${classes[current.status]}`}>
             <Icon name={ICONS[current.status]} size={18} />
-            {t(`phase.${current.status}`)}
-            {pause && `: ${pause}`}
+            {t(stateKey(current))}
+            {cause !== null && `: ${t(cause)}`}
           </span>
         </div>
       </div>
@@ -64,6 +64,19 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
       </div>
     </>
   );
+}
+
+/** A pause or its end is only true once the headset has confirmed it. */
+function stateKey(current: Current): Key {
+  if (current.pausing) return "phase.pausing";
+  return current.resuming ? "phase.resuming" : `phase.${current.status}`;
+}
+
+const CAUSES = ["operator", "headset_lost", "server_restarted", "headset"] as const;
+
+function causeKey(reason: string | null): Key | null {
+  const known = CAUSES.find((cause) => cause === reason);
+  return known === undefined ? null : `cause.${known}`;
 }
 
 interface ProgressProps {

@@ -1,28 +1,22 @@
 /** Every exception asks why, because the record keeps the reason; common reasons are one key away. */
 import { Button, Chip, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
-import type { CommandType } from "@shared/api/types";
+import type { SessionView } from "@shared/api/types";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
-import { type Key, useTexts } from "../i18n";
+import { useTexts } from "../i18n";
+import { RedoChoice } from "./RedoChoice";
+import { COMMON_REASONS, type Reasoned } from "./reasons";
+import { redoTarget } from "./redo";
 import type { useSession } from "./useSession";
-
-export type Reasoned = Extract<CommandType, "pause" | "redo" | "skip" | "abort" | "withdraw">;
-
-const COMMON: Readonly<Record<Reasoned, readonly Key[]>> = {
-  pause: ["reason.break", "reason.tracking", "reason.question"],
-  redo: ["reason.tracking", "reason.misunderstood", "reason.interrupted"],
-  skip: ["reason.askedAloud", "reason.time", "reason.wish"],
-  abort: ["reason.equipment", "reason.time", "reason.interrupted"],
-  withdraw: ["reason.wish", "reason.sick", "reason.unwell"],
-};
 
 interface ReasonDialogProps {
   readonly type: Reasoned | null;
+  readonly session: SessionView;
   readonly live: ReturnType<typeof useSession>;
   readonly onClose: () => void;
 }
 
-export function ReasonDialog({ type, live, onClose }: ReasonDialogProps): JSX.Element {
+export function ReasonDialog({ type, session, live, onClose }: ReasonDialogProps): JSX.Element {
   const { t } = useTexts();
   return (
     <Modal
@@ -31,7 +25,7 @@ export function ReasonDialog({ type, live, onClose }: ReasonDialogProps): JSX.El
       title={type === null ? "" : t(`ask.${type}`)}
       closeButtonProps={{ "aria-label": t("action.close") }}
     >
-      {type !== null && <ReasonForm type={type} live={live} onClose={onClose} />}
+      {type !== null && <ReasonForm type={type} session={session} live={live} onClose={onClose} />}
     </Modal>
   );
 }
@@ -40,21 +34,25 @@ interface ReasonFormProps extends ReasonDialogProps {
   readonly type: Reasoned;
 }
 
-function ReasonForm({ type, live, onClose }: ReasonFormProps): JSX.Element {
+function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Element {
   const { t } = useTexts();
   const [reason, setReason] = useState("");
+  const [step, setStep] = useState(() => redoTarget(session));
   const grave = type === "abort" || type === "withdraw";
   return (
     <form
       onSubmit={(event) => {
         event.preventDefault();
-        if (reason.trim() !== "") live.send({ type, reason: reason.trim() }, onClose);
+        if (reason.trim() === "") return;
+        const which = type === "redo" ? { step_index: step } : {};
+        live.send({ type, reason: reason.trim(), ...which }, onClose);
       }}
     >
       <Stack>
         <Text c="dimmed">{t(`ask.${type}.body`)}</Text>
+        {type === "redo" && <RedoChoice session={session} step={step} onChange={setStep} />}
         <Group gap="xs">
-          {COMMON[type].map((key) => (
+          {COMMON_REASONS[type].map((key) => (
             <Chip key={key} checked={reason === t(key)} onChange={() => setReason(t(key))}>
               {t(key)}
             </Chip>

@@ -16,12 +16,16 @@ import { Header } from "./Header";
 import { KeyboardHelp } from "./KeyboardHelp";
 import { NotesPanel } from "./NotesPanel";
 import { OperatorEntry } from "./OperatorEntry";
-import { ReasonDialog, type Reasoned } from "./ReasonDialog";
+import { ReasonDialog } from "./ReasonDialog";
+import type { Reasoned } from "./reasons";
 import { ScoresPanel } from "./ScoresPanel";
 import { TelemetryCard } from "./TelemetryCard";
 import { Timeline } from "./Timeline";
 import { useKeys } from "./useKeys";
 import { useSession } from "./useSession";
+
+/** Only one of them is ever allowed. Pausing asks for no reason: it has to be quick. */
+const PAUSING = ["pause", "resume"] as const;
 
 export function SessionPage({ id }: { readonly id: string }): JSX.Element {
   const live = useSession(id);
@@ -50,8 +54,10 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
       const action = primaryAction(session);
       if (action !== null) live.send(action.command);
     },
-    pause: () =>
-      session.allowed.includes("resume") ? live.send({ type: "resume" }) : ask("pause"),
+    pause: () => {
+      const type = PAUSING.find((one) => session.allowed.includes(one));
+      if (type !== undefined) live.send({ type });
+    },
     redo: () => ask("redo"),
     skip: () => ask("skip"),
     note: () => document.getElementById("note")?.focus(),
@@ -76,7 +82,7 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
         <NotesPanel session={session} send={live.send} sending={live.sending} />
         <ScoresPanel session={session} />
       </aside>
-      <ReasonDialog type={asking} live={live} onClose={() => setAsking(null)} />
+      <ReasonDialog type={asking} session={session} live={live} onClose={() => setAsking(null)} />
       <EventDrawer session={session} opened={log} onClose={logs.close} />
       <KeyboardHelp opened={help} onClose={helps.close} />
       <OperatorEntry

@@ -33,7 +33,10 @@ export function primaryAction(session: SessionView): PrimaryAction | null {
   }
   if (may("complete_step") && step.kind !== "height") {
     const label = COMPLETE[step.kind];
-    if (label !== undefined) return { command: { type: "complete_step" }, label, icon: "check" };
+    if (label !== undefined) {
+      const command: Command = { type: "complete_step", step_index: step.index };
+      return { command, label, icon: "check" };
+    }
   }
   return null;
 }

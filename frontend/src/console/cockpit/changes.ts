@@ -16,9 +16,6 @@ export function changesBetween(before: SessionView, after: SessionView): readonl
   } else if (after.current !== null && before.current?.status !== after.current.status) {
     changes.push({ key: `change.phase.${after.current.status}` });
   }
-  if (after.current?.pause_reason && after.current.pause_reason !== before.current?.pause_reason) {
-    changes.push({ key: "change.reason", values: { reason: after.current.pause_reason } });
-  }
   const added = after.notes.length - before.notes.length;
   if (added > 0) changes.push({ key: "change.notes", values: { count: added } });
   return changes.length === 0 ? [{ key: "change.other" }] : changes;

@@ -5,6 +5,7 @@ import type {
   Account,
   Administration,
   CheckResult,
+  CodebookColumn,
   Command,
   Dashboard,
   Device,
@@ -58,7 +59,8 @@ export const studies = {
     answer<Dashboard>(plain(`/api/studies/${encodeURIComponent(key)}/dashboard?kind=${kind}`)),
   exportUrl: (key: string, kind: Kind) =>
     `/api/studies/${encodeURIComponent(key)}/export?kind=${kind}`,
-  codebookUrl: (key: string) => `/api/studies/${encodeURIComponent(key)}/codebook`,
+  codebook: (key: string) =>
+    answer<readonly CodebookColumn[]>(server.GET("/api/studies/{key}/codebook", study(key))),
 };
 
 export const sessions = {

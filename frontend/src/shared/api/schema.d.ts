@@ -264,6 +264,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/streams": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Streams
+         * @description How much of each stream of each run of the headset is on disk.
+         */
+        readonly get: operations["get_streams_api_sessions__session_id__streams_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/sessions/{session_id}/submissions": {
         readonly parameters: {
             readonly query?: never;
@@ -320,6 +340,46 @@ export interface paths {
          * @description One study in full.
          */
         readonly get: operations["get_study_api_studies__key__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/codebook": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Codebook
+         * @description What every column of the study's export holds.
+         */
+        readonly get: operations["get_codebook_api_studies__key__codebook_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/export": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Export
+         * @description The study's sessions of one kind as CSV files in a ZIP, sent while it is made.
+         */
+        readonly get: operations["get_export_api_studies__key__export_get"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -595,6 +655,24 @@ export interface components {
             readonly problems: readonly {
                 readonly [key: string]: unknown;
             }[];
+        };
+        /**
+         * ColumnView
+         * @description A column of an export.
+         */
+        readonly ColumnView: {
+            /** Column */
+            readonly column: string;
+            /** Levels */
+            readonly levels: string;
+            /** Meaning */
+            readonly meaning: string;
+            /** Table */
+            readonly table: string;
+            /** Type */
+            readonly type: string;
+            /** Unit */
+            readonly unit: string;
         };
         /**
          * CommandRequest
@@ -1113,6 +1191,22 @@ export interface components {
             };
             /** Step Index */
             readonly step_index: number;
+        };
+        /**
+         * StreamView
+         * @description How much of one stream of one run of the headset is on disk.
+         */
+        readonly StreamView: {
+            /** Epoch */
+            readonly epoch: number;
+            /** Frames Flagged */
+            readonly frames_flagged: number;
+            /** Frames Stored */
+            readonly frames_stored: number;
+            /** Next Seq */
+            readonly next_seq: number;
+            /** Stream */
+            readonly stream: string;
         };
         /**
          * StudyFile
@@ -1660,6 +1754,37 @@ export interface operations {
             };
         };
     };
+    readonly get_streams_api_sessions__session_id__streams_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["StreamView"][];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     readonly post_submission_api_sessions__session_id__submissions_post: {
         readonly parameters: {
             readonly query?: never;
@@ -1766,6 +1891,70 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["StudyView"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly get_codebook_api_studies__key__codebook_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["ColumnView"][];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly get_export_api_studies__key__export_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly kind?: "people" | "simulated" | "test" | "all";
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description A ZIP of CSV files. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/zip": unknown;
                 };
             };
             /** @description Validation Error */

@@ -28,6 +28,8 @@ export type StepKind =
 export type StepStatus = "pending" | "current" | "done" | "skipped";
 export type CurrentStatus = "ready" | "preparing" | "running" | "paused" | "walk_back" | "freezing";
 export type CommandType = Schemas["CommandRequest"]["type"];
+/** What the operator may do now: a command, or entering a form that is due. */
+export type Allowed = CommandType | "enter_answers";
 
 export type Account = Schemas["AccountView"];
 export type StudySummary = Schemas["StudySummary"];
@@ -117,7 +119,7 @@ export type SessionView = With<
   SessionWords & {
     readonly steps: readonly Step[];
     readonly current: Current | null;
-    readonly allowed: readonly CommandType[];
+    readonly allowed: readonly Allowed[];
     readonly devices: readonly PairedDevice[];
     readonly phases: readonly PhaseSummary[];
   }
@@ -127,6 +129,8 @@ export interface Command {
   readonly type: CommandType;
   readonly reason?: string;
   readonly text?: string;
+  /** The step that is meant: which one to do over, or which one a late click was for. */
+  readonly step_index?: number;
   readonly height_m?: { readonly stated: number; readonly matched: number };
 }
 
@@ -190,6 +194,7 @@ export interface Dashboard {
   readonly kind: Kind;
   readonly simulated: boolean;
   readonly n_sessions: number;
+  readonly n_completed: number;
   readonly figures: readonly FigureSpec[];
 }
 
@@ -197,5 +202,10 @@ export interface FigureSpec {
   readonly key: string;
   readonly title: string;
   readonly caption: string;
+  /** Plotly's JSON; null while there is too little to draw, and then `empty` says what is missing. */
   readonly figure: unknown;
+  readonly empty: string | null;
+  readonly n: number;
 }
+
+export type CodebookColumn = Schemas["ColumnView"];

@@ -158,8 +158,10 @@ function useModel(props: FormViewProps) {
       redraw((count) => count + 1);
     };
     model.onValueChanged.add(onValue);
+    model.onAfterRenderQuestion.add(tidyLegend);
     model.onCurrentPageChanged.add(onPage);
     return () => {
+      model.onAfterRenderQuestion.remove(tidyLegend);
       model.onValueChanged.remove(onValue);
       model.onCurrentPageChanged.remove(onPage);
     };
@@ -168,4 +170,9 @@ function useModel(props: FormViewProps) {
     model.readOnly = busy;
   }, [model, busy]);
   return { model, draft };
+}
+
+/** SurveyJS gives its empty legends a role that a legend may not have. */
+function tidyLegend(_: Model, { htmlElement }: { htmlElement: HTMLElement }): void {
+  for (const legend of htmlElement.querySelectorAll("legend")) legend.removeAttribute("role");
 }

@@ -1,5 +1,13 @@
 /** The look of the product, as Mantine tokens; colours that carry meaning are in `tokens.css`. */
-import { Button, createTheme, type MantineColorsTuple, Modal, Paper, Tooltip } from "@mantine/core";
+import {
+  Button,
+  createTheme,
+  Drawer,
+  type MantineColorsTuple,
+  Modal,
+  Paper,
+  Tooltip,
+} from "@mantine/core";
 
 const petrol: MantineColorsTuple = [
   "#eaf6f7",
@@ -77,7 +85,17 @@ export const theme = createTheme({
   components: {
     Paper: Paper.extend({ defaultProps: { withBorder: true, radius: "lg", p: "lg" } }),
     Modal: Modal.extend({
-      defaultProps: { radius: "lg", centered: true, transitionProps: { duration: 120 } },
+      defaultProps: {
+        radius: "lg",
+        centered: true,
+        transitionProps: { duration: 120 },
+        overlayProps: { backgroundOpacity: 0.4 },
+      },
+      styles: { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { padding: "4px 8px" } },
+    }),
+    Drawer: Drawer.extend({
+      defaultProps: { overlayProps: { backgroundOpacity: 0.4 } },
+      styles: { title: { fontWeight: 620, fontSize: "1.125rem" } },
     }),
     Button: Button.extend({ styles: { label: { fontWeight: 560 } } }),
     Tooltip: Tooltip.extend({ defaultProps: { openDelay: 300, withArrow: true } }),

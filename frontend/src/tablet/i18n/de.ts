@@ -33,6 +33,7 @@ export const de: Record<keyof typeof en, string> = {
   "instructions.ask": "Ist etwas unklar?",
   "instructions.askBody":
     "Bitte fragen Sie jetzt die Versuchsleitung. Es ist Zeit, und keine Frage ist zu klein.",
+  "reading.more": "Weiterlesen",
   "ask.question": "Ich habe eine Frage",
   "ask.decline": "Ich möchte nicht teilnehmen",
   "ask.question.title": "Bitte fragen Sie",

@@ -29,6 +29,7 @@ export const en = {
   "instructions.ask": "Is anything unclear?",
   "instructions.askBody":
     "Please ask the experimenter now. There is time, and no question is too small.",
+  "reading.more": "Read on",
   "ask.question": "I have a question",
   "ask.decline": "I do not want to take part",
   "ask.question.title": "Please ask",

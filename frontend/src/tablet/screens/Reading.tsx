@@ -10,6 +10,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { STATE_KEY } from "../useTabletState";
 import { Prose } from "./Prose";
+import { ScrollHint } from "./ScrollHint";
 import classes from "./screens.module.css";
 
 interface ReadingProps {
@@ -42,6 +43,7 @@ export function Reading({ state, screen }: ReadingProps): JSX.Element {
         )}
         {goOn.isError && <Failure error={goOn.error} onRetry={() => goOn.mutate()} />}
       </div>
+      <ScrollHint />
       <div className={classes.foot}>
         <div>
           <Button variant="subtle" color="gray" size="sm" onClick={() => setAsking("question")}>

@@ -24,7 +24,7 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
         <KindFilter kind={kind} onChange={setKind} />
         {query.data !== undefined && (
           <span className={page.push}>
-            {t("dashboard.sessions", { count: query.data.n_sessions })}
+            {t("dashboard.sessions", { count: query.data.n_completed })}
           </span>
         )}
       </div>
@@ -55,13 +55,17 @@ function Figures({ dashboard }: { readonly dashboard: Dashboard }): JSX.Element 
               <Title order={2} size="h3">
                 {figure.title}
               </Title>
-              <Figure
-                figure={figure.figure}
-                label={figure.title}
-                watermark={dashboard.simulated ? t("simulated.watermark") : null}
-                loading={t("dashboard.loading")}
-                failed={t("dashboard.failed")}
-              />
+              {figure.figure === null ? (
+                <p className={classes.missing}>{figure.empty ?? t("dashboard.empty.body")}</p>
+              ) : (
+                <Figure
+                  figure={figure.figure}
+                  label={figure.title}
+                  watermark={dashboard.simulated ? t("simulated.watermark") : null}
+                  loading={t("dashboard.loading")}
+                  failed={t("dashboard.failed")}
+                />
+              )}
               <figcaption className={classes.caption}>{figure.caption}</figcaption>
             </figure>
           ))}

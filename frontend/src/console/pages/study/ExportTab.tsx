@@ -1,14 +1,18 @@
 /** Tidy CSV for analysis: what is in the archive, and the archive. */
-import { Anchor, Button, Group, Paper, Progress, Stack, Text, Title } from "@mantine/core";
+import { Button, Group, Paper, Progress, Stack, Text, Title } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
 import type { Kind, StudyDetail } from "@shared/api/types";
 import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
+import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
+import { codebookQuery } from "../../queries";
 import { KindFilter } from "../../ui/KindFilter";
+import { Loaded } from "../../ui/Loaded";
+import { CodebookTable } from "./CodebookTable";
 import classes from "./ExportTab.module.css";
 import { useDownload } from "./useDownload";
 
@@ -20,6 +24,7 @@ const FILES = [
   "completions",
   "contacts",
   "jointErrors",
+  "events",
   "samples",
   "codebook",
 ] as const;
@@ -43,11 +48,9 @@ export function ExportTab({ study }: { readonly study: StudyDetail }): JSX.Eleme
         <Text mt="lg" c="dimmed">
           {t("export.conventions")}
         </Text>
-        <Anchor href={studies.codebookUrl(study.key)} target="_blank" rel="noreferrer" mt="sm">
-          {t("export.codebook")}
-        </Anchor>
       </Paper>
       <Download study={study} />
+      <Codebook study={study} />
     </div>
   );
 }
@@ -88,7 +91,7 @@ function Download({ study }: { readonly study: StudyDetail }): JSX.Element {
               void start(studies.exportUrl(study.key, kind), `${study.key}-${kind}.zip`)
             }
           >
-            {t("export.start", { kind: t(`kind.${kind}`) })}
+            {t("export.start")}
           </Button>
         )}
         {state.phase === "done" && (
@@ -98,6 +101,21 @@ function Download({ study }: { readonly study: StudyDetail }): JSX.Element {
         )}
         {state.phase === "failed" && <Failure error={state.error} />}
       </Stack>
+    </Paper>
+  );
+}
+
+function Codebook({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Paper className={classes.wide ?? ""}>
+      <Title order={2}>{t("export.codebook")}</Title>
+      <Text c="dimmed" mb="md">
+        {t("export.codebookLead")}
+      </Text>
+      <Loaded query={useQuery(codebookQuery(study.key))}>
+        {(columns) => <CodebookTable columns={columns} />}
+      </Loaded>
     </Paper>
   );
 }
