@@ -17,7 +17,7 @@ class NewPairing(BaseModel):
 
 
 class PairingView(BaseModel):
-    """A code that works once, until `expires_at`; `url` and `qr_svg` open the tablet's page with it.
+    """A code that works once, until `expires_at`; `url` and `qr_svg` open the page with it.
 
     A headset's client is given the address of the server and types the code; it has no page to
     scan, so its `qr_svg` is null.
