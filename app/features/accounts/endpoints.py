@@ -2,9 +2,10 @@
 
 from fastapi import APIRouter, Request, Response
 
-from app.features.accounts.schemas import AccountView, Credentials, SignedInView
+from app.errors import NotSignedIn
+from app.features.accounts.schemas import AccountView, Credentials, SignedInView, WhoView
 from app.features.accounts.service import log_in, revoke_token
-from app.features.dependencies import LOGIN_COOKIE, Context, SignedIn, Writing
+from app.features.dependencies import LOGIN_COOKIE, Context, Writing, get_caller
 
 router = APIRouter(tags=["accounts"])
 
@@ -52,8 +53,12 @@ def post_logout(request: Request, response: Response, db: Writing, context: Cont
 
 
 @router.get("/me")
-def get_me(caller: SignedIn) -> SignedInView:
-    """Who is signed in."""
-    return SignedInView(
+def get_me(request: Request, context: Context) -> WhoView:
+    """Who is signed in; null where nobody is."""
+    try:
+        caller = get_caller(request, context)
+    except NotSignedIn:
+        return WhoView(account=None)
+    return WhoView(
         account=AccountView(id=caller.account_id, username=caller.username, role=caller.role)
     )

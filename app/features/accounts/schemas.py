@@ -21,6 +21,12 @@ class AccountView(BaseModel):
 
 
 class SignedInView(BaseModel):
-    """The answer to a login and to "who am I"."""
+    """The answer to a login."""
 
     account: AccountView
+
+
+class WhoView(BaseModel):
+    """Who is signed in; null where nobody is, which is no error."""
+
+    account: AccountView | None
