@@ -1,7 +1,7 @@
 /** Bring a study (or its next version) into the server from a YAML file, with every problem shown. */
 import { Button, FileButton, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
-import { ApiError } from "@shared/api/errors";
+import { ApiError, type Problem } from "@shared/api/errors";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
@@ -10,7 +10,8 @@ import { useLocation } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./ImportDialog.module.css";
-import { type ListedProblem, offsetOfLine, Problems } from "./Problems";
+import { Problems } from "./Problems";
+import { offsetOfLine } from "./problemPlace";
 
 interface ImportDialogProps {
   readonly opened: boolean;
@@ -128,9 +129,9 @@ function Source({ editor, yaml, onChange }: SourceProps): JSX.Element {
 }
 
 function problemsOf(
-  checked: readonly ListedProblem[] | undefined,
+  checked: readonly Problem[] | undefined,
   error: Error | null,
-): readonly ListedProblem[] {
+): readonly Problem[] {
   if (checked !== undefined) return checked;
   return error instanceof ApiError ? error.details : [];
 }

@@ -1,0 +1,26 @@
+import { describe, expect, it } from "vitest";
+import { dressed, type Palette } from "./layout";
+
+const palette: Palette = { ink: "#111", soft: "#555", line: "#ccc", sim: "#53a", font: "serif" };
+
+describe("the dress of a figure", () => {
+  it("keeps what the server says and puts the page's colours on every axis", () => {
+    const layout = dressed(
+      { xaxis: { title: { text: "Added latency (ms)" } }, yaxis2: { range: [0, 1] }, template: {} },
+      palette,
+      null,
+    );
+    expect(layout.xaxis).toMatchObject({
+      title: { text: "Added latency (ms)" },
+      gridcolor: "#ccc",
+    });
+    expect(layout.yaxis2).toMatchObject({ range: [0, 1], gridcolor: "#ccc" });
+    expect(layout).not.toHaveProperty("template");
+    expect(layout.annotations).toEqual([]);
+  });
+
+  it("writes across a figure of simulated data, beside its own annotations", () => {
+    const { annotations } = dressed({ annotations: [{ text: "n = 6" }] }, palette, "SIMULATED");
+    expect(annotations).toMatchObject([{ text: "n = 6" }, { text: "SIMULATED" }]);
+  });
+});

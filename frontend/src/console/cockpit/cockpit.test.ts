@@ -1,0 +1,104 @@
+import type { Allowed, Current, SessionView } from "@shared/api/types";
+import { describe, expect, it } from "vitest";
+import { guidance, primaryAction } from "./action";
+import { changesBetween } from "./changes";
+import { at, session, steps } from "./example";
+import { groupSteps } from "./groupSteps";
+import { redoable, redoTarget } from "./redo";
+
+const view = (
+  current: Current | null,
+  allowed: readonly Allowed[],
+  more: Partial<SessionView> = {},
+) => ({
+  ...session,
+  current,
+  allowed,
+  ...more,
+});
+
+describe("the primary action", () => {
+  it("is never one that the server does not allow", () => {
+    for (const index of steps.keys()) expect(primaryAction(view(at(index), []))).toBeNull();
+  });
+
+  it("starts, begins, resumes and completes", () => {
+    const typeOf = (current: Current | null, allowed: Allowed) =>
+      primaryAction(view(current, [allowed]))?.command.type;
+    expect(typeOf(null, "start")).toBe("start");
+    expect(typeOf(at(0), "complete_step")).toBe("complete_step");
+    expect(typeOf(at(2), "begin_phase")).toBe("begin_phase");
+    expect(typeOf(at(2, { status: "paused" }), "resume")).toBe("resume");
+  });
+
+  it("names the step it completes, so that a late click does not complete another", () => {
+    const action = primaryAction(view(at(0), ["complete_step"]));
+    expect(action?.command.step_index).toBe(0);
+  });
+
+  it("leaves height to its form and answers to the participant", () => {
+    expect(primaryAction(view(at(1), ["complete_step"]))).toBeNull();
+    expect(primaryAction(view(at(3), ["enter_answers"]))).toBeNull();
+  });
+});
+
+describe("the guidance", () => {
+  it("follows the phase while one is on and the outcome after the end", () => {
+    expect(guidance(view(at(2, { status: "walk_back" }), []))).toBe("guide.walk_back");
+    expect(guidance(view(at(4), []))).toBe("guide.task.foot");
+    expect(guidance(view(null, [], { status: "withdrawn" }))).toBe("guide.withdrawn");
+  });
+});
+
+describe("what another operator changed", () => {
+  const keys = (before: SessionView, after: SessionView) =>
+    changesBetween(before, after).map(({ key }) => key);
+
+  it("is told by status, step, phase and notes", () => {
+    const running = view(at(2, { status: "running" }), []);
+    const paused = view(at(2, { status: "paused" }), []);
+    const note = { id: "n", text: "x", at: "2026-01-01T12:00:00Z", by: "admin" };
+    expect(keys(running, paused)).toEqual(["change.phase.paused"]);
+    expect(keys(running, view(at(3), []))).toEqual(["change.step"]);
+    expect(keys(running, { ...running, notes: [note] })).toEqual(["change.notes"]);
+    expect(keys(running, view(null, [], { status: "aborted" }))).toEqual(["change.status.aborted"]);
+  });
+
+  it("is never nothing", () => {
+    expect(keys(session, session)).toEqual(["change.other"]);
+  });
+});
+
+describe("doing over", () => {
+  it("means the running step, or the task that was just done", () => {
+    expect(redoTarget(view(at(2, { status: "running" }), []))).toBe(2);
+    expect(redoTarget(view(at(3), []))).toBe(2);
+    expect(redoTarget(view(at(1), []))).toBe(0);
+  });
+
+  it("offers no step that lies ahead or has not begun", () => {
+    const offered = (current: Current) => redoable(view(current, [])).map(({ index }) => index);
+    expect(offered(at(3))).toEqual([0, 1, 2]);
+    expect(offered(at(2, { status: "running" }))).toEqual([0, 1, 2]);
+  });
+
+  it("proposes a step that is offered", () => {
+    for (const index of [1, 2, 3, 4, 5]) {
+      const now = view(at(index), []);
+      expect(redoable(now).map((step) => step.index)).toContain(redoTarget(now));
+    }
+  });
+});
+
+describe("the timeline", () => {
+  it("gathers the steps into before, blocks and after without losing one", () => {
+    const groups = groupSteps(steps);
+    expect(groups.flatMap((group) => group.steps)).toEqual(steps);
+    expect(groups.map(({ number, latency }) => [number, latency])).toEqual([
+      [0, null],
+      [1, 125],
+      [2, 0],
+      [0, null],
+    ]);
+  });
+});

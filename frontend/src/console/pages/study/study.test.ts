@@ -1,0 +1,96 @@
+import type { Ledger, Slot, StudyProtocol } from "@shared/api/types";
+import { describe, expect, it } from "vitest";
+import { offsetOfLine, place } from "../problemPlace";
+import { arrange, nextFree } from "./ledgerGrid";
+import { ownTime } from "./ownTime";
+
+const ORDERS = [
+  [0, 125],
+  [125, 0],
+];
+
+const slot = (index: number, order: number, replicate: number, state: Slot["state"]): Slot => ({
+  index,
+  block: replicate - 1,
+  replicate,
+  sequence: ORDERS[order] ?? [],
+  state,
+  attempts: [],
+});
+
+const ledger: Ledger = {
+  kind: "people",
+  seed: 1,
+  when_full: "grow",
+  started: true,
+  sequences: ORDERS.map((sequence) => ({ sequence, completed: 0, open: 0, total: 2 })),
+  slots: [
+    slot(0, 1, 1, "completed"),
+    slot(1, 0, 1, "open"),
+    slot(2, 0, 2, "free"),
+    slot(3, 1, 2, "free"),
+  ],
+};
+
+describe("the ledger as a grid", () => {
+  it("puts every slot in the row of its order and the column of its replicate", () => {
+    const grid = arrange(ledger);
+    expect(grid?.columns).toEqual([1, 2]);
+    expect(grid?.rows.map((row) => row.slots.map((cell) => cell?.index))).toEqual([
+      [1, 2],
+      [0, 3],
+    ]);
+  });
+
+  it("does not exist where the orders are hidden or nothing is drawn yet", () => {
+    expect(arrange({ ...ledger, sequences: null })).toBeNull();
+    expect(arrange({ ...ledger, slots: [] })).toBeNull();
+  });
+
+  it("knows the slot that is given out next", () => {
+    expect(nextFree(ledger.slots)).toBe(2);
+    expect(nextFree(ledger.slots.slice(0, 2))).toBeNull();
+  });
+});
+
+describe("the time of a visit", () => {
+  it("adds free roam once and every phase once for each condition", () => {
+    const phase = { preparation_s: 5, duration_s: 60, freeze_s: 5, questionnaire: "q" };
+    const protocol: StudyProtocol = {
+      title: {},
+      description: {},
+      conditions: [0, 125, 350].map((latency_ms) => ({
+        key: `${latency_ms}`,
+        latency_ms,
+        label: {},
+      })),
+      orders: { design: "all_permutations", replicates: 2, seed: 1, when_full: "grow" },
+      procedure: {
+        before: [{ step: "consent" }, { step: "free_roam", duration_s: 120, latency_ms: 0 }],
+        block: {
+          limb_order: "fixed",
+          phases: [
+            { limb: "hand", ...phase },
+            { limb: "foot", ...phase },
+          ],
+        },
+        after: [{ step: "debrief" }],
+      },
+      on_disconnect: "pause",
+      blinding: { operator: false },
+    };
+    expect(ownTime(protocol)).toBe(120 + 3 * 2 * 70);
+  });
+});
+
+describe("problems of a study file", () => {
+  it("say where they are as path:line:column", () => {
+    const problem = { path: "orders.replicates", line: 12, column: 15, message: "too few" };
+    expect(place(problem)).toBe("orders.replicates:12:15");
+    expect(place({ path: "", line: 3, column: null, message: "x" })).toBe("3");
+  });
+
+  it("lead to their line in the text", () => {
+    expect(offsetOfLine("key: a\ntitle: b\nx: 1", 2)).toEqual([7, 15]);
+  });
+});

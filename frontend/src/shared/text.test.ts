@@ -1,0 +1,26 @@
+import { describe, expect, it } from "vitest";
+import { inLanguage, paragraphs } from "./text";
+
+describe("texts", () => {
+  it("fall back to English and then to any language", () => {
+    expect(inLanguage({ en: "hand", de: "Hand" }, "de")).toBe("Hand");
+    expect(inLanguage({ en: "hand" }, "de")).toBe("hand");
+    expect(inLanguage({ fr: "main" }, "de")).toBe("main");
+    expect(inLanguage(null, "de")).toBe("");
+  });
+
+  it("split into paragraphs, points and headings", () => {
+    expect(paragraphs("# Rights\nYou may stop.\n\nPlease:\n- ask\n- rest\n  a little")).toEqual([
+      { kind: "heading", text: "Rights" },
+      { kind: "prose", text: "You may stop." },
+      { kind: "prose", text: "Please:" },
+      { kind: "points", points: ["ask", "rest a little"] },
+    ]);
+  });
+
+  it("keep markup as plain text", () => {
+    expect(paragraphs("<script>alert(1)</script>")).toEqual([
+      { kind: "prose", text: "<script>alert(1)</script>" },
+    ]);
+  });
+});

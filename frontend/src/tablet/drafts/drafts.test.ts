@@ -1,0 +1,115 @@
+import "fake-indexeddb/auto";
+import { ApiError, Unreachable } from "@shared/api/errors";
+import type { Receipt, Submission } from "@shared/api/types";
+import { uuid } from "@shared/uuid";
+import { beforeEach, describe, expect, it } from "vitest";
+import { deliver } from "./deliver";
+import { DraftStore, type Kept } from "./store";
+
+const NOW = new Date("2026-01-01T12:00:00Z");
+const DRAFT = { data: { q1: 4 }, page: 1, timings: { q1: 3.2 } };
+
+const submissionOf = (kept: Kept, answer = 4): Submission => ({
+  idempotency_key: kept.idempotencyKey,
+  administration: kept.administration,
+  answers: { q1: answer },
+  shown_order: ["q1"],
+  seed: 1,
+  language: "en",
+  started_at_utc: kept.startedAt,
+  timings: {},
+});
+
+let name: string;
+let store: DraftStore;
+let kept: Kept;
+
+beforeEach(async () => {
+  name = uuid();
+  store = new DraftStore(name);
+  kept = await store.open("session", "form#1", NOW);
+});
+
+describe("a draft", () => {
+  it("comes back after a reload, with the key it was given first", async () => {
+    await store.keep(kept.id, DRAFT);
+    const again = await new DraftStore(name).open("session", "form#1", new Date());
+    expect(again.draft).toEqual(DRAFT);
+    expect(again.idempotencyKey).toBe(kept.idempotencyKey);
+    expect(again.startedAt).toBe(NOW.toISOString());
+  });
+
+  it("belongs to its session and its form alone", async () => {
+    await store.keep(kept.id, DRAFT);
+    expect((await store.open("other", "form#1", NOW)).draft.data).toEqual({});
+    expect((await store.open("session", "form#2", NOW)).draft.data).toEqual({});
+  });
+
+  it("does not change any more once it is queued", async () => {
+    await store.queue(kept.id, submissionOf(kept));
+    await store.keep(kept.id, { ...DRAFT, data: { q1: 7 } });
+    expect((await store.open("session", "form#1", NOW)).draft.data).toEqual({});
+  });
+
+  it("is queued once: a second sending repeats the first", async () => {
+    await store.queue(kept.id, submissionOf(kept, 4));
+    const sent = await store.queue(kept.id, submissionOf(kept, 7));
+    expect(sent.answers).toEqual({ q1: 4 });
+  });
+
+  it("leaves the tablet when it is old, unless it waits to be sent", async () => {
+    const waiting = await store.open("session", "form#2", NOW);
+    await store.queue(waiting.id, submissionOf(waiting));
+    await store.keep(kept.id, DRAFT);
+    await store.forgetOld(new Date(NOW.getTime() + 49 * 3_600_000));
+    expect((await store.open("session", "form#1", NOW)).draft.data).toEqual({});
+    expect(await store.waiting("session")).toHaveLength(1);
+  });
+});
+
+describe("delivering a form", () => {
+  const receipt: Receipt = { receipt_id: "r", stored_at: NOW.toISOString(), duplicate: false };
+  const refusal = (status: number, code: string) => new ApiError(status, { code, message: code });
+  const failing = (error: Error) => async (): Promise<Receipt> => {
+    throw error;
+  };
+  const attempt = async (submit: (submission: Submission) => Promise<Receipt>) => {
+    const queued = await store.queue(kept.id, submissionOf(kept));
+    return deliver(store, kept.id, queued, submit);
+  };
+
+  it("forgets it when the server has it", async () => {
+    expect(await attempt(async () => receipt)).toEqual({ kind: "stored" });
+    expect(await store.waiting("session")).toEqual([]);
+  });
+
+  it("keeps it while there is no connection or the server is busy, and sends the same again", async () => {
+    const keys: string[] = [];
+    const offline = async (submission: Submission): Promise<Receipt> => {
+      keys.push(submission.idempotency_key);
+      throw new Unreachable("no answer");
+    };
+    expect(await attempt(offline)).toEqual({ kind: "later" });
+    expect(await attempt(failing(refusal(503, "not_durable")))).toEqual({ kind: "later" });
+    expect(await store.waiting("session")).toHaveLength(1);
+    await attempt(offline);
+    expect(new Set(keys)).toEqual(new Set([kept.idempotencyKey]));
+  });
+
+  it("keeps it when the tablet was disconnected or the form is not due", async () => {
+    expect(await attempt(failing(refusal(401, "not_signed_in")))).toEqual({ kind: "unpaired" });
+    expect((await attempt(failing(refusal(409, "not_now")))).kind).toBe("held");
+    expect(await store.waiting("session")).toHaveLength(1);
+  });
+
+  it("gives it back to be mended when an answer does not fit", async () => {
+    expect((await attempt(failing(refusal(422, "invalid_input")))).kind).toBe("refused");
+    expect(await store.waiting("session")).toEqual([]);
+    expect((await store.open("session", "form#1", NOW)).idempotencyKey).toBe(kept.idempotencyKey);
+  });
+
+  it("forgets it when the experimenter has recorded the form already", async () => {
+    expect(await attempt(failing(refusal(409, "conflict")))).toEqual({ kind: "superseded" });
+    expect(await store.waiting("session")).toEqual([]);
+  });
+});
