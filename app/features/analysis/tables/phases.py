@@ -1,17 +1,14 @@
 """The table of phases, with what each came to."""
 
-from collections.abc import Iterable
-
 import pandas as pd
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from app.features.analysis.red_time import red_spans, total_s
 from app.features.analysis.schemas import Kind
 from app.features.analysis.tables.context import finished, of_kind, phases_context, read
 from app.features.studies.service import study_by_key
 from app.models import Completion, Contact, Phase, Study, StudySession
-from app.science.tasks.summaries import union
-from app.science.tasks.surfaces import side_unit
 
 _KEYS = ["session_id", "phase_id"]
 
@@ -25,16 +22,6 @@ def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     for name in ("completions", "side_contacts", "side_red_s"):
         frame[name] = [0 if pd.isna(value) else value for value in frame[name]]
     return finished(frame, "phases")
-
-
-def red_spans(
-    contacts: Iterable[tuple[str, float, float]],
-) -> dict[str, tuple[tuple[float, float], ...]]:
-    """When each side was red, from (surface, begin, end) of its contacts: the union over parts."""
-    by_side: dict[str, list[tuple[float, float]]] = {}
-    for surface, begin_s, end_s in contacts:
-        by_side.setdefault(side_unit(surface) or surface, []).append((begin_s, end_s))
-    return {side: union(spans) for side, spans in by_side.items()}
 
 
 def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
@@ -88,6 +75,5 @@ def _red(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
     rows = []
     for (session_id, phase_id), contacts in by_phase.items():
         spans = [span for side in red_spans(contacts).values() for span in side]
-        red_s = sum((end - begin for begin, end in spans), 0.0)
-        rows.append((session_id, phase_id, len(spans), red_s))
+        rows.append((session_id, phase_id, len(spans), total_s(spans)))
     return pd.DataFrame(rows, columns=[*_KEYS, "side_contacts", "side_red_s"], dtype=object)

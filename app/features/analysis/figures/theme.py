@@ -1,0 +1,53 @@
+"""One look for all figures: colours that every kind of vision tells apart, on any background.
+
+Colours are Okabe and Ito's (2008) without black and yellow, which one background or the other would
+swallow. Whatever a colour tells, a shape, a dash or a pattern tells too.
+"""
+
+import plotly.graph_objects as go
+from plotly.subplots import make_subplots
+
+BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
+ORANGE, PURPLE, SKY = "#E69F00", "#CC79A7", "#56B4E9"
+COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)
+QUIET = "rgba(128, 128, 128, 0.55)"
+SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x", "star")
+PATTERNS = ("", "/", "x", "-", ".", "+")
+_CLEAR = "rgba(0, 0, 0, 0)"
+_LINES = "rgba(128, 128, 128, 0.3)"
+
+_AXIS = go.layout.XAxis(gridcolor=_LINES, zerolinecolor=_LINES, automargin=True, title_standoff=8)
+TEMPLATE = go.layout.Template(
+    layout=go.Layout(
+        paper_bgcolor=_CLEAR,
+        plot_bgcolor=_CLEAR,
+        colorway=COLOURS,
+        xaxis=_AXIS,
+        yaxis=_AXIS.to_plotly_json(),
+        margin={"l": 60, "r": 20, "t": 60, "b": 60},
+        hovermode="closest",
+    )
+)
+
+
+def new_figure(*, rows: int = 1, titles: tuple[str, ...] = ("",), **options: object) -> go.Figure:
+    """An empty figure in our look with a panel for each title, `rows` rows of them."""
+    figure = make_subplots(
+        rows=rows,
+        cols=len(titles) // rows,
+        subplot_titles=titles if any(titles) else None,
+        **options,
+    )
+    figure.update_layout(template=TEMPLATE)
+    return figure
+
+
+def latency_axis(figure: go.Figure, latencies_ms: list[float]) -> None:
+    """Label the x axes with the study's latencies, a little room at both ends."""
+    room = max(10.0, 0.08 * (latencies_ms[-1] - latencies_ms[0]))
+    figure.update_xaxes(
+        title_text="added latency (ms)",
+        tickvals=latencies_ms,
+        ticktext=[f"{latency:g}" for latency in latencies_ms],
+        range=[latencies_ms[0] - room, latencies_ms[-1] + room],
+    )

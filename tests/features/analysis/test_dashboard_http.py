@@ -1,0 +1,49 @@
+"""The dashboard over HTTP."""
+
+from collections.abc import Iterator
+
+import pytest
+from fastapi.testclient import TestClient
+from pydantic import SecretStr
+
+from app.main import create_app
+from app.settings import Settings
+from tests.features.builders import STUDY, SessionSpec, build_session
+
+
+@pytest.fixture
+def client(sqlite_url: str) -> Iterator[TestClient]:
+    """A signed-in client of an application with two simulated sessions."""
+    app = create_app(Settings(database_url=sqlite_url, admin_password=SecretStr("secret-words")))
+    with TestClient(app) as client:
+        with app.state.context.database.writing() as db:
+            build_session(db, SessionSpec("SIM-0001", kind="simulated"))
+            build_session(db, SessionSpec("SIM-0002", kind="simulated"))
+        login = {"username": "admin", "password": "secret-words"}
+        assert client.post("/api/login", json=login).status_code == 200
+        yield client
+
+
+def test_a_dashboard_has_its_shape(client: TestClient) -> None:
+    """Kind, counts, avatars, and figures with words for people and a figure for plotly.js."""
+    view = client.get(f"/api/studies/{STUDY}/dashboard", params={"kind": "simulated"}).json()
+    assert set(view) == {"kind", "simulated", "n_sessions", "n_completed", "avatar", "figures"}
+    assert (view["kind"], view["simulated"], view["n_completed"]) == ("simulated", True, 2)
+    for entry in view["figures"]:
+        assert set(entry) == {"key", "title", "caption", "figure", "empty", "n"}
+        assert (entry["figure"] is None) != (entry["empty"] is None)
+        assert set(entry["figure"]) == {"data", "layout"}
+
+
+def test_people_are_the_usual_kind_and_all_is_no_kind_of_a_dashboard(client: TestClient) -> None:
+    """Kinds are never drawn together."""
+    path = f"/api/studies/{STUDY}/dashboard"
+    assert client.get(path).json()["n_sessions"] == 0
+    assert client.get(path, params={"kind": "all"}).status_code == 422
+
+
+def test_nobody_sees_it_without_signing_in(client: TestClient) -> None:
+    """401 for strangers, 404 for an unknown study."""
+    assert client.get("/api/studies/nothing/dashboard").status_code == 404
+    client.cookies.clear()
+    assert client.get(f"/api/studies/{STUDY}/dashboard").status_code == 401

@@ -1,0 +1,216 @@
+"""What happens in a built session: its phases with what they came to, and its forms."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+from sqlalchemy.orm import Session
+
+from app.features.studies.service import instrument_for, instrument_of
+from app.models import (
+    Answer,
+    Completion,
+    Contact,
+    JointErrorRow,
+    Phase,
+    ScoreValue,
+    StudySession,
+    StudyVersion,
+    Submission,
+)
+from app.protocol.plan import Step
+from app.science.instruments import Instrument, item_order, score_answers
+from app.science.joint_error import ERROR_AXES, ERROR_JOINTS
+
+NOW = datetime(2026, 3, 2, 9, 30, tzinfo=UTC)
+
+
+@dataclass(frozen=True)
+class SessionSpec:
+    """What makes a session different from the next."""
+
+    code: str
+    kind: str = "people"
+    status: str = "completed"
+    redone: tuple[str, ...] = ()
+    skipped: tuple[str, ...] = ()
+    open_answer: str = "The boxes on the left."
+    likert: Callable[[Step, str], int] | None = None
+    completions: Callable[[Step], int] = lambda step: 3 if step.limb == "hand" else 2
+    joint_error_rad: Callable[[Step, str], float] = lambda step, _: (step.latency_ms or 0) / 1000
+
+
+@dataclass
+class Filler:
+    """Fills a session step by step; every run of a phase gets the next phase_id."""
+
+    db: Session
+    session: StudySession
+    spec: SessionSpec
+    phase_id: int = 0
+
+    def fill(self, plan: Sequence[Step]) -> None:
+        """Add the rows of every step."""
+        for step in plan:
+            for attempt in (1, 2) if step.key in self.spec.redone else (1,):
+                if step.kind in ("free_roam", "task"):
+                    superseded = step.key in self.spec.redone and attempt == 1
+                    voided = superseded or step.key in self.spec.skipped
+                    self._phase(step, attempt, "voided" if voided else "done")
+                elif step.instrument is not None and step.key not in self.spec.skipped:
+                    self._form(step, attempt)
+
+    def _phase(self, step: Step, attempt: int, status: str) -> None:
+        self.phase_id += 1
+        begin_s = 100.0 * self.phase_id
+        phase = Phase(
+            session_id=self.session.id,
+            phase_id=self.phase_id,
+            step_index=step.index,
+            step_key=step.key,
+            attempt=attempt,
+            kind=step.kind,
+            limb=step.limb,
+            block=step.block,
+            condition=step.condition,
+            latency_ms=step.latency_ms or 0.0,
+            status=status,
+            active_s=step.duration_s,
+            paused_count=1,
+            walk_back_count=2 if step.limb == "foot" else 0,
+            client_started_s=begin_s,
+            client_ended_s=begin_s + 60.0,
+            prepared_at=NOW,
+            started_at=NOW,
+            ended_at=NOW,
+        )
+        self.db.add(phase)
+        self.db.flush()
+        if step.kind == "task":
+            self._task_rows(step)
+        self._joint_errors(step)
+
+    def _task_rows(self, step: Step) -> None:
+        """Two parts at one side, overlapping: 1..3 s and 2..4 s, so red for 3 s; one panel."""
+        for surface, kind, side, part, begin_s, end_s in (
+            (f"{step.limb}/2/left", "side", "left", "LeftHand", 1.0, 3.0),
+            (f"{step.limb}/2/left", "side", "left", "LeftLowerArm", 2.0, 4.0),
+            (f"{step.limb}/1/panel", "panel", None, "RightHand", 5.0, 5.5),
+        ):
+            self.db.add(
+                Contact(
+                    id=stable_id(self.session.id, self.phase_id, surface, part),
+                    session_id=self.session.id,
+                    phase_id=self.phase_id,
+                    surface=surface,
+                    surface_kind=kind,
+                    box=int(surface.split("/")[1]),
+                    side=side,
+                    body_part=part,
+                    begin_s=begin_s,
+                    end_s=end_s,
+                    begin_active_s=begin_s,
+                    end_active_s=end_s,
+                    effect="side" if side else "green",
+                )
+            )
+        for number in range(1, self.spec.completions(step) + 1):
+            self.db.add(
+                Completion(
+                    session_id=self.session.id,
+                    phase_id=self.phase_id,
+                    number=number,
+                    at_s=10.0 * number,
+                    active_s=10.0 * number,
+                    duration_s=10.0,
+                    order=[4, 3, 2, 1],
+                    out_of_order_touches=0,
+                )
+            )
+
+    def _joint_errors(self, step: Step) -> None:
+        for reference in ("present", "command"):
+            for joint in ERROR_JOINTS:
+                for axis in ERROR_AXES:
+                    value = self.spec.joint_error_rad(step, joint) if reference == "present" else 0
+                    self.db.add(
+                        JointErrorRow(
+                            session_id=self.session.id,
+                            phase_id=self.phase_id,
+                            reference=reference,
+                            joint=joint,
+                            axis=axis,
+                            mean_rad=value,
+                            rms_rad=value,
+                            p95_rad=value,
+                            max_rad=value,
+                            samples=5400,
+                            excluded=0,
+                        )
+                    )
+
+    def _form(self, step: Step, attempt: int) -> None:
+        version = self.db.get_one(StudyVersion, self.session.study_version_id)
+        row = instrument_for(self.db, version, step.instrument or "")
+        instrument = instrument_of(row)
+        answers = self._answers(instrument, step)
+        shown = list(item_order(instrument, 7))
+        administration = f"{step.key}#{attempt}"
+        submission = Submission(
+            id=stable_id(self.session.id, administration),
+            session_id=self.session.id,
+            administration=administration,
+            step_index=step.index,
+            attempt=attempt,
+            instrument_version_id=row.id,
+            instrument=instrument.key,
+            idempotency_key=stable_id("key", administration),
+            request_hash=stable_id("request", administration),
+            salt=None,
+            mode="tablet",
+            entered_by="tablet",
+            language="en",
+            item_seed=7,
+            shown_order=shown,
+            timings=dict.fromkeys(shown, 2.5),
+            started_at=NOW,
+            submitted_at=NOW + timedelta(minutes=step.index, seconds=attempt),
+        )
+        self.db.add(submission)
+        self.db.flush()
+        for item in instrument.items:
+            value = answers[item.key]
+            self.db.add(
+                Answer(
+                    submission_id=submission.id,
+                    item=item.key,
+                    position=shown.index(item.key),
+                    value_number=None if isinstance(value, str) else value,
+                    value_text=value if isinstance(value, str) else None,
+                )
+            )
+        for key, score in score_answers(instrument, answers).items():
+            self.db.add(ScoreValue(submission_id=submission.id, score=key, value=score))
+
+    def _answers(self, instrument: Instrument, step: Step) -> dict[str, float | str | None]:
+        rng = np.random.default_rng([*self.spec.code.encode(), step.index])
+        answers: dict[str, float | str | None] = {}
+        for item in instrument.items:
+            if item.type == "text":
+                answers[item.key] = self.spec.open_answer
+            elif item.type == "choice":
+                answers[item.key] = item.choices[0].key
+            elif item.type == "likert" and instrument.scale:
+                own = self.spec.likert(step, item.key) if self.spec.likert and step.block else None
+                drawn = int(rng.integers(instrument.scale.minimum, instrument.scale.maximum + 1))
+                answers[item.key] = float(own if own is not None else drawn)
+            else:
+                answers[item.key] = float(item.minimum or 0)
+        return answers
+
+
+def stable_id(*parts: object) -> str:
+    """An id that is the same every time."""
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
