@@ -11,7 +11,7 @@ const DEVICES: readonly Device[] = ["tablet", "headset"];
 export function Readiness({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
   return (
-    <ul className={classes.ready}>
+    <ul className={classes.checklist}>
       {DEVICES.map((kind) => {
         const devices = session.devices.filter((device) => device.kind === kind);
         const connected = devices.some((device) => device.connected);

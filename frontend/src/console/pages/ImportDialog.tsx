@@ -59,7 +59,7 @@ function ImportForm({ studyKey, onClose }: Omit<ImportDialogProps, "opened">): J
   return (
     <Stack>
       <Text c="dimmed">{t("import.lead")}</Text>
-      <Source editor={editor} yaml={yaml} onChange={change} />
+      <Source editor={editor} yaml={yaml} rows={problems.length > 0 ? 8 : 14} onChange={change} />
       {problems.length > 0 && (
         <Problems problems={problems} onPick={(line) => moveTo(editor.current, line)} />
       )}
@@ -93,10 +93,11 @@ function ImportForm({ studyKey, onClose }: Omit<ImportDialogProps, "opened">): J
 interface SourceProps {
   readonly editor: React.RefObject<HTMLTextAreaElement | null>;
   readonly yaml: string;
+  readonly rows: number;
   readonly onChange: (yaml: string) => void;
 }
 
-function Source({ editor, yaml, onChange }: SourceProps): JSX.Element {
+function Source({ editor, yaml, rows, onChange }: SourceProps): JSX.Element {
   const { t } = useTexts();
   return (
     <>
@@ -119,7 +120,7 @@ function Source({ editor, yaml, onChange }: SourceProps): JSX.Element {
         ref={editor}
         className={classes.editor ?? ""}
         aria-label={t("import.source")}
-        rows={14}
+        rows={rows}
         spellCheck={false}
         value={yaml}
         onChange={(event) => onChange(event.currentTarget.value)}

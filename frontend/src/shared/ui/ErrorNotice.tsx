@@ -35,10 +35,13 @@ export function describe(
 ): { readonly message: string; readonly remedy: string } {
   if (error instanceof ApiError) {
     const details = error.details.map((problem) => problem.message).join(" ");
-    return { message: error.message, remedy: error.remedy ?? details };
+    return { message: sentence(error.message), remedy: error.remedy ?? details };
   }
   if (error instanceof Unreachable) {
     return { message: texts.unreachable, remedy: texts.unreachableRemedy };
   }
   return { message: texts.unexpected, remedy: error instanceof Error ? error.message : "" };
 }
+
+/** The server's messages begin in lower case, because logs put words before them. */
+const sentence = (message: string): string => message.charAt(0).toUpperCase() + message.slice(1);
