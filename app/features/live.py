@@ -103,7 +103,9 @@ class Hub:
 def after_commit(db: Session, action: Callable[[], None]) -> None:
     """Run `action` once this transaction is on disk; never, if it is rolled back."""
 
-    def run(_session: Session) -> None:
-        action()
+    def run(session: Session) -> None:
+        # Releasing a savepoint counts as a commit here, yet nothing is on disk.
+        if not session.in_nested_transaction():
+            action()
 
-    event.listen(db, "after_commit", run, once=True)
+    event.listen(db, "after_commit", run)
