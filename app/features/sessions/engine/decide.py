@@ -42,7 +42,7 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
         case c.Report():
             return _then_end(plan, state, decide_report(plan, state, command))
         case c.HeadsetLost():
-            return decide_headset_lost(state, command)
+            return decide_headset_lost(plan, state, command)
         case c.Redo():
             return _redo(plan, state, command)
         case c.Stop():

@@ -6,6 +6,7 @@ end before its duration is used up.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TypeVar
 
 from app.features.sessions.engine import commands as c
@@ -49,7 +50,8 @@ def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -
             remedy="Follow the newest state message.",
         )
     _require_active_time(phase, report, plan[phase.step].duration_s or 0.0)
-    return [_event(report, phase)]
+    # A step back within the tolerance is rounding: what is known stands.
+    return [_event(replace(report, active_s=max(phase.active_s, report.active_s)), phase)]
 
 
 def _event(report: c.Report, phase: PhaseState) -> e.Event:
@@ -87,15 +89,21 @@ def _stamped(event: type[_Stamped], report: c.Report) -> _Stamped:
     return event(phase_id=report.phase_id, active_s=report.active_s, client_t_s=report.client_t_s)
 
 
-def decide_headset_lost(state: SessionState, command: c.HeadsetLost) -> list[e.Event]:
-    """A running clock stops where it was last known; other phases wait as they are."""
+def decide_headset_lost(
+    plan: Sequence[Step], state: SessionState, command: c.HeadsetLost
+) -> list[e.Event]:
+    """A running clock stops where it was last known; other phases wait as they are.
+
+    Nobody is there to refuse, so an impossible time is cut to the phase's duration.
+    """
     phase = state.phase
     if phase is None or phase.status is not PhaseStatus.RUNNING:
         return []
+    duration_s = plan[phase.step].duration_s or 0.0
     return [
         e.PhasePaused(
             phase_id=phase.phase_id,
-            active_s=max(phase.active_s, command.active_s),
+            active_s=max(phase.active_s, min(command.active_s, duration_s)),
             cause=command.cause,
         )
     ]
