@@ -8,6 +8,7 @@ from app.features.sessions.contents import store_content
 from app.features.sessions.engine import Command, ContentRef
 from app.features.sessions.engine import commands as c
 from app.features.sessions.schemas import CommandRequest
+from app.features.sessions.service import state_of
 from app.models import StudySession
 
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw")
@@ -39,7 +40,10 @@ def command_of(
         case "materialise":
             return c.Materialise(by="operator")
         case "pause":
-            return c.Pause(content=store.put("reason", reason) if reason else None)
+            # Asking again adds no event, so there would be nothing to hold the words.
+            phase = state_of(session).phase
+            new = bool(reason) and not (phase is not None and phase.pausing)
+            return c.Pause(content=store.put("reason", reason) if new else None)
         case "resume":
             return c.Resume(headset_connected=connected)
         case "note":

@@ -73,8 +73,12 @@ def event_of(row: SessionEvent) -> Event:
     return event_from_json(row.type, json.loads(row.payload))
 
 
-def verify_chain(rows: Sequence[SessionEvent]) -> ChainCheck:
-    """Check a whole log: consecutive seqs, linked hashes, every hash recomputed."""
+def verify_chain(rows: Sequence[SessionEvent], *, version: int | None = None) -> ChainCheck:
+    """Check a whole log: consecutive seqs, linked hashes, every hash recomputed.
+
+    `version` is the session's own count of events; without it a log whose end was cut off cannot be
+    told from a shorter one.
+    """
     previous = FIRST_HASH
     for expected_seq, row in enumerate(rows, start=1):
         intact = (
@@ -83,6 +87,8 @@ def verify_chain(rows: Sequence[SessionEvent]) -> ChainCheck:
         if not intact:
             return ChainCheck(ok=False, events=len(rows), broken_at=expected_seq)
         previous = row.hash
+    if version is not None and version != len(rows):
+        return ChainCheck(ok=False, events=len(rows), broken_at=min(version, len(rows)) + 1)
     return ChainCheck(ok=True, events=len(rows))
 
 

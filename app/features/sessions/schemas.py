@@ -67,11 +67,11 @@ class CommandRequest(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     command_id: str = Field(min_length=8, max_length=36)
-    expected_version: int = Field(ge=0)
+    expected_version: int = Field(ge=0, lt=2**31)
     type: CommandType
     reason: str | None = Field(default=None, max_length=2000)
     text: str | None = Field(default=None, max_length=4000)
-    step_index: int | None = Field(default=None, ge=0)
+    step_index: int | None = Field(default=None, ge=0, lt=1000)
     height_m: Height | None = None
 
 

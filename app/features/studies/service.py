@@ -207,7 +207,7 @@ def session_counts(db: Session, study: Study) -> dict[str, int]:
         .where(StudySession.study_id == study.id)
         .group_by(StudySession.kind)
     )
-    return {"people": 0, "simulated": 0, "test": 0} | dict(rows.tuples().all())
+    return {"people": 0, "simulated": 0, "test": 0} | dict(rows.all())
 
 
 def add_shipped(db: Session, now: datetime) -> None:
