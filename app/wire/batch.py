@@ -23,6 +23,7 @@ The frames of the target and the actual stream that show the same moment carry t
 
 import struct
 import zlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -35,6 +36,7 @@ HEADER_BYTES = HEADER.size
 BODY_JOINTS = 22
 VALUES_PER_FRAME = 3 + 4 * BODY_JOINTS
 MAX_FRAMES = 1024
+MAX_TIME_S = 1e9
 ACTIVE = 1
 """Frame flag: the phase's clock ran when this frame was shown."""
 
@@ -108,14 +110,24 @@ def decode_header(message: bytes) -> BatchHeader:
         raise MalformedBatchError(f"frame count {n}; valid are 1 to {MAX_FRAMES}")
     if w != VALUES_PER_FRAME:
         raise MalformedBatchError(f"{w} values per frame; expected {VALUES_PER_FRAME}")
-    if seq >= 2**62:
-        raise MalformedBatchError(f"seq {seq} is out of range; seqs start at 0 in each epoch")
+    _require_usable(seq, phase_id, {"active_s": active, "closed_at_s": closed})
     expected = HEADER_BYTES + body_bytes(n, w)
     if len(message) != expected:
         raise MalformedBatchError(f"message of {len(message)} bytes; {n} frames need {expected}")
     return BatchHeader(
         _STREAM_OF_CODE[code], epoch, phase_id, seq, n, w, crc, float(active), float(closed)
     )
+
+
+def _require_usable(seq: int, phase_id: int, times_s: Mapping[str, float]) -> None:
+    """What the header says of the whole batch must be usable; samples may be anything."""
+    if seq >= 2**62:
+        raise MalformedBatchError(f"seq {seq} is out of range; seqs start at 0 in each epoch")
+    if phase_id >= 2**31:
+        raise MalformedBatchError(f"phase_id {phase_id} is out of range; phases count from 1")
+    for name, time_s in times_s.items():
+        if not 0.0 <= time_s <= MAX_TIME_S:
+            raise MalformedBatchError(f"{name} {time_s}; expected 0 to {MAX_TIME_S:g} s")
 
 
 def decode_batch(message: bytes) -> Batch:

@@ -18,6 +18,10 @@ MAX_SEQ = 2**53
 Seconds = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1e9)]
 Seq = Annotated[int, Field(ge=0, lt=MAX_SEQ)]
 Epoch = Annotated[int, Field(ge=1, lt=2**31)]
+Count = Annotated[int, Field(ge=0, lt=2**31)]
+Nanoseconds = Annotated[int, Field(ge=0, lt=2**63)]
+# Not every database takes a NUL in a text.
+Name = Annotated[str, Field(pattern=r"^[^\x00]*$")]
 
 
 class Message(BaseModel):
@@ -31,7 +35,7 @@ class Hello(Message):
 
     type: Literal["hello"] = "hello"
     protocol: int
-    client: str = Field(max_length=120)
+    client: Name = Field(max_length=120)
     epoch: Epoch | None = None
 
 
@@ -39,7 +43,7 @@ class PhaseReport(Message):
     """What the headset did to the clock of a phase, at its own monotonic time."""
 
     kind: Literal["phase"] = "phase"
-    phase_id: int
+    phase_id: Count
     what: Literal[
         "started",
         "paused",
@@ -51,7 +55,7 @@ class PhaseReport(Message):
     ]
     t_s: Seconds
     active_s: Seconds
-    cause: str = Field(default="headset", max_length=40)
+    cause: Name = Field(default="headset", max_length=40)
 
 
 class MaterialisedReport(Message):
@@ -65,30 +69,30 @@ class ContactReport(Message):
     """A finished contact of one body part with one surface, inside one active interval."""
 
     kind: Literal["contact"] = "contact"
-    phase_id: int
-    surface: str = Field(max_length=40)
+    phase_id: Count
+    surface: Name = Field(max_length=40)
     surface_kind: Literal["panel", "side", "target", "start"]
-    box: int | None = None
-    side: str | None = Field(default=None, max_length=20)
-    body_part: str = Field(max_length=40)
+    box: Count | None = None
+    side: Name | None = Field(default=None, max_length=20)
+    body_part: Name = Field(max_length=40)
     begin_s: Seconds
     end_s: Seconds
     begin_active_s: Seconds
     end_active_s: Seconds
-    effect: str = Field(max_length=20)
+    effect: Name = Field(max_length=20)
 
 
 class CompletionReport(Message):
     """A completed task."""
 
     kind: Literal["completion"] = "completion"
-    phase_id: int
+    phase_id: Count
     number: int = Field(ge=1, le=10_000)
     t_s: Seconds
     active_s: Seconds
     duration_s: Seconds
-    order: tuple[int, ...] = Field(max_length=16)
-    out_of_order_touches: int = Field(ge=0)
+    order: tuple[Count, ...] = Field(max_length=16)
+    out_of_order_touches: Count
 
 
 ReportBody = Annotated[
@@ -118,8 +122,8 @@ class Probed(Message):
 
     type: Literal["probed"] = "probed"
     client_sent_s: Seconds
-    server_received_ns: int
-    server_sent_ns: int
+    server_received_ns: Nanoseconds
+    server_sent_ns: Nanoseconds
     client_received_s: Seconds | None
 
 

@@ -31,8 +31,8 @@ class FrameFlags:
 def flag_frames(times_s: NDArray[np.float64], values: NDArray[np.float32]) -> FrameFlags:
     """Judge frames: `times_s` (n,) in s, `values` (n, 91) as on the wire."""
     finite = np.isfinite(values).all(axis=1) & np.isfinite(times_s)
-    rotations = values[:, 3:].reshape(len(values), BODY_JOINTS, 4).astype(np.float64)
     with np.errstate(invalid="ignore", over="ignore"):
+        rotations = values[:, 3:].reshape(len(values), BODY_JOINTS, 4).astype(np.float64)
         length = np.sqrt(np.einsum("njk,njk->nj", rotations, rotations))
         unit = (np.abs(length - 1.0) <= UNIT_TOLERANCE).all(axis=1)
     return FrameFlags(non_finite=~finite, non_unit=finite & ~unit)

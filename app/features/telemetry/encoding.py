@@ -34,7 +34,8 @@ class Frames:
     @property
     def rotations(self) -> NDArray[np.float64]:
         """Local rotations (n, 22, 4), w x y z."""
-        return self.values[:, 3:].reshape(len(self), -1, 4).astype(np.float64)
+        with np.errstate(invalid="ignore"):  # a signalling NaN is allowed to be there
+            return self.values[:, 3:].reshape(len(self), -1, 4).astype(np.float64)
 
     @property
     def active(self) -> NDArray[np.bool_]:

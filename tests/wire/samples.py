@@ -1,0 +1,63 @@
+"""Batches of plausible and of broken frames."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
+
+RATE_HZ = 90.0
+
+
+def standing(count: int) -> NDArray[np.float32]:
+    """Frames (count, 91) of a body in rest pose, 1 m above the floor."""
+    values = np.zeros((count, VALUES_PER_FRAME), np.float32)
+    values[:, 1] = 1.0
+    values[:, 3::4] = 1.0
+    return values
+
+
+def bits(values: NDArray[np.float32]) -> NDArray[np.uint32]:
+    """The raw bits, under which two NaNs can be told apart."""
+    return np.ascontiguousarray(values).view(np.uint32)
+
+
+def every_odd_float() -> NDArray[np.float32]:
+    """Frames that hold quiet and signalling NaNs with payloads, infinities, denormals, -0."""
+    odd = np.array(
+        [
+            *(0x7FC00000, 0x7FC12345, 0x7F800001, 0xFFC00001, 0xFFFFFFFF, 0x7F800000, 0xFF800000),
+            *(0x00000001, 0x807FFFFF, 0x80000000, 0x7F7FFFFF),
+        ],
+        np.uint32,
+    ).view(np.float32)
+    values = standing(len(odd))
+    bits(values)[:, 7] = bits(odd)
+    return values
+
+
+def message(
+    values: NDArray[np.float32],
+    *,
+    stream: StreamName = StreamName.TARGET,
+    epoch: int = 1,
+    phase_id: int = 0,
+    seq_first: int = 0,
+    times_s: NDArray[np.float64] | None = None,
+    active: bool = False,
+    active_s: float = 0.0,
+) -> bytes:
+    """A batch of these frames, 90 a second."""
+    count = len(values)
+    if times_s is None:
+        times_s = (seq_first + np.arange(count)) / RATE_HZ
+    return encode_batch(
+        stream,
+        epoch=epoch,
+        phase_id=phase_id,
+        seq_first=seq_first,
+        times_s=times_s,
+        flags=np.full(count, active, np.uint8),
+        values=values,
+        active_s=active_s,
+        closed_at_s=float(np.nan_to_num(times_s[-1])),
+    )
