@@ -91,17 +91,22 @@ def test_simulated_data_are_marked_and_alone(database: Database) -> None:
     assert "SIM-" not in people.model_dump_json()
 
 
-@pytest.mark.parametrize("count", [0, 1])
-def test_too_few_people_give_a_sentence_instead_of_a_plot(database: Database, count: int) -> None:
-    """Nobody or one participant: words on what is missing, in every entry but the progress."""
-    _build(database, *(SessionSpec(f"P-{number}") for number in range(count)))
-    view = _dashboard(database)
-    for entry in view.figures[:-1]:
+def test_nobody_gives_a_sentence_instead_of_a_plot(database: Database) -> None:
+    """Without participants every entry says in words what is missing."""
+    _build(database)
+    for entry in _dashboard(database).figures:
         assert entry.figure is None
         assert entry.empty is not None
-        assert entry.empty.startswith("No participant" if count == 0 else "1 participant")
-        assert entry.empty.endswith("at least 2.")
-    assert (view.figures[-1].figure is None) == (count == 0)
+        assert entry.empty.startswith("No ")
+
+
+def test_one_participant_is_drawn_without_an_interval(database: Database) -> None:
+    """The first participant is shown, and the caption says that an interval is missing."""
+    _build(database, SessionSpec("P-1"))
+    figures = {entry.key: entry for entry in _dashboard(database).figures}
+    agency = figures["embodiment_agency"]
+    assert agency.figure is not None
+    assert "no interval yet" in agency.caption
 
 
 def test_only_valid_data_are_drawn(database: Database) -> None:

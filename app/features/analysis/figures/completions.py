@@ -6,6 +6,7 @@ from app.features.analysis.figures.by_latency import MEANS, latency_figure, per_
 from app.features.analysis.figures.drawing import (
     FEWEST_PARTICIPANTS,
     Drawing,
+    count_note,
     drawn,
     limb_note,
     participants,
@@ -25,4 +26,4 @@ def completions_drawing(phases: pd.DataFrame) -> Drawing:
         per_participant(tasks, "completions"), axis="completed tasks (per phase)", unit="tasks"
     )
     figure.update_yaxes(rangemode="tozero")
-    return drawn(KEY, TITLE, f"{MEANS} n = {n} participants. {limb_note(tasks)}", n, figure)
+    return drawn(KEY, TITLE, f"{MEANS} {count_note(n)} {limb_note(tasks)}", n, figure)

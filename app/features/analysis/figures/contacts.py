@@ -9,6 +9,7 @@ from app.features.analysis.figures.by_latency import LIMBS
 from app.features.analysis.figures.drawing import (
     FEWEST_PARTICIPANTS,
     Drawing,
+    count_note,
     drawn,
     limb_note,
     participants,
@@ -52,7 +53,7 @@ def contacts_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
         figure.update_xaxes(title_text="side", row=row, col=1)
         figure.update_xaxes(title_text="body part", row=row, col=2)
     figure.update_layout(barmode="group", height=330 * len(limbs))
-    return drawn(KEY, TITLE, f"{WHAT} n = {n} participants. {limb_note(tasks)}", n, figure)
+    return drawn(KEY, TITLE, f"{WHAT} {count_note(n)} {limb_note(tasks)}", n, figure)
 
 
 def _side_times(sides: pd.DataFrame) -> pd.DataFrame:

@@ -7,8 +7,8 @@ from typing import Any
 import pandas as pd
 import plotly.graph_objects as go
 
-FEWEST_PARTICIPANTS = 2
-"""A mean with an interval needs two people."""
+FEWEST_PARTICIPANTS = 1
+"""One participant's own line is worth seeing; an interval needs two."""
 
 
 @dataclass(frozen=True)
@@ -44,10 +44,16 @@ def drawn(key: str, title: str, caption: str, n: int, figure: go.Figure) -> Draw
 
 
 def too_few(key: str, title: str, caption: str, n: int, what: str) -> Drawing:
-    """A drawing without a figure: how many participants have `what`, and how many it takes."""
-    have = "No participant has" if n == 0 else f"{n} participant has"
-    empty = f"{have} {what} yet; this figure needs at least {FEWEST_PARTICIPANTS}."
+    """A drawing without a figure: nobody has `what` yet."""
+    empty = f"No participant has {what} yet."
     return Drawing(key, title, " ".join(caption.split()), n, empty=empty)
+
+
+def count_note(n: int) -> str:
+    """How many participants a figure shows; with one there is no interval."""
+    if n == 1:
+        return "n = 1 participant, so there is no interval yet."
+    return f"n = {n} participants."
 
 
 def participants(frame: pd.DataFrame) -> int:

@@ -8,6 +8,7 @@ from app.features.analysis.figures.by_latency import MEANS, latency_figure, per_
 from app.features.analysis.figures.drawing import (
     FEWEST_PARTICIPANTS,
     Drawing,
+    count_note,
     drawn,
     limb_note,
     participants,
@@ -43,5 +44,5 @@ def _component(score: str, title: str, axis: str, rows: pd.DataFrame) -> Drawing
         limits=(low, high) if bounded else None,
     )
     possible = f"Possible scores run from {low:g} to {high:g}." if bounded else ""
-    caption = f"{MEANS} n = {n} participants. {possible} {limb_note(rows)}"
+    caption = f"{MEANS} {count_note(n)} {possible} {limb_note(rows)}"
     return drawn(key, title, caption, n, figure)

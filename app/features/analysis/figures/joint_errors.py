@@ -8,6 +8,7 @@ from app.features.analysis.figures.by_latency import cells
 from app.features.analysis.figures.drawing import (
     FEWEST_PARTICIPANTS,
     Drawing,
+    count_note,
     drawn,
     participants,
     too_few,
@@ -48,7 +49,7 @@ def joint_error_drawing(errors: pd.DataFrame) -> Drawing:
             figure.add_trace(_trace(own, part, place, step * (place - 2.5)))
     latency_axis(figure, latencies)
     figure.update_yaxes(title_text="mean joint error (deg)", rangemode="tozero")
-    caption = f"{WHAT} {INTERVAL} n = {n} participants. Points stand a little apart to be seen."
+    caption = f"{WHAT} {INTERVAL} {count_note(n)} Points stand a little apart to be seen."
     return drawn(key, title, caption, n, figure)
 
 
@@ -77,7 +78,7 @@ def joint_error_map_drawing(errors: pd.DataFrame) -> Drawing:
     figure.update_xaxes(title_text="added latency (ms)", type="category")
     figure.update_yaxes(title_text="joint", autorange="reversed")
     figure.update_layout(height=620)
-    return drawn(key, title, f"{WHAT} Means over n = {n} participants.", n, figure)
+    return drawn(key, title, f"{WHAT} {count_note(n)}", n, figure)
 
 
 def _angles(errors: pd.DataFrame) -> pd.DataFrame:

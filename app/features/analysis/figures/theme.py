@@ -38,7 +38,12 @@ def new_figure(*, rows: int = 1, titles: tuple[str, ...] = ("",), **options: obj
         subplot_titles=titles if any(titles) else None,
         **options,
     )
-    figure.update_layout(template=TEMPLATE)
+    # The legend stands below the plot: above it are the titles of the panels.
+    figure.update_layout(
+        template=TEMPLATE,
+        legend={"orientation": "h", "x": 0.0, "y": -0.3, "yanchor": "top"},
+        margin={"t": 36 if any(titles) else 16, "b": 84},
+    )
     return figure
 
 
