@@ -42,6 +42,26 @@ def score(
 
 
 @app.command()
+def export(
+    study: Annotated[str, typer.Option(help="Key of the study.")],
+    to: Annotated[Path, typer.Option(help="Folder to write; an earlier export is replaced.")],
+    kind: Annotated[
+        str | None, typer.Option(help="people, simulated, test or all; people if there are any.")
+    ] = None,
+) -> None:
+    """Write a study as tidy CSV with a codebook."""
+    from app.cli.exporting import export_to_folder
+    from app.errors import ReembodyError
+
+    try:
+        print(export_to_folder(study, to, kind))
+    except ReembodyError as error:
+        fail(f"{error.message}. {error.remedy}".strip())
+    except (ValueError, OSError) as error:
+        fail(str(error))
+
+
+@app.command()
 def openapi() -> None:
     """Print the interface as OpenAPI JSON."""
     from app.main import create_app
