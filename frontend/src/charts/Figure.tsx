@@ -1,7 +1,7 @@
 /** A Plotly figure of the server. The library is large, so it is fetched when the first is shown. */
 import { Center, Loader, Text, useComputedColorScheme } from "@mantine/core";
 import { type JSX, useEffect, useRef, useState } from "react";
-import { dressed, type Palette } from "./layout";
+import { dressed, heightOf, type Palette } from "./layout";
 
 interface FigureProps {
   /** The figure as Plotly's JSON: `{data, layout}`. */
@@ -11,18 +11,11 @@ interface FigureProps {
   readonly watermark: string | null;
   readonly loading: string;
   readonly failed: string;
-  readonly height?: number;
 }
 
 type State = "loading" | "drawn" | "failed";
 
-export function Figure({
-  figure,
-  label,
-  watermark,
-  height = 320,
-  ...texts
-}: FigureProps): JSX.Element {
+export function Figure({ figure, label, watermark, ...texts }: FigureProps): JSX.Element {
   const root = useRef<HTMLElement>(null);
   const scheme = useComputedColorScheme("light");
   const [state, setState] = useState<State>("loading");
@@ -34,7 +27,7 @@ export function Figure({
     return draw(element, figure, palette, watermark, setState);
   }, [figure, scheme, watermark]);
   return (
-    <div style={{ position: "relative", height }}>
+    <div style={{ position: "relative", height: heightOf(figure) }}>
       {state !== "drawn" && (
         <Center pos="absolute" inset={0}>
           {state === "failed" ? (

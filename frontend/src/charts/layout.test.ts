@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { dressed, type Palette } from "./layout";
+import { dressed, heightOf, type Palette } from "./layout";
 
 const palette: Palette = { ink: "#111", soft: "#555", line: "#ccc", sim: "#53a", font: "serif" };
 
@@ -22,5 +22,11 @@ describe("the dress of a figure", () => {
   it("writes across a figure of simulated data, beside its own annotations", () => {
     const { annotations } = dressed({ annotations: [{ text: "n = 6" }] }, palette, "SIMULATED");
     expect(annotations).toMatchObject([{ text: "n = 6" }, { text: "SIMULATED" }]);
+  });
+
+  it("takes the height from the server where it asks for one", () => {
+    expect(heightOf({ data: [], layout: { height: 660 } })).toBe(660);
+    expect(heightOf({ data: [] })).toBeGreaterThan(300);
+    expect(dressed({ height: 660 }, palette, null)).not.toHaveProperty("height");
   });
 });

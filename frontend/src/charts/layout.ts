@@ -10,6 +10,17 @@ export interface Palette {
 /** Okabe and Ito's colours, told apart with any kind of colour vision; petrol leads. */
 export const COLORWAY = ["#0e8a97", "#d55e00", "#8067c9", "#c78500", "#3f8f4f", "#b0527f"] as const;
 
+/** Below the plot and its axes: the edge of the figure is the only place that is always free. */
+const LEGEND = { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bottom" } as const;
+
+const USUAL_HEIGHT_PX = 380;
+
+/** The height the server asks for, because a figure of many parts needs more of it. */
+export function heightOf(figure: unknown): number {
+  const layout = isObject(figure) && isObject(figure.layout) ? figure.layout : {};
+  return typeof layout.height === "number" ? layout.height : USUAL_HEIGHT_PX;
+}
+
 type Layout = Readonly<Record<string, unknown>>;
 
 const isObject = (value: unknown): value is Layout =>
@@ -17,7 +28,7 @@ const isObject = (value: unknown): value is Layout =>
 
 /** The server's layout with the page's colours, every axis included, and the mark of a simulation. */
 export function dressed(layout: Layout, palette: Palette, watermark: string | null): Layout {
-  const { template: _template, title: _title, ...kept } = layout;
+  const { template: _template, title: _title, height: _height, ...kept } = layout;
   return {
     colorway: COLORWAY,
     ...kept,
@@ -26,7 +37,7 @@ export function dressed(layout: Layout, palette: Palette, watermark: string | nu
     plot_bgcolor: "rgba(0,0,0,0)",
     margin: { l: 56, r: 12, t: 16, b: 48, ...(isObject(kept.margin) ? kept.margin : {}) },
     font: { family: palette.font, size: 13, color: palette.ink },
-    legend: { orientation: "h", y: 1.12, x: 0, ...(isObject(kept.legend) ? kept.legend : {}) },
+    legend: LEGEND,
     ...axes(kept, palette),
     annotations: [
       ...annotationsOf(kept),

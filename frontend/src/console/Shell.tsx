@@ -13,7 +13,7 @@ import { useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link, Route, Router, Switch } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
-import { signOut } from "./account";
+import { signOut, useSignInAgain } from "./account";
 import { SessionPage } from "./cockpit/SessionPage";
 import { useTexts } from "./i18n";
 import { StudiesPage } from "./pages/Studies";
@@ -22,6 +22,7 @@ import classes from "./Shell.module.css";
 
 export function Shell({ account }: { readonly account: Account }): JSX.Element {
   const { t } = useTexts();
+  useSignInAgain();
   return (
     <Router hook={useHashLocation}>
       <button type="button" className={classes.skip} onClick={focusMain}>

@@ -2,22 +2,16 @@
 import { accounts } from "@shared/api/endpoints";
 import { isUnauthorised } from "@shared/api/errors";
 import type { Account } from "@shared/api/types";
-import { type QueryClient, useQuery } from "@tanstack/react-query";
+import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
+import { useEffect } from "react";
 
 const KEY = ["account"] as const;
 
-/** The account, or null when nobody is signed in; other failures stay failures. */
+/** The account, or null when nobody is signed in. */
 export function useAccount() {
   return useQuery<Account | null>({
     queryKey: KEY,
-    queryFn: async () => {
-      try {
-        return (await accounts.me()).account;
-      } catch (error) {
-        if (isUnauthorised(error)) return null;
-        throw error;
-      }
-    },
+    queryFn: async () => (await accounts.me()).account,
     staleTime: 60_000,
   });
 }
@@ -34,7 +28,19 @@ export async function signOut(queries: QueryClient) {
   queries.setQueryData(KEY, null);
 }
 
-/** Any answer "401" means the sign-in has ended: show the sign-in page again. */
-export function forgetAccount(queries: QueryClient) {
-  queries.setQueryData(KEY, null);
+/** Any answer "nobody is signed in" means that the sign-in has ended: show its page again. */
+export function useSignInAgain(): void {
+  const queries = useQueryClient();
+  useEffect(() => {
+    const look = (error: unknown) => {
+      if (isUnauthorised(error)) queries.setQueryData(KEY, null);
+    };
+    const stops = [
+      queries.getQueryCache().subscribe(({ query }) => look(query.state.error)),
+      queries.getMutationCache().subscribe(({ mutation }) => look(mutation?.state.error)),
+    ];
+    return () => {
+      for (const stop of stops) stop();
+    };
+  }, [queries]);
 }

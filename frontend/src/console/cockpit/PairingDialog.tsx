@@ -92,11 +92,13 @@ function CodeShown({ pairing, device, onRenew }: CodeShownProps): JSX.Element {
     <div className={classes.pair}>
       <span>{t(`pairing.how.${device}`)}</span>
       <output className={classes.code}>{pairing.code}</output>
-      <img
-        className={classes.qr}
-        alt={t("pairing.qr")}
-        src={`data:image/svg+xml;charset=utf-8,${encodeURIComponent(pairing.qr_svg)}`}
-      />
+      {pairing.qr_svg !== null && (
+        <img
+          className={classes.qr}
+          alt={t("pairing.qr")}
+          src={`data:image/svg+xml;charset=utf-8,${encodeURIComponent(pairing.qr_svg)}`}
+        />
+      )}
       <span className={classes.url}>{pairing.url}</span>
       <span className="numbers">{t("pairing.left", { time: clockFace(seconds(left)) })}</span>
     </div>

@@ -1,5 +1,5 @@
 /** Scores of the questionnaires as they arrive, newest first. */
-import type { AdministrationScores, SessionView } from "@shared/api/types";
+import type { AdministrationScores, Score, SessionView } from "@shared/api/types";
 import { latency, number } from "@shared/format";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
@@ -10,7 +10,7 @@ import classes from "./Panels.module.css";
 
 export function ScoresPanel({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
-  const scored = session.scores.filter(({ scores }) => Object.keys(scores).length > 0);
+  const scored = session.scores.filter(({ score_views }) => score_views.length > 0);
   return (
     <section>
       <h2 className={cockpit.sectionTitle}>{t("scores.title")}</h2>
@@ -38,10 +38,12 @@ function Scores({ session, one }: ScoresProps): JSX.Element {
     <div>
       <div className={classes.scoreTitle}>{whereOf(session, one, t)}</div>
       <dl className={`${classes.score} numbers`}>
-        {Object.entries(one.scores).map(([key, value]) => (
-          <div key={key} style={{ display: "contents" }}>
-            <dt>{readable(key)}</dt>
-            <dd>{value === null ? t("scores.incomplete") : number(value, language)}</dd>
+        {one.score_views.map((score) => (
+          <div key={score.key} style={{ display: "contents" }}>
+            <dt>{score.label}</dt>
+            <dd title={rangeOf(score, language)}>
+              {score.value === null ? t("scores.incomplete") : number(score.value, language)}
+            </dd>
           </div>
         ))}
       </dl>
@@ -64,8 +66,8 @@ function whereOf(
   return step.latency_ms === null ? name : `${name} · ${latency(milliseconds(step.latency_ms))}`;
 }
 
-/** `soe_thesis` becomes `Soe thesis`: a score's key is its only name here. */
-function readable(key: string): string {
-  const words = key.replaceAll("_", " ");
-  return words.charAt(0).toUpperCase() + words.slice(1);
+/** `−12 … 12`: what the score can be at all, where the instrument says so. */
+function rangeOf({ minimum, maximum }: Score, language: string): string | undefined {
+  if (minimum === null || maximum === null) return undefined;
+  return `${number(minimum, language)} … ${number(maximum, language)}`;
 }

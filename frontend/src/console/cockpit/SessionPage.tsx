@@ -16,6 +16,7 @@ import { Header } from "./Header";
 import { KeyboardHelp } from "./KeyboardHelp";
 import { NotesPanel } from "./NotesPanel";
 import { OperatorEntry } from "./OperatorEntry";
+import { PhaseTable } from "./PhaseTable";
 import { ReasonDialog } from "./ReasonDialog";
 import type { Reasoned } from "./reasons";
 import { ScoresPanel } from "./ScoresPanel";
@@ -45,6 +46,7 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
   const [log, logs] = useDisclosure();
   const [help, helps] = useDisclosure();
   const [entry, entries] = useDisclosure();
+  const ended = session.ended_at !== null;
   useTitle(session.participant_code);
   const ask = (type: Reasoned) => {
     if (session.allowed.includes(type)) setAsking(type);
@@ -76,9 +78,10 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
         <CommandFailure live={live} />
         <CurrentStep session={session} live={live} onAsk={ask} onEnterAnswers={entries.open} />
         <TelemetryCard session={session} store={live.store} />
+        {ended && <PhaseTable session={session} />}
       </div>
       <aside className={classes.side} aria-label={t("side.label")}>
-        <DevicesPanel session={session} />
+        {!ended && <DevicesPanel session={session} />}
         <NotesPanel session={session} send={live.send} sending={live.sending} />
         <ScoresPanel session={session} />
       </aside>

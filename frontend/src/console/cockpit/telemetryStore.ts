@@ -15,7 +15,8 @@ export class TelemetryStore {
   #latest: Received | null = null;
   readonly #listeners = new Set<() => void>();
 
-  readonly put = (telemetry: Telemetry): void => {
+  readonly put = (news: Telemetry): void => {
+    const telemetry = withErrors(news, this.#latest?.telemetry);
     this.#latest = { telemetry, at: milliseconds(performance.now()) };
     for (const listener of this.#listeners) listener();
   };
@@ -30,3 +31,15 @@ export class TelemetryStore {
 
 export const useTelemetry = (store: TelemetryStore): Received | null =>
   useSyncExternalStore(store.subscribe, store.latest);
+
+/**
+ * Joint errors need both poses of one moment and are missing from messages that hold only one; the
+ * last ones of the same phase stay in sight meanwhile.
+ */
+function withErrors(news: Telemetry, before: Telemetry | undefined): Telemetry {
+  const told = Object.keys(news.joint_error_deg ?? {}).length > 0;
+  if (told || before?.joint_error_deg === undefined || before.phase_id !== news.phase_id) {
+    return news;
+  }
+  return { ...news, joint_error_deg: before.joint_error_deg };
+}

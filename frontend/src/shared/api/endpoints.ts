@@ -1,6 +1,6 @@
 /** Every request the pages make, by what it is for. */
 import { uuid } from "../uuid";
-import { answer, plain, server } from "./request";
+import { answer, server } from "./request";
 import type {
   Account,
   Administration,
@@ -29,7 +29,7 @@ export const accounts = {
   login: (username: string, password: string) =>
     answer<{ account: Account }>(server.POST("/api/login", { body: { username, password } })),
   logout: () => answer<void>(server.POST("/api/logout")),
-  me: () => answer<{ account: Account }>(server.GET("/api/me")),
+  me: () => answer<{ account: Account | null }>(server.GET("/api/me")),
 };
 
 export const studies = {
@@ -56,7 +56,9 @@ export const studies = {
       }),
     ),
   dashboard: (key: string, kind: Kind) =>
-    answer<Dashboard>(plain(`/api/studies/${encodeURIComponent(key)}/dashboard?kind=${kind}`)),
+    answer<Dashboard>(
+      server.GET("/api/studies/{key}/dashboard", { params: { path: { key }, query: { kind } } }),
+    ),
   exportUrl: (key: string, kind: Kind) =>
     `/api/studies/${encodeURIComponent(key)}/export?kind=${kind}`,
   codebook: (key: string) =>

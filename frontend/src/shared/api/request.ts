@@ -23,10 +23,3 @@ export async function answer<Body>(call: Promise<Outcome>): Promise<Body> {
   if (!response.ok) throw errorFromBody(response.status, error);
   return data as Body;
 }
-
-/** A read whose answer the description leaves open. */
-export async function plain(path: string): Promise<Outcome> {
-  const response = await fetch(path, { credentials: "same-origin" });
-  const body: unknown = await response.json().catch(() => null);
-  return response.ok ? { data: body, response } : { error: body, response };
-}

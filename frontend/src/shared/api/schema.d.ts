@@ -93,7 +93,7 @@ export interface paths {
         };
         /**
          * Get Me
-         * @description Who is signed in.
+         * @description Who is signed in; null where nobody is.
          */
         readonly get: operations["get_me_api_me_get"];
         readonly put?: never;
@@ -368,6 +368,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/studies/{key}/dashboard": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Dashboard
+         * @description The figures of a study's sessions of one kind.
+         */
+        readonly get: operations["get_dashboard_api_studies__key__dashboard_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/studies/{key}/export": {
         readonly parameters: {
             readonly query?: never;
@@ -630,10 +650,15 @@ export interface components {
              * Format: date-time
              */
             readonly opened_at: string;
-            /** Outcome */
-            readonly outcome: string;
+            /**
+             * Outcome
+             * @enum {string}
+             */
+            readonly outcome: "open" | "completed" | "withdrawn" | "aborted";
             /** Participant Code */
             readonly participant_code: string;
+            /** Reason */
+            readonly reason: string | null;
             /** Session Id */
             readonly session_id: string;
         };
@@ -723,8 +748,29 @@ export interface components {
             readonly pausing: boolean;
             /** Resuming */
             readonly resuming: boolean;
-            /** Status */
-            readonly status: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "ready" | "preparing" | "running" | "paused" | "walk_back" | "freezing";
+        };
+        /**
+         * DashboardView
+         * @description The figures of a study's sessions of one kind.
+         */
+        readonly DashboardView: {
+            /** Avatar */
+            readonly avatar: readonly string[];
+            /** Figures */
+            readonly figures: readonly components["schemas"]["FigureView"][];
+            /** Kind */
+            readonly kind: string;
+            /** N Completed */
+            readonly n_completed: number;
+            /** N Sessions */
+            readonly n_sessions: number;
+            /** Simulated */
+            readonly simulated: boolean;
         };
         /**
          * DeviceView
@@ -735,8 +781,11 @@ export interface components {
             readonly connected: boolean;
             /** Id */
             readonly id: string;
-            /** Kind */
-            readonly kind: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "tablet" | "headset";
             /** Last Seen At */
             readonly last_seen_at: string | null;
             /** Name */
@@ -769,6 +818,26 @@ export interface components {
             readonly seq: number;
             /** Type */
             readonly type: string;
+        };
+        /**
+         * FigureView
+         * @description A figure for plotly.js, or in plain words what is missing for it; `n` participants.
+         */
+        readonly FigureView: {
+            /** Caption */
+            readonly caption: string;
+            /** Empty */
+            readonly empty: string | null;
+            /** Figure */
+            readonly figure: {
+                readonly [key: string]: unknown;
+            } | null;
+            /** Key */
+            readonly key: string;
+            /** N */
+            readonly n: number;
+            /** Title */
+            readonly title: string;
         };
         /**
          * Health
@@ -892,7 +961,10 @@ export interface components {
         };
         /**
          * PairingView
-         * @description A code to type or scan; it works once, until `expires_at`.
+         * @description A code that works once, until `expires_at`; `url` and `qr_svg` open the page with it.
+         *
+         *     A headset's client is given the address of the server and types the code; it has no page to
+         *     scan, so its `qr_svg` is null.
          */
         readonly PairingView: {
             /** Code */
@@ -908,7 +980,7 @@ export interface components {
              */
             readonly expires_at: string;
             /** Qr Svg */
-            readonly qr_svg: string;
+            readonly qr_svg: string | null;
             /** Url */
             readonly url: string;
         };
@@ -938,12 +1010,15 @@ export interface components {
             readonly completions: number;
             /** Ended At */
             readonly ended_at: string | null;
-            /** Kind */
-            readonly kind: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "task" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Limb */
-            readonly limb: string | null;
+            readonly limb: ("hand" | "foot") | null;
             /** Phase Id */
             readonly phase_id: number;
             /** Side Contact S */
@@ -952,8 +1027,11 @@ export interface components {
             readonly side_contacts: number;
             /** Started At */
             readonly started_at: string | null;
-            /** Status */
-            readonly status: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "preparing" | "running" | "paused" | "walk_back" | "freezing" | "done" | "voided";
             /** Step Index */
             readonly step_index: number;
         };
@@ -971,6 +1049,22 @@ export interface components {
              * Format: date-time
              */
             readonly stored_at: string;
+        };
+        /**
+         * ScoreView
+         * @description A score with its name and the range its instrument states.
+         */
+        readonly ScoreView: {
+            /** Key */
+            readonly key: string;
+            /** Label */
+            readonly label: string;
+            /** Maximum */
+            readonly maximum: number | null;
+            /** Minimum */
+            readonly minimum: number | null;
+            /** Value */
+            readonly value: number | null;
         };
         /**
          * SequenceRow
@@ -1000,8 +1094,11 @@ export interface components {
             readonly ended_at: string | null;
             /** Id */
             readonly id: string;
-            /** Kind */
-            readonly kind: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test";
             /** Participant Code */
             readonly participant_code: string;
             /** Sequence */
@@ -1010,8 +1107,11 @@ export interface components {
             readonly simulated: boolean;
             /** Started At */
             readonly started_at: string | null;
-            /** Status */
-            readonly status: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "planned" | "active" | "completed" | "aborted" | "withdrawn";
             /** Study Version */
             readonly study_version: number;
         };
@@ -1021,7 +1121,7 @@ export interface components {
          */
         readonly SessionView: {
             /** Allowed */
-            readonly allowed: readonly string[];
+            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "note") | "enter_answers")[];
             /** Avatar */
             readonly avatar: string;
             /**
@@ -1036,8 +1136,11 @@ export interface components {
             readonly ended_at: string | null;
             /** Id */
             readonly id: string;
-            /** Kind */
-            readonly kind: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test";
             /** Language */
             readonly language: string;
             /** Notes */
@@ -1055,8 +1158,11 @@ export interface components {
             readonly slot: components["schemas"]["SlotInfo"];
             /** Started At */
             readonly started_at: string | null;
-            /** Status */
-            readonly status: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "planned" | "active" | "completed" | "aborted" | "withdrawn";
             /** Steps */
             readonly steps: readonly components["schemas"]["StepView"][];
             /** Study Key */
@@ -1072,7 +1178,7 @@ export interface components {
         };
         /**
          * SignedInView
-         * @description The answer to a login and to "who am I".
+         * @description The answer to a login.
          */
         readonly SignedInView: {
             readonly account: components["schemas"]["AccountView"];
@@ -1104,8 +1210,11 @@ export interface components {
             readonly replicate: number;
             /** Sequence */
             readonly sequence: readonly number[] | null;
-            /** State */
-            readonly state: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "free" | "open" | "completed";
         };
         /**
          * StepView
@@ -1126,18 +1235,24 @@ export interface components {
             readonly instrument: string | null;
             /** Key */
             readonly key: string;
-            /** Kind */
-            readonly kind: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "task" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Limb */
-            readonly limb: string | null;
+            readonly limb: ("hand" | "foot") | null;
             /** Preparation S */
             readonly preparation_s: number | null;
             /** Reason */
             readonly reason: string | null;
-            /** Status */
-            readonly status: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "pending" | "current" | "done" | "skipped";
             /** Title */
             readonly title: string;
         };
@@ -1156,8 +1271,13 @@ export interface components {
             readonly instrument: string;
             /** Language */
             readonly language: string;
-            /** Mode */
-            readonly mode: string;
+            /**
+             * Mode
+             * @enum {string}
+             */
+            readonly mode: "tablet" | "operator";
+            /** Score Views */
+            readonly score_views: readonly components["schemas"]["ScoreView"][];
             /** Scores */
             readonly scores: {
                 readonly [key: string]: number | null;
@@ -1176,15 +1296,20 @@ export interface components {
         };
         /**
          * StoredScores
-         * @description The scores of one stored form.
+         * @description The scores of one stored form: as numbers by key, and as a page shows them.
          */
         readonly StoredScores: {
             /** Administration */
             readonly administration: string;
             /** Instrument */
             readonly instrument: string;
-            /** Mode */
-            readonly mode: string;
+            /**
+             * Mode
+             * @enum {string}
+             */
+            readonly mode: "tablet" | "operator";
+            /** Score Views */
+            readonly score_views: readonly components["schemas"]["ScoreView"][];
             /** Scores */
             readonly scores: {
                 readonly [key: string]: number | null;
@@ -1366,6 +1491,13 @@ export interface components {
             /** Number */
             readonly number: number;
         };
+        /**
+         * WhoView
+         * @description Who is signed in; null where nobody is, which is no error.
+         */
+        readonly WhoView: {
+            readonly account: components["schemas"]["AccountView"] | null;
+        };
     };
     responses: never;
     parameters: never;
@@ -1494,7 +1626,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["SignedInView"];
+                    readonly "application/json": components["schemas"]["WhoView"];
                 };
             };
         };
@@ -1922,6 +2054,39 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": readonly components["schemas"]["ColumnView"][];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly get_dashboard_api_studies__key__dashboard_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly kind?: "people" | "simulated" | "test";
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["DashboardView"];
                 };
             };
             /** @description Validation Error */

@@ -11,25 +11,27 @@ type Schemas = components["schemas"];
 /** A type with some of its fields told more exactly. */
 type With<Type, Exact> = Readonly<Omit<Type, keyof Exact> & Exact>;
 
-export type Kind = "people" | "simulated" | "test";
-export type Device = "tablet" | "headset";
-export type Limb = "hand" | "foot";
-export type SessionStatus = "planned" | "active" | "completed" | "aborted" | "withdrawn";
-export type StepKind =
-  | "consent"
-  | "form"
-  | "instructions"
-  | "height"
-  | "materialise"
-  | "free_roam"
-  | "task"
-  | "questionnaire"
-  | "debrief";
-export type StepStatus = "pending" | "current" | "done" | "skipped";
-export type CurrentStatus = "ready" | "preparing" | "running" | "paused" | "walk_back" | "freezing";
+export type SessionSummary = Schemas["SessionSummary"];
+export type SessionView = Schemas["SessionView"];
+export type Step = Schemas["StepView"];
+export type Current = Schemas["CurrentView"];
+export type PairedDevice = Schemas["DeviceView"];
+export type PhaseSummary = Schemas["PhaseView"];
+export type Note = Schemas["NoteView"];
+export type AdministrationScores = Schemas["StoredScores"];
+export type Score = Schemas["ScoreView"];
+export type SessionEvent = Schemas["EventView"];
+
+export type Kind = SessionSummary["kind"];
+export type SessionStatus = SessionSummary["status"];
+export type StepKind = Step["kind"];
+export type StepStatus = Step["status"];
+export type Limb = NonNullable<Step["limb"]>;
+export type CurrentStatus = Current["status"];
+export type Device = PairedDevice["kind"];
 export type CommandType = Schemas["CommandRequest"]["type"];
 /** What the operator may do now: a command, or entering a form that is due. */
-export type Allowed = CommandType | "enter_answers";
+export type Allowed = SessionView["allowed"][number];
 
 export type Account = Schemas["AccountView"];
 export type StudySummary = Schemas["StudySummary"];
@@ -90,40 +92,9 @@ export interface StudyProtocol {
 }
 
 export type Attempt = Schemas["AttemptView"];
-export type SlotState = "free" | "open" | "completed";
-export type Slot = With<
-  Schemas["SlotRow"],
-  { state: SlotState; attempts: readonly Attempt[]; sequence: readonly number[] | null }
->;
-export type Ledger = With<Schemas["LedgerView"], { kind: Kind; slots: readonly Slot[] }>;
-
-interface SessionWords {
-  readonly kind: Kind;
-  readonly status: SessionStatus;
-}
-export type SessionSummary = With<Schemas["SessionSummary"], SessionWords>;
-export type Step = With<
-  Schemas["StepView"],
-  { kind: StepKind; limb: Limb | null; status: StepStatus }
->;
-export type Current = With<Schemas["CurrentView"], { status: CurrentStatus }>;
-export type PairedDevice = With<Schemas["DeviceView"], { kind: Device }>;
-export type PhaseSummary = With<Schemas["PhaseView"], { limb: Limb | null }>;
-export type Note = Schemas["NoteView"];
-export type AdministrationScores = Schemas["StoredScores"];
-export type StoredAnswers = Schemas["StoredAnswers"];
-export type SessionEvent = Schemas["EventView"];
-
-export type SessionView = With<
-  Schemas["SessionView"],
-  SessionWords & {
-    readonly steps: readonly Step[];
-    readonly current: Current | null;
-    readonly allowed: readonly Allowed[];
-    readonly devices: readonly PairedDevice[];
-    readonly phases: readonly PhaseSummary[];
-  }
->;
+export type Slot = Schemas["SlotRow"];
+export type SlotState = Slot["state"];
+export type Ledger = Schemas["LedgerView"];
 
 export interface Command {
   readonly type: CommandType;
@@ -144,7 +115,7 @@ export interface Telemetry {
   readonly joint_error_deg?: Readonly<Record<string, number | null>>;
 }
 
-export type Pairing = With<Schemas["PairingView"], { device: Device }>;
+export type Pairing = Schemas["PairingView"];
 
 export type ItemType = "likert" | "integer" | "number" | "text" | "boolean" | "choice";
 
@@ -190,22 +161,6 @@ export type Answer = string | number | boolean | null;
 export type Submission = Schemas["SubmissionRequest"];
 export type Receipt = Schemas["Receipt"];
 
-export interface Dashboard {
-  readonly kind: Kind;
-  readonly simulated: boolean;
-  readonly n_sessions: number;
-  readonly n_completed: number;
-  readonly figures: readonly FigureSpec[];
-}
-
-export interface FigureSpec {
-  readonly key: string;
-  readonly title: string;
-  readonly caption: string;
-  /** Plotly's JSON; null while there is too little to draw, and then `empty` says what is missing. */
-  readonly figure: unknown;
-  readonly empty: string | null;
-  readonly n: number;
-}
-
+export type Dashboard = Schemas["DashboardView"];
+export type FigureSpec = Schemas["FigureView"];
 export type CodebookColumn = Schemas["ColumnView"];

@@ -72,20 +72,13 @@ function SlotText({ slot, next }: SlotCellProps): JSX.Element {
 
 function AttemptText({ attempt }: { readonly attempt: Attempt }): JSX.Element {
   const { t, language } = useTexts();
-  const outcome = attempt.outcome;
   return (
     <li className={classes.attempt}>
       <Link href={`/sessions/${attempt.session_id}`}>{attempt.participant_code}</Link>
       <span className={classes.sub}>
-        {outcomeText(outcome, t)} · {dateTime(attempt.opened_at, language)}
+        {t(`outcome.${attempt.outcome}`)} · {dateTime(attempt.opened_at, language)}
       </span>
+      {attempt.reason !== null && <span className={classes.sub}>{attempt.reason}</span>}
     </li>
   );
-}
-
-const OUTCOMES = ["completed", "aborted", "withdrawn", "open"] as const;
-
-function outcomeText(outcome: string, t: ReturnType<typeof useTexts>["t"]): string {
-  const known = OUTCOMES.find((name) => name === outcome);
-  return known === undefined ? outcome : t(`outcome.${known}`);
 }
