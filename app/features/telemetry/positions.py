@@ -12,8 +12,14 @@ from app.wire.messages import StreamPosition
 def position(
     db: Session, session_id: str, stream: str, epoch: int, now: datetime
 ) -> TelemetryStream:
-    """The stream's row, made at its first message."""
-    row = db.get(TelemetryStream, (session_id, stream, epoch))
+    """The stream's row, made at its first message.
+
+    The row is held for the whole transaction: SQLAlchemy forgets clean rows, and reading one again
+    for every message costs a query and a flush each, most of the time that storing takes.
+    """
+    key = (session_id, stream, epoch)
+    held: dict[tuple[str, str, int], TelemetryStream] = db.info.setdefault("stream_rows", {})
+    row = held.get(key) or db.get(TelemetryStream, key)
     if row is None:
         row = TelemetryStream(
             session_id=session_id,
@@ -29,6 +35,7 @@ def position(
         )
         db.add(row)
         db.flush()
+    held[key] = row
     return row
 
 
