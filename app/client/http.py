@@ -1,5 +1,12 @@
-"""The HTTP side: an operator's and a tablet's calls, with the server's own words in every error."""
+"""The HTTP side: an operator's and a tablet's calls, with the server's own words in every error.
 
+A device on a lab's network calls again when nobody answers: its calls are made so that repeating
+them does no harm. A command keeps its id and a form its key over all attempts, so an attempt whose
+answer got lost is answered like the first.
+"""
+
+import asyncio
+import time
 import uuid
 from dataclasses import dataclass
 from typing import Any
@@ -7,6 +14,10 @@ from typing import Any
 from httpx2 import AsyncClient, HTTPError, Response
 
 Json = dict[str, Any]
+PATIENCE_S = 60.0
+RETRY_S = (0.05, 0.1, 0.2, 0.5, 1.0)
+CODE_USED = 410
+SERVER_AT_FAULT = 500
 
 
 class ServerRefusedError(RuntimeError):
@@ -35,6 +46,32 @@ async def call(client: AsyncClient, method: str, path: str, body: Json | None = 
     return _decoded(response)
 
 
+async def call_again(
+    client: AsyncClient,
+    method: str,
+    path: str,
+    body: Json | None = None,
+    *,
+    patience_s: float = PATIENCE_S,
+) -> Any:
+    """`call` until it is answered; only for calls that may be repeated.
+
+    Raises ServerRefusedError at once where the server says no, and what `call` raised last when the
+    server cannot be reached, or cannot do its part (status 5xx), for longer than `patience_s`.
+    """
+    give_up_s = time.monotonic() + patience_s
+    attempt = 0
+    while True:
+        try:
+            return await call(client, method, path, body)
+        except (UnreachableError, ServerRefusedError) as error:
+            final = isinstance(error, ServerRefusedError) and error.status < SERVER_AT_FAULT
+            if final or time.monotonic() >= give_up_s:
+                raise
+        await asyncio.sleep(RETRY_S[min(attempt, len(RETRY_S) - 1)])
+        attempt += 1
+
+
 def _decoded(response: Response) -> Any:
     if response.is_success:
         return response.json() if response.content else None
@@ -54,11 +91,11 @@ class Operator:
 
     async def view(self) -> Json:
         """The session as the cockpit shows it."""
-        view: Json = await call(self.client, "GET", f"/api/sessions/{self.session_id}")
+        view: Json = await call_again(self.client, "GET", f"/api/sessions/{self.session_id}")
         return view
 
     async def command(self, view: Json, kind: str, **fields: Any) -> Json:
-        """Send a command, decided on `view`."""
+        """Send a command, decided on `view`; the same command however often it must be sent."""
         body = {
             "command_id": str(uuid.uuid4()),
             "expected_version": view["version"],
@@ -66,17 +103,23 @@ class Operator:
             **fields,
         }
         path = f"/api/sessions/{self.session_id}/commands"
-        answered: Json = await call(self.client, "POST", path, body)
+        answered: Json = await call_again(self.client, "POST", path, body)
         return answered
 
     async def pair(self, device: str, client: AsyncClient, name: str) -> Json:
         """Show a code and use it from the device's own client."""
         path = f"/api/sessions/{self.session_id}/pairings"
-        shown = await call(self.client, "POST", path, {"device": device})
-        paired: Json = await call(
-            client, "POST", "/api/devices/pair", {"code": shown["code"], "name": name}
-        )
-        return paired
+        while True:
+            shown = await call_again(self.client, "POST", path, {"device": device})
+            use = {"code": shown["code"], "name": name}
+            try:
+                paired: Json = await call_again(client, "POST", "/api/devices/pair", use)
+            except ServerRefusedError as error:
+                # Used up by an attempt whose answer got lost: the next code replaces that pairing.
+                if error.status != CODE_USED:
+                    raise
+            else:
+                return paired
 
 
 @dataclass(frozen=True)
@@ -87,12 +130,12 @@ class Tablet:
 
     async def state(self) -> Json:
         """What to show now."""
-        state: Json = await call(self.client, "GET", "/api/tablet/state")
+        state: Json = await call_again(self.client, "GET", "/api/tablet/state")
         return state
 
     async def acknowledge(self, step_index: int) -> Json:
         """Consent given or instructions read."""
-        state: Json = await call(
+        state: Json = await call_again(
             self.client, "POST", "/api/tablet/acknowledge", {"step_index": step_index}
         )
         return state
@@ -107,5 +150,5 @@ class Tablet:
             "seed": administration["seed"],
             "language": administration["language"],
         }
-        receipt: Json = await call(self.client, "POST", "/api/tablet/submissions", body)
+        receipt: Json = await call_again(self.client, "POST", "/api/tablet/submissions", body)
         return receipt

@@ -5,7 +5,6 @@ reconnect what is left is sent again, in the same order. The journal is bounded:
 producer has to wait, which it can see; nothing is ever dropped.
 """
 
-from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
@@ -24,10 +23,17 @@ class Entry:
 
 @dataclass
 class Journal:
-    """Unacknowledged messages, oldest first."""
+    """Unacknowledged messages, oldest first, each under its place: 0, 1, 2, ... since the start.
+
+    An acknowledged message behind one that is not stays until that one leaves, so that forgetting
+    costs no more than what is forgotten; sending it again would do no harm.
+    """
 
     limit_bytes: int = DEFAULT_LIMIT_BYTES
-    _entries: deque[Entry] = field(default_factory=deque)
+    first: int = 0
+    end: int = 0
+    _entries: dict[int, Entry] = field(default_factory=dict)
+    _stored: dict[tuple[str, int], int] = field(default_factory=dict)
     _bytes: int = 0
 
     @property
@@ -37,27 +43,38 @@ class Journal:
 
     @property
     def waiting_bytes(self) -> int:
-        """How much is not acknowledged yet."""
+        """How much is kept."""
         return self._bytes
 
     def __len__(self) -> int:
         return len(self._entries)
 
     def __iter__(self) -> Iterator[Entry]:
-        return iter(tuple(self._entries))
+        return iter(tuple(self._entries.values()))
+
+    def at(self, place: int) -> Entry | None:
+        """The message at a place, None if it has left or has not come."""
+        return self._entries.get(place)
+
+    def stored_up_to(self, stream: str, epoch: int) -> int:
+        """The first seq that is not known to be stored."""
+        return self._stored.get((stream, epoch), 0)
 
     def add(self, entry: Entry) -> None:
         """Keep a message until it is acknowledged."""
-        self._entries.append(entry)
+        self._entries[self.end] = entry
         self._bytes += len(entry.message)
+        self.end += 1
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
         """Forget what is stored: (stream, epoch, next_seq) says that all seq < next_seq is."""
-        stored = {(stream, epoch): next_seq for stream, epoch, next_seq in positions}
-        kept = deque(
-            entry
-            for entry in self._entries
-            if entry.seq_end > stored.get((entry.stream, entry.epoch), 0)
-        )
-        self._bytes = sum(len(entry.message) for entry in kept)
-        self._entries = kept
+        for stream, epoch, next_seq in positions:
+            key = (stream, epoch)
+            self._stored[key] = max(next_seq, self.stored_up_to(stream, epoch))
+        while self._entries:
+            entry = self._entries[self.first]
+            if entry.seq_end > self.stored_up_to(entry.stream, entry.epoch):
+                break
+            del self._entries[self.first]
+            self._bytes -= len(entry.message)
+            self.first += 1

@@ -11,6 +11,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from app.client.journal import Entry, Journal
+from app.client.probing import probe_forever, probed
 from app.wire import StreamName
 from app.wire.messages import (
     PROTOCOL_VERSION,
@@ -22,9 +23,7 @@ from app.wire.messages import (
     Flag,
     HeadsetState,
     Hello,
-    Probe,
     ProbeAnswer,
-    Probed,
     RefusedReport,
     Report,
     ReportBody,
@@ -33,7 +32,7 @@ from app.wire.messages import (
 )
 
 log = logging.getLogger(__name__)
-RETRY_S = (0.1, 0.2, 0.5, 1.0, 2.0)
+RETRY_S = (0.1, 0.2, 0.5, 1.0)
 OPEN_TIMEOUT_S = 10.0
 
 
@@ -71,10 +70,14 @@ class TelemetryClient:
     _ready: asyncio.Event = field(default_factory=asyncio.Event)
     _changed: asyncio.Condition = field(default_factory=asyncio.Condition)
     _next_report: int = 0
+    _next_place: int = 0
+    _added: asyncio.Event = field(default_factory=asyncio.Event)
 
     async def __aenter__(self) -> "TelemetryClient":
         """Connect; returns once the server has answered."""
         self._keeper = asyncio.create_task(self._keep_connected())
+        # Whoever waits for an acknowledgement must learn that none will come.
+        self._keeper.add_done_callback(lambda _: asyncio.ensure_future(self._notify()))
         ready = asyncio.create_task(self._ready.wait())
         await asyncio.wait({self._keeper, ready}, return_when=asyncio.FIRST_COMPLETED)
         ready.cancel()
@@ -115,6 +118,15 @@ class TelemetryClient:
         text = Report(epoch=self.epoch, seq=seq, body=body).model_dump_json()
         await self._send(Entry(REPORT_STREAM, self.epoch, seq + 1, text))
 
+    @property
+    def settled(self) -> bool:
+        """Whether every report is on the server's disk, so that its newest state knows of them."""
+        return self.journal.stored_up_to(REPORT_STREAM, self.epoch) >= self._next_report
+
+    async def at_most_waiting(self, messages: int) -> None:
+        """Wait until no more than so many messages await acknowledgement."""
+        await self._wait_for(lambda: len(self.journal) <= messages)
+
     async def drained(self) -> None:
         """Wait until everything sent is acknowledged."""
         await self._wait_for(lambda: len(self.journal) == 0)
@@ -124,19 +136,25 @@ class TelemetryClient:
         if self.journal.is_full:
             await self._wait_for(lambda: not self.journal.is_full)
         self.journal.add(entry)
-        if self._socket is not None:
-            # A broken socket is noticed by the reader, which reconnects and sends the journal.
-            with contextlib.suppress(ConnectionClosed):
-                await self._socket.send(entry.message)
+        self._added.set()
+        # Whoever produces without a pause must still let the sender run.
+        await asyncio.sleep(0)
 
     async def _wait_for(self, condition: Callable[[], bool]) -> None:
         async with self._changed:
-            await self._changed.wait_for(lambda: condition() or self.failure is not None)
+            await self._changed.wait_for(lambda: condition() or self._over)
         self._raise_failure()
+
+    @property
+    def _over(self) -> bool:
+        """Whether nobody will connect any more."""
+        return self.failure is not None or self._keeper is None or self._keeper.done()
 
     def _raise_failure(self) -> None:
         if self.failure is not None:
             raise TelemetryError(f"{self.failure.message}. {self.failure.remedy}")
+        if self._keeper is not None and self._keeper.done() and not self._keeper.cancelled():
+            raise TelemetryError("the connection's keeper has ended") from self._keeper.exception()
 
     async def _keep_connected(self) -> None:
         attempt = 0
@@ -150,17 +168,17 @@ class TelemetryClient:
                     compression=None,
                 ) as socket:
                     await self._serve(socket)
-                    attempt = 0
             except (OSError, ConnectionClosed, InvalidHandshake, TimeoutError) as error:
                 log.info("connection lost: %s", error)
             finally:
+                # A connection that got as far as the welcome begins the waiting anew.
+                attempt = 0 if self._socket is not None else attempt
                 self._socket = None
             await asyncio.sleep(RETRY_S[min(attempt, len(RETRY_S) - 1)])
             attempt += 1
-        await self._notify()
 
     async def _serve(self, socket: ClientConnection) -> None:
-        """Greet, send what is left in the journal, then read until the socket closes."""
+        """Greet, then send the journal and what joins it, and read, until the socket closes."""
         epoch = None if self.welcome is None else self.welcome.epoch
         hello = Hello(protocol=PROTOCOL_VERSION, client=self.name, epoch=epoch)
         await socket.send(hello.model_dump_json())
@@ -173,20 +191,35 @@ class TelemetryClient:
         self.reconnects += self.welcome is not None
         self.welcome, self.state = first, first.state
         self.journal.acknowledge((p.stream, p.epoch, p.next_seq) for p in first.positions)
-        await self._resend(socket)
+        self._next_place = self.journal.first
         self._socket = socket
         self._ready.set()
         await self._notify()
-        prober = asyncio.create_task(self._probe(socket))
+        beside = [
+            asyncio.create_task(probe_forever(socket, self.monotonic_s, self.probe_every_s)),
+            asyncio.create_task(self._send_journal(socket)),
+        ]
         try:
             async for text in socket:
                 await self._take(socket, text)
         finally:
-            prober.cancel()
+            for task in beside:
+                task.cancel()
+            await asyncio.gather(*beside, return_exceptions=True)
 
-    async def _resend(self, socket: ClientConnection) -> None:
-        for entry in self.journal:
-            await socket.send(entry.message)
+    async def _send_journal(self, socket: ClientConnection) -> None:
+        """The only sender of journaled messages: so they go out in order, none left out.
+
+        A broken socket ends it; the reader notices, and the next connection begins at the front.
+        """
+        while True:
+            self._added.clear()
+            self._next_place = max(self._next_place, self.journal.first)
+            while (entry := self.journal.at(self._next_place)) is not None:
+                self._next_place += 1
+                await socket.send(entry.message)
+                self._next_place = max(self._next_place, self.journal.first)
+            await self._added.wait()
 
     async def _take(self, socket: ClientConnection, text: str | bytes) -> None:
         received_s = self.monotonic_s()
@@ -197,7 +230,8 @@ class TelemetryClient:
             case HeadsetState():
                 self.state = message
             case Resend():
-                await self._resend(socket)
+                self._next_place = self.journal.first
+                self._added.set()
             case Flag():
                 self.flags.append(message)
             case RefusedReport():
@@ -205,7 +239,7 @@ class TelemetryClient:
             case Failure():
                 self.failure = message
             case ProbeAnswer():
-                await socket.send(_probed(message, received_s).model_dump_json())
+                await socket.send(probed(message, received_s).model_dump_json())
             case _:
                 log.debug("unexpected message %s", message.type)
         await self._notify()
@@ -213,17 +247,3 @@ class TelemetryClient:
     async def _notify(self) -> None:
         async with self._changed:
             self._changed.notify_all()
-
-    async def _probe(self, socket: ClientConnection) -> None:
-        while True:
-            await socket.send(Probe(client_sent_s=self.monotonic_s()).model_dump_json())
-            await asyncio.sleep(self.probe_every_s)
-
-
-def _probed(answer: ProbeAnswer, received_s: float) -> Probed:
-    return Probed(
-        client_sent_s=answer.client_sent_s,
-        server_received_ns=answer.server_received_ns,
-        server_sent_ns=answer.server_sent_ns,
-        client_received_s=received_s,
-    )
