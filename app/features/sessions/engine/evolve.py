@@ -74,7 +74,14 @@ def _clocked(phase: PhaseState | None, event: e.Event) -> PhaseState | None:
         case e.PhaseResumed(active_s=active_s) | e.WalkBackEnded(active_s=active_s):
             return _running(phase, active_s)
         case e.WalkBackStarted(active_s=active_s):
-            return replace(phase, status=PhaseStatus.WALK_BACK, active_s=active_s)
+            # Nobody waits for a resume any more: the walk back ends by itself.
+            return replace(
+                phase,
+                status=PhaseStatus.WALK_BACK,
+                active_s=active_s,
+                resuming=False,
+                pause_cause=None,
+            )
         case e.PhaseFrozen(active_s=active_s):
             return replace(
                 phase, status=PhaseStatus.FREEZING, active_s=active_s, pausing=False, resuming=False

@@ -3,6 +3,10 @@
 The headset runs the phase on its own monotonic clock and reports each change with its active time;
 here the report is checked against the state. Active time never runs backwards and a phase cannot
 end before its duration is used up.
+
+When the headset is lost the server assumes that the clock stands. What the headset did before it
+noticed is still in its journal and comes first when it is back: these reports correct the
+assumption, else the two sides would wait for each other for ever.
 """
 
 from collections.abc import Sequence
@@ -18,6 +22,9 @@ from app.protocol.plan import Step
 FRAME_TOLERANCE_S = 0.05
 """A phase may end this much off its duration: a few frames of the slowest headset."""
 
+ASSUMED_CAUSES = ("headset_lost", "server_restarted")
+"""Causes of pauses that the server assumed; the headset's own reports may tell otherwise."""
+
 _EXPECTED: dict[str, tuple[PhaseStatus, ...]] = {
     "started": (PhaseStatus.PREPARING,),
     # A pause may confirm one that the server had to assume when the headset was lost.
@@ -28,6 +35,8 @@ _EXPECTED: dict[str, tuple[PhaseStatus, ...]] = {
     "time_up": (PhaseStatus.RUNNING,),
     "ended": (PhaseStatus.FREEZING,),
 }
+
+_BEFORE_THE_LOSS = ("walk_back_started", "time_up")
 
 
 def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -> list[e.Event]:
@@ -42,7 +51,7 @@ def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -
         )
     if report.what not in _EXPECTED:
         raise Refused(f"unknown report {report.what!r}", value=report.what, valid=list(_EXPECTED))
-    if phase.status not in _EXPECTED[report.what]:
+    if phase.status not in _EXPECTED[report.what] and not _corrects(phase, report):
         raise Refused(
             f"report {report.what!r} does not fit a phase that is {phase.status}",
             value=phase.status,
@@ -52,6 +61,12 @@ def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -
     _require_active_time(phase, report, plan[phase.step].duration_s or 0.0)
     # A step back within the tolerance is rounding: what is known stands.
     return [_event(replace(report, active_s=max(phase.active_s, report.active_s)), phase)]
+
+
+def _corrects(phase: PhaseState, report: c.Report) -> bool:
+    """Whether the headset tells late what came before a pause that the server assumed."""
+    assumed = phase.status is PhaseStatus.PAUSED and phase.pause_cause in ASSUMED_CAUSES
+    return assumed and report.what in _BEFORE_THE_LOSS
 
 
 def _event(report: c.Report, phase: PhaseState) -> e.Event:
