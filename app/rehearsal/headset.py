@@ -27,6 +27,7 @@ from app.wire.messages import HeadsetState, MaterialisedReport, PhaseOrder, Repo
 
 FRAMES_PER_BATCH = 6
 T_POSE_S = 2.0
+MESSAGES_AHEAD = 100
 
 
 @dataclass
@@ -94,9 +95,15 @@ class Headset:
         await self.client.drained()
 
     async def _sleep_until_due(self) -> None:
-        """Keep the pace; a machine that is behind goes on at once but lets others run."""
+        """Keep the pace; a machine that is behind goes on at once but lets others run.
+
+        A rehearsal faster than life also waits for the server: else its orders would come late in
+        the headset's time. A headset in real time cannot wait, and goes on by its journal.
+        """
         due_s = self._started_s + self.t_s / self._speed
         await asyncio.sleep(max(0.0, due_s - time.monotonic()))
+        if self._speed > 1.0:
+            await self.client.at_most_waiting(MESSAGES_AHEAD)
 
     async def _follow(self, state: HeadsetState) -> None:
         """Converge to the session's state."""
@@ -105,7 +112,8 @@ class Headset:
         order = state.phase
         if self._run is not None and order is not None:
             if self._run.order.phase_id == order.phase_id:
-                await self._report(self._run.follow(order, self.t_s))
+                if self.client.settled:
+                    await self._report(self._run.follow(order, self.t_s))
                 return
             # Another phase was called: the one under way was voided.
             await self._leave_phase()

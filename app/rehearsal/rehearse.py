@@ -5,28 +5,26 @@ that reads and answers, a headset that moves, plays and streams. The session is 
 so everywhere.
 """
 
-import asyncio
 import json
 import time
-from collections.abc import Callable
-from contextlib import AsyncExitStack
-from dataclasses import dataclass, field
+from collections.abc import AsyncIterator, Callable
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from httpx2 import AsyncClient
 
-from app.client.http import Operator, ServerRefusedError, Tablet, call
+from app.client.http import Operator, Tablet, call, call_again
+from app.client.journal import Journal
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
-from app.rehearsal.answers import fill_in
-from app.rehearsal.body import Person, make_person
+from app.rehearsal.body import make_person
+from app.rehearsal.cast import Cast, perform
 from app.rehearsal.headset import Headset
 
 Json = dict[str, Any]
-ENDED = ("completed", "aborted", "withdrawn")
-LOOK_EVERY_S = 0.1
 
 
 @dataclass(frozen=True)
@@ -65,27 +63,30 @@ class RehearsalReport:
     capture: str | None
 
 
-@dataclass
-class _Cast:
-    """The three devices and what they share."""
-
-    operator: Operator
-    tablet: Tablet
-    headset: Headset
-    person: Person
-    rng: np.random.Generator
-    speed: float
-    say: Callable[[str], None]
-    submitted: set[str] = field(default_factory=set)
-
-
 async def rehearse(
-    plan: RehearsalPlan, say: Callable[[str], None] = lambda _: None
+    plan: RehearsalPlan,
+    say: Callable[[str], None] = lambda _: None,
+    *,
+    journal: Journal | None = None,
 ) -> RehearsalReport:
-    """Run a whole session; `say` is told each step.
+    """Run a whole session; `say` is told each step, `journal` is where the headset keeps frames.
 
     Raises CaptureError, ServerRefusedError, UnreachableError or TelemetryError.
     """
+    began_s = time.monotonic()
+    async with assembled(plan, say, journal=journal) as cast:
+        await perform(cast)
+        return await report_of(cast, plan, time.monotonic() - began_s)
+
+
+@asynccontextmanager
+async def assembled(
+    plan: RehearsalPlan,
+    say: Callable[[str], None] = lambda _: None,
+    *,
+    journal: Journal | None = None,
+) -> AsyncIterator[Cast]:
+    """Three paired devices in a new session that waits for its start; raises as `rehearse`."""
     began_s = time.monotonic()
     rng = np.random.default_rng(plan.seed)
     person = make_person(rng, plan.capture)
@@ -103,14 +104,17 @@ async def rehearse(
             token=paired["token"],
             name="reembody rehearsal",
             monotonic_s=lambda: (time.monotonic() - began_s) * plan.speed,
+            journal=journal if journal is not None else Journal(),
         )
         await stack.enter_async_context(socket)
-        assert socket.welcome is not None  # noqa: S101 - connected
-        tasks = Tasks.model_validate_json(json.dumps(socket.welcome.tasks))
-        headset = Headset(socket, person, tasks, plan.speed)
-        cast = _Cast(operator, Tablet(tablet_http), headset, person, rng, plan.speed, say)
-        await _perform(cast)
-        return await _report(cast, plan, began_s)
+        headset = Headset(socket, person, tasks_of(socket), plan.speed)
+        yield Cast(operator, Tablet(tablet_http), headset, person, rng, say)
+
+
+def tasks_of(socket: TelemetryClient) -> Tasks:
+    """The study's tasks as the server told them at the welcome."""
+    told = {} if socket.welcome is None else socket.welcome.tasks
+    return Tasks.model_validate_json(json.dumps(told))
 
 
 def _client(plan: RehearsalPlan) -> AsyncClient:
@@ -139,86 +143,11 @@ async def _join(http: AsyncClient, plan: RehearsalPlan) -> Json:
     return session
 
 
-async def _perform(cast: _Cast) -> None:
-    """All three at once; the first that fails ends the others."""
-    async with asyncio.TaskGroup() as group:
-        group.create_task(cast.headset.run())
-        group.create_task(_answer(cast))
-        group.create_task(_operate(cast))
-
-
-async def _operate(cast: _Cast) -> None:
-    """The operator: looks, presses the next button, looks again."""
-    told = -1
-    while True:
-        view = await cast.operator.view()
-        if view["status"] in ENDED:
-            return
-        current = view["current"]
-        if current is not None and current["index"] != told:
-            told = current["index"]
-            cast.say(f"{told + 1}/{len(view['steps'])} {view['steps'][told]['title']}")
-        action = _next_action(view, cast.person)
-        if action is not None:
-            kind, fields = action
-            try:
-                await cast.operator.command(view, kind, **fields)
-            except ServerRefusedError as error:
-                # Somebody else, or the headset, was first: look again.
-                if error.code not in ("stale", "not_now"):
-                    raise
-        await asyncio.sleep(LOOK_EVERY_S / min(cast.speed, 4.0))
-
-
-def _next_action(view: Json, person: Person) -> tuple[str, Json] | None:
-    if view["status"] == "planned":
-        return "start", {}
-    current = view["current"]
-    step = view["steps"][current["index"]]
-    connected = any(one["kind"] == "headset" and one["connected"] for one in view["devices"])
-    match step["kind"]:
-        case "height":
-            height = {"stated": round(person.stature_m, 2), "matched": round(person.stature_m, 3)}
-            return "complete_step", {"height_m": height}
-        case "debrief":
-            return "complete_step", {}
-        case "free_roam" | "task":
-            if current["status"] == "ready" and connected:
-                return "begin_phase", {}
-            if current["status"] == "paused" and connected and not current["resuming"]:
-                return "resume", {}
-    return None
-
-
-async def _answer(cast: _Cast) -> None:
-    """The tablet: reads, agrees, answers."""
-    while True:
-        state = await cast.tablet.state()
-        match state["screen"]:
-            case "finished":
-                return
-            case "consent" | "instructions":
-                await cast.tablet.acknowledge(state["step_index"])
-            case "form":
-                await _fill_in(cast, state["administration"])
-            case _:
-                await asyncio.sleep(LOOK_EVERY_S / min(cast.speed, 4.0))
-
-
-async def _fill_in(cast: _Cast, administration: Json) -> None:
-    view = await cast.operator.view()
-    step = view["steps"][administration["step_index"]]
-    answers = fill_in(
-        administration["instrument"], cast.person, step["latency_ms"], step["limb"], cast.rng
-    )
-    await cast.tablet.submit(administration, answers, f"rehearsal-{administration['key']}"[:64])
-    cast.submitted.add(administration["key"])
-
-
-async def _report(cast: _Cast, plan: RehearsalPlan, began_s: float) -> RehearsalReport:
+async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> RehearsalReport:
+    """What was sent, and what the server says about it."""
     view = await cast.operator.view()
     session_id = cast.operator.session_id
-    streams: list[Json] = await call(
+    streams: list[Json] = await call_again(
         cast.operator.client, "GET", f"/api/sessions/{session_id}/streams"
     )
     stored: dict[str, int] = {}
@@ -252,7 +181,7 @@ async def _report(cast: _Cast, plan: RehearsalPlan, began_s: float) -> Rehearsal
         contacts=cast.headset.contacts,
         side_contacts=sum(phase["side_contacts"] for phase in view["phases"]),
         reconnects=cast.headset.client.reconnects,
-        duration_s=time.monotonic() - began_s,
+        duration_s=duration_s,
         seed=plan.seed,
         speed=plan.speed,
         capture=None if plan.capture is None else plan.capture.name,

@@ -1,6 +1,7 @@
 """A hand or foot phase on the headset: the task rules between the avatar and the reports."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from app.rehearsal.timed_run import FloatArray, TimedRun
 from app.science.tasks import (
@@ -37,6 +38,10 @@ class BoxRun(TimedRun):
     ) -> None:
         super().__init__(order, t_s)
         self._run = TaskRun(rules, tuple(parts))
+        if rules.layout.reverse_after_task and order.completions % 2:
+            # Another run of the client has turned the order round already.
+            state = self._run.state
+            self._run.state = replace(state, order=state.order[::-1])
         self._surfaces = SurfaceArrays.of(rules.layout)
         self._completed_before = order.completions
         self._told_events = 0

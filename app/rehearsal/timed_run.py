@@ -19,7 +19,8 @@ FloatArray = NDArray[np.float64]
 class TimedRun(ABC):
     """One phase from its preparation to the end of its freeze.
 
-    A client that takes over in mid-phase goes on with the active time that the order tells.
+    A client that takes over in mid-phase goes on with the active time that the order tells: it
+    waits for the operator's resume, since it cannot know where the participant stands.
     """
 
     def __init__(self, order: PhaseOrder, t_s: float) -> None:
@@ -29,6 +30,7 @@ class TimedRun(ABC):
         self._begins_s = t_s + order.preparation_s
         self._frozen_until_s: float | None = None
         self._paused = False
+        self._takes_over = order.status != "preparing"
 
     @property
     @abstractmethod
@@ -60,23 +62,31 @@ class TimedRun(ABC):
         return min(self._spent_s + clock.active_s(max(t_s, clock.last_s)), self.order.duration_s)
 
     def follow(self, order: PhaseOrder, t_s: float) -> list[ReportBody]:
-        """Do what the operator wants: pause or go on."""
+        """Do what the operator wants: pause or go on.
+
+        `order` must know of every report of this run: an older one would be answered by a pause
+        that the next older one answers again.
+        """
         self.order = order
         if order.pausing and self.clock_runs:
             return self._pause(t_s, "operator")
-        if order.status == "paused" and not order.resuming and self.clock_runs:
+        reports: list[ReportBody] = []
+        if order.status == "paused" and self.clock_runs:
             # The server lost us for a moment that was too short to notice here.
-            return self._pause(t_s, "disconnected")
+            reports = self._pause(t_s, "disconnected")
         if order.resuming and self._paused:
             self._paused = False
             self.command(CommandKind.RESUME, t_s)
-            return [*self.news(t_s), self.report("resumed", t_s)]
-        return []
+            reports += [*self.news(t_s), self.report("resumed", t_s)]
+        return reports
 
     def frame(
         self, t_s: float, axes_m: FloatArray, radii_m: FloatArray, *, connected: bool
     ) -> list[ReportBody]:
         """Go on by one frame; what to report of it."""
+        if self._takes_over:
+            self._takes_over = False
+            return self._take_over(t_s)
         if self._frozen_until_s is not None:
             return self._thaw(t_s)
         if not connected:
@@ -105,6 +115,21 @@ class TimedRun(ABC):
                 "cause": cause,
             }
         )
+
+    def _take_over(self, t_s: float) -> list[ReportBody]:
+        """Begin where another run of the client was lost: frozen, or standing still."""
+        if self.order.status == "freezing":
+            self._frozen_until_s = t_s + self.order.freeze_s
+            return []
+        self.command(CommandKind.START, t_s)
+        self.command(CommandKind.PAUSE, t_s)
+        self._paused = True
+        reports: list[ReportBody] = list(self.news(t_s))
+        if self.order.status == "walk_back":
+            reports.append(self.report("walk_back_ended", t_s))
+        if self.order.status != "paused":
+            reports.append(self.report("paused", t_s, "restarted"))
+        return reports
 
     def _pause(self, t_s: float, cause: str) -> list[ReportBody]:
         self._paused = True
