@@ -38,7 +38,9 @@ class Subscription:
     async def next(self, timeout_s: float) -> dict[str, Any]:
         """All unread news, waiting up to `timeout_s`; empty when nothing came."""
         try:
-            await asyncio.wait_for(self._arrived.wait(), timeout_s)
+            # Not wait_for: on Python 3.11 it swallows a cancellation that meets the news.
+            async with asyncio.timeout(timeout_s):
+                await self._arrived.wait()
         except TimeoutError:
             return {}
         self._arrived.clear()
