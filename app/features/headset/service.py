@@ -1,5 +1,7 @@
 """What a headset is told: declarative state that it converges to, never a list of past commands."""
 
+from datetime import datetime
+
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
@@ -7,7 +9,7 @@ from app.features.sessions.contents import content_body, contents_of
 from app.features.sessions.engine import SessionState
 from app.features.sessions.service import plan_of, session_by_id, state_of
 from app.features.studies.service import protocol_of
-from app.features.telemetry.positions import next_epoch, positions_of
+from app.features.telemetry.positions import positions_of, take_epoch
 from app.models import Answer, Completion, StudySession, StudyVersion, Submission
 from app.protocol.plan import Step
 from app.wire.messages import (
@@ -21,14 +23,14 @@ from app.wire.messages import (
 CENTIMETRES_PER_METRE = 100.0
 
 
-def welcome(db: Session, session_id: str, epoch: int | None) -> Welcome:
+def welcome(db: Session, session_id: str, epoch: int | None, now: datetime) -> Welcome:
     """The answer to a hello; `epoch` None takes the next one."""
-    session = session_by_id(db, session_id)
+    session = session_by_id(db, session_id, lock=True)
     protocol = protocol_of(db.get_one(StudyVersion, session.study_version_id))
     return Welcome(
         protocol=PROTOCOL_VERSION,
         session_id=session.id,
-        epoch=epoch or next_epoch(db, session_id),
+        epoch=epoch or take_epoch(db, session_id, now),
         time_scale=session.time_scale,
         language=session.language,
         avatar=session.avatar,

@@ -109,7 +109,10 @@ class HeadsetConnection:
 
     async def _greet(self) -> None:
         """Take the hello and answer it."""
-        text = await asyncio.wait_for(self.socket.receive_text(), HELLO_DEADLINE_S)
+        received = await asyncio.wait_for(self.socket.receive(), HELLO_DEADLINE_S)
+        if received["type"] == "websocket.disconnect":
+            raise WebSocketDisconnect(received.get("code", 1005))
+        text = received.get("text") or ""
         hello = _parse(text)
         if not isinstance(hello, Hello) or hello.protocol != PROTOCOL_VERSION:
             raise InvalidInput(
@@ -123,8 +126,9 @@ class HeadsetConnection:
         await self._send(answer)
 
     def _welcome(self, epoch: int | None) -> Welcome:
-        with self.context.database.reading() as db:
-            return welcome(db, self.session_id, epoch)
+        now = self.context.clock.utc_now()
+        with self.context.database.writing() as db:
+            return welcome(db, self.session_id, epoch, now)
 
     async def _read(self) -> None:
         while True:

@@ -12,7 +12,6 @@ from itertools import groupby
 
 import numpy as np
 from sqlalchemy import delete, select, tuple_
-from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
 from app.features.context import AppContext
@@ -49,7 +48,7 @@ class Folder:
             try:
                 while self.fold_once() == BATCHES_PER_TURN and not self._stop.is_set():
                     pass
-            except OperationalError:
+            except Exception:  # the next turn tries again; nothing is lost meanwhile
                 log.exception("batches could not be folded; they stay as they are")
 
     def fold_once(self) -> int:
@@ -109,6 +108,8 @@ def _chunk(pending: Sequence[tuple[TelemetryBatch, Batch]]) -> TelemetryChunk:
     times_s = np.concatenate([batch.times_s for _, batch in pending])
     flags = np.concatenate([batch.flags for _, batch in pending])
     values = np.concatenate([batch.values for _, batch in pending])
+    # Broken times stay in the data; the index spans the others.
+    finite_s = times_s[np.isfinite(times_s)]
     return TelemetryChunk(
         session_id=first.session_id,
         stream=first.stream,
@@ -117,16 +118,11 @@ def _chunk(pending: Sequence[tuple[TelemetryBatch, Batch]]) -> TelemetryChunk:
         frame_count=len(times_s),
         phase_id=first.phase_id,
         values_per_frame=values.shape[1],
-        t_first_s=_finite(times_s[0]),
-        t_last_s=_finite(times_s[-1]),
+        t_first_s=float(finite_s.min()) if len(finite_s) else 0.0,
+        t_last_s=float(finite_s.max()) if len(finite_s) else 0.0,
         encoding=ENCODING,
         data=encode_frames(times_s, flags, values),
     )
-
-
-def _finite(value: np.float64) -> float:
-    """A time for the index; a broken one stays in the data and becomes 0 here."""
-    return float(value) if np.isfinite(value) else 0.0
 
 
 def _replace(

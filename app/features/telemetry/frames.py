@@ -1,6 +1,7 @@
 """Reading movement back: chunks and the batches not folded yet, as one run of frames."""
 
 from collections.abc import Iterator, Sequence
+from heapq import merge
 
 import numpy as np
 from sqlalchemy import select
@@ -9,6 +10,8 @@ from sqlalchemy.orm import Session
 from app.features.telemetry.encoding import Frames, decode_frames
 from app.models import TelemetryBatch, TelemetryChunk, TelemetryStream
 from app.wire import VALUES_PER_FRAME, decode_batch
+
+Piece = TelemetryChunk | TelemetryBatch
 
 
 def epochs_of(db: Session, session_id: str, stream: str) -> list[int]:
@@ -35,7 +38,6 @@ def iter_frames(
     # Batches first: one that is folded between the two reads is then seen twice, never missed;
     # seqs that were seen already are left out below.
     batches = _batches(db, session_id, stream, epoch, phase_id)
-    pieces = [(row.seq_first, row) for row in batches]
     chunk_query = (
         select(TelemetryChunk)
         .where(
@@ -49,13 +51,18 @@ def iter_frames(
         chunk_query = chunk_query.where(TelemetryChunk.phase_id == phase_id)
     if since_s is not None:
         chunk_query = chunk_query.where(TelemetryChunk.t_last_s >= since_s)
-    next_seq = -1
-    for chunk in db.scalars(chunk_query.execution_options(yield_per=64)):
-        yield chunk.phase_id, _of_chunk(chunk)
-        next_seq = chunk.seq_first + chunk.frame_count
-    for _, row in sorted(pieces, key=lambda piece: piece[0]):
+    # Usually all batches come behind the chunks; a wall clock that was set back folds them out of
+    # order. Of a chunk and a batch with the same seq the chunk holds more.
+    chunks = db.scalars(chunk_query.execution_options(yield_per=64))
+    pieces: Iterator[Piece] = merge(chunks, batches, key=lambda piece: piece.seq_first)
+    next_seq = 0
+    for row in pieces:
         if row.seq_first >= next_seq:
-            yield row.phase_id, _of_batch(row)
+            yield (
+                row.phase_id,
+                _of_chunk(row) if isinstance(row, TelemetryChunk) else _of_batch(row),
+            )
+            next_seq = row.seq_first + row.frame_count
 
 
 def phase_frames(

@@ -193,6 +193,7 @@ def _act(
                     db.add(Contact(session_id=session_id, **values))
                 case CompletionReport():
                     _require_phase(db, session_id, body.phase_id)
+                    _require_new(db, session_id, body)
                     db.add(_completion(session_id, body))
     except ReembodyError as refusal:
         return refusal
@@ -237,6 +238,15 @@ def _require_phase(db: Session, session_id: str, phase_id: int) -> None:
             f"there is no phase {phase_id}",
             value=phase_id,
             remedy="Use the phase_id of the newest state message.",
+        )
+
+
+def _require_new(db: Session, session_id: str, body: CompletionReport) -> None:
+    if db.get(Completion, (session_id, body.phase_id, body.number)) is not None:
+        raise ReembodyError(
+            f"completion {body.number} of phase {body.phase_id} was reported before",
+            value=body.number,
+            remedy="Count on from the completions in the newest state message.",
         )
 
 

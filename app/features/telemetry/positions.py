@@ -6,7 +6,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.models import TelemetryStream
-from app.wire.messages import StreamPosition
+from app.wire.messages import REPORT_STREAM, StreamPosition
 
 
 def position(
@@ -51,12 +51,17 @@ def positions_of(db: Session, session_id: str) -> tuple[StreamPosition, ...]:
     )
 
 
-def next_epoch(db: Session, session_id: str) -> int:
-    """The number of a new run of the client."""
+def take_epoch(db: Session, session_id: str, now: datetime) -> int:
+    """The number of a new run of the client; never given out twice, even if nothing is sent.
+
+    The session must be locked.
+    """
     newest = db.scalar(
         select(func.max(TelemetryStream.epoch)).where(TelemetryStream.session_id == session_id)
     )
-    return (newest or 0) + 1
+    epoch = (newest or 0) + 1
+    position(db, session_id, REPORT_STREAM, epoch, now)
+    return epoch
 
 
 def certain_active_s(db: Session, session_id: str, phase_id: int) -> float:

@@ -1,0 +1,124 @@
+"""A real server with an operator, and headsets that speak to it over real sockets."""
+
+import json
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import httpx2
+from websockets.sync.client import ClientConnection, connect
+
+from app.database import Database
+from tests.features.lab import STUDY, Json, ok
+from tests.support.server import LiveServer
+
+SUBPROTOCOL = "reembody.v1"
+HELLO: Json = {"type": "hello", "protocol": 1, "client": "test"}
+
+
+@dataclass
+class Headset:
+    """One open socket; everything it was told so far is in `heard`."""
+
+    socket: ClientConnection
+    welcome: Json = field(default_factory=dict)
+    heard: list[Json] = field(default_factory=list)
+    next_report: int = 0
+
+    @property
+    def epoch(self) -> int:
+        """The number of this run of the client."""
+        return int(self.welcome["epoch"])
+
+    def say(self, message: Json | bytes) -> None:
+        """Send JSON or a batch."""
+        self.socket.send(message if isinstance(message, bytes) else json.dumps(message))
+
+    def hear(self, kind: str, matching: Callable[[Json], bool] = lambda _: True) -> Json:
+        """The next message of a kind that matches; fails after 10 s."""
+        while True:
+            message: Json = json.loads(self.socket.recv(timeout=10.0))
+            self.heard.append(message)
+            if message["type"] == kind and matching(message):
+                return message
+
+    def acknowledged(self, stream: str, next_seq: int) -> Json:
+        """Wait until all of `seq < next_seq` of a stream is acknowledged."""
+
+        def matches(ack: Json) -> bool:
+            return {"stream": stream, "epoch": self.epoch, "next_seq": next_seq} in ack["positions"]
+
+        return self.hear("ack", matches)
+
+    def report(self, **body: Any) -> None:
+        """Send a report under the next seq."""
+        seq, self.next_report = self.next_report, self.next_report + 1
+        self.say({"type": "report", "epoch": self.epoch, "seq": seq, "body": body})
+
+    def reported(self, **body: Any) -> None:
+        """Send a report and wait until it is on disk."""
+        self.report(**body)
+        self.acknowledged("reports", self.next_report)
+
+
+@dataclass(frozen=True)
+class Site:
+    """The server, its operator's HTTP client, and its database seen from outside."""
+
+    server: LiveServer
+    operator: httpx2.Client
+    database: Database
+
+    def join(self, **fields: Any) -> str:
+        """A new session's id."""
+        view = ok(self.operator.post(f"/api/studies/{STUDY}/sessions", json=fields))
+        return str(view["id"])
+
+    def view(self, session_id: str) -> Json:
+        """The session now."""
+        view: Json = ok(self.operator.get(f"/api/sessions/{session_id}"))
+        return view
+
+    def command(self, session_id: str, kind: str, **fields: Any) -> Json:
+        """Send a command that is accepted."""
+        body = {
+            "command_id": str(uuid.uuid4()),
+            "expected_version": self.view(session_id)["version"],
+            "type": kind,
+            **fields,
+        }
+        view: Json = ok(self.operator.post(f"/api/sessions/{session_id}/commands", json=body))
+        return view
+
+    def skip_to(self, session_id: str, step_key: str) -> None:
+        """Start, and skip every step before `step_key`."""
+        view = self.command(session_id, "start")
+        while view["steps"][view["current"]["index"]]["key"] != step_key:
+            view = self.command(session_id, "skip", reason="not in this test")
+
+    def token(self, session_id: str) -> str:
+        """Pair a headset; its token."""
+        path = f"/api/sessions/{session_id}/pairings"
+        code = ok(self.operator.post(path, json={"device": "headset"}))["code"]
+        with self.server.client() as device:
+            return str(ok(device.post("/api/devices/pair", json={"code": code}))["token"])
+
+    @contextmanager
+    def socket(self, token: str | None, **arguments: Any) -> Iterator[ClientConnection]:
+        """A socket that has not said hello."""
+        bearer = [] if token is None else [f"bearer.{token}"]
+        url = self.server.url.replace("http", "ws") + "/api/vr/stream"
+        offered: Any = [SUBPROTOCOL, *bearer]
+        with connect(url, subprotocols=offered, compression=None, **arguments) as socket:
+            yield socket
+
+    @contextmanager
+    def headset(self, token: str, epoch: int | None = None) -> Iterator[Headset]:
+        """A headset that was welcomed."""
+        with self.socket(token) as socket:
+            headset = Headset(socket)
+            headset.say({**HELLO, "epoch": epoch})
+            headset.welcome = headset.hear("welcome")
+            yield headset
