@@ -1,0 +1,50 @@
+"""One rehearsal on each database, performed once for all tests of this folder."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from sqlalchemy.orm import Session
+
+from app.database import open_database
+from app.rehearsal.rehearse import RehearsalPlan
+from tests.rehearsal.performed import STUDY, Performed, performed_once
+from tests.support import postgres
+from tests.support.shared_run import once
+
+CAPTURE = Path("motion") / "cmu_bvh" / "02_01.bvh"
+SPEED = 20.0
+
+
+@pytest.fixture(scope="module", params=["sqlite, captured movement", "postgresql"])
+def performed(request: pytest.FixtureRequest) -> Performed:
+    """A finished rehearsal at high speed, on each database."""
+    if request.param == "postgresql":
+        url = _kept_postgres()
+        plan = RehearsalPlan(url="", study=STUDY, speed=2 * SPEED, seed=2)
+        environment = {"REEMBODY_DATABASE_URL": url}
+        return performed_once("rehearsal-postgresql", plan, url, environment)
+    shared_data: Path = request.getfixturevalue("shared_data")
+    plan = RehearsalPlan(url="", study=STUDY, speed=SPEED, seed=1, capture=shared_data / CAPTURE)
+    return performed_once("rehearsal-sqlite", plan, None, {})
+
+
+@pytest.fixture
+def db(performed: Performed) -> Iterator[Session]:
+    """The record of the rehearsal."""
+    database = open_database(performed.database_url)
+    try:
+        with database.reading() as session:
+            yield session
+    finally:
+        database.close()
+
+
+def _kept_postgres() -> str:
+    """A database that lasts as long as the run: every process reads the same record."""
+    cluster = postgres.migrated_cluster()
+    with once("rehearsal-database") as mark:
+        if mark:
+            cluster.execute(f"CREATE DATABASE {{}} TEMPLATE {postgres.TEMPLATE}", "rehearsal")
+            mark.touch()
+    return cluster.url("rehearsal")

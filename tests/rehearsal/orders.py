@@ -1,0 +1,111 @@
+"""A headset's surroundings without a network: orders by hand, and a server that is a few lines."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from app.rehearsal.timed_run import FreeRun
+from app.wire import StreamName, decode_batch
+from app.wire.messages import HeadsetState, ParticipantInfo, PhaseOrder, PhaseReport, ReportBody
+from tests.rehearsal.ledger import digests
+
+FRAME_S = 1 / 90
+
+
+def order(**changes: Any) -> PhaseOrder:
+    """An order for one second of free movement, after half a second, before a fifth of freeze."""
+    usual = PhaseOrder(
+        phase_id=1,
+        kind="free_roam",
+        limb=None,
+        status="preparing",
+        latency_ms=0.0,
+        preparation_s=0.5,
+        duration_s=1.0,
+        freeze_s=0.2,
+        active_s=0.0,
+        completions=0,
+        pausing=False,
+        resuming=False,
+    )
+    return usual.model_copy(update=changes)
+
+
+@dataclass
+class Timeline:
+    """A run drawn frame by frame at 90 Hz; `told` is every report in order."""
+
+    run: FreeRun
+    t_s: float = 0.0
+    told: list[ReportBody] = field(default_factory=list)
+
+    def draw(self, seconds: float, *, connected: bool = True) -> None:
+        """Let time pass."""
+
+        end_s = self.t_s + seconds
+        while self.t_s + FRAME_S < end_s + 1e-9:
+            self.t_s += FRAME_S
+            self.told += self.run.frame(
+                self.t_s, np.empty((0, 2, 3)), np.empty(0), connected=connected
+            )
+
+    def follow(self, told: PhaseOrder) -> None:
+        """The server's newest order."""
+        self.told += self.run.follow(told, self.t_s)
+
+    @property
+    def words(self) -> list[str]:
+        """What was reported, by name."""
+        return [report.what for report in self.told if isinstance(report, PhaseReport)]
+
+
+@dataclass
+class InstantServer:
+    """Stands for a connected `TelemetryClient`: one phase, every report acted on at once."""
+
+    phase: PhaseOrder
+    epoch: int = 1
+    connected: bool = True
+    settled: bool = True
+    status: str = "active"
+    digests: list[str] = field(default_factory=list)
+    reports: list[ReportBody] = field(default_factory=list)
+
+    @property
+    def state(self) -> HeadsetState:
+        """The state as the server would tell it."""
+        return HeadsetState(
+            version=len(self.reports),
+            status=self.status,
+            step_index=0,
+            step_kind=self.phase.kind,
+            materialised=True,
+            recording=True,
+            phase=self.phase,
+            participant=ParticipantInfo(),
+        )
+
+    async def send_batch(self, stream: StreamName, _seq_end: int, message: bytes) -> None:
+        """Keep the digests of the frames."""
+
+        batch = decode_batch(message)
+        told = digests(batch.times_s, batch.flags, batch.values, batch.header.phase_id)
+        self.digests += [f"{stream} {digest}" for digest in told]
+
+    async def report(self, body: ReportBody) -> None:
+        """Move the phase on."""
+        self.reports.append(body)
+        if not isinstance(body, PhaseReport):
+            return
+        became = {"started": "running", "walk_back_ended": "running", "time_up": "freezing"}
+        status = became.get(body.what, body.what)
+        self.phase = self.phase.model_copy(update={"status": status, "active_s": body.active_s})
+        if body.what == "ended":
+            self.status = "completed"
+
+    async def at_most_waiting(self, _messages: int) -> None:
+        """Nothing ever waits."""
+
+    async def drained(self) -> None:
+        """Nothing ever waits."""

@@ -1,0 +1,73 @@
+"""From the surface the rules ask for to the movement that goes there."""
+
+from app.rehearsal.goals import goal_of
+from app.science.simulation import GoalKind
+from app.science.tasks import (
+    Command,
+    CommandKind,
+    Contact,
+    ContactChange,
+    Laterality,
+    TaskRules,
+    TaskState,
+    advance,
+)
+from tests.protocol.helpers import study
+
+RIGHT = Laterality.RIGHT
+
+
+def started(limb: str) -> TaskState:
+    """A task of the shipped study whose clock runs."""
+    tasks = study().tasks
+    layout = tasks.hand.layout() if limb == "hand" else tasks.foot.layout()
+    state, _ = advance(TaskRules(layout, RIGHT).initial(), Command(CommandKind.START, 0.0))
+    return state
+
+
+def touched(state: TaskState, surface: str, part: str) -> TaskState:
+    """The state after a short touch."""
+    contact = Contact(surface, part)
+    state, _ = advance(state, ContactChange(state.last_s + 0.1, begins=(contact,)))
+    state, _ = advance(state, ContactChange(state.last_s + 0.1, ends=(contact,)))
+    return state
+
+
+def test_the_writing_hand_reaches_for_the_face_of_the_current_panel() -> None:
+    """Right-handed people begin at the box on the right."""
+    state = started("hand")
+    goal = goal_of(state, RIGHT)
+    panel = state.rules.layout.by_key["hand/4/panel"]
+    assert goal is not None
+    assert (goal.kind, goal.effector) == (GoalKind.REACH, "RightHand")
+    assert goal.target_m is not None
+    assert goal.target_m[:2] == panel.center_m[:2]
+    assert goal.target_m[2] == panel.center_m[2] + panel.half_size_m[2]
+
+
+def test_feet_alternate_from_box_to_box() -> None:
+    """Where either foot counts, people step with one after the other."""
+    state = started("foot")
+    first = goal_of(state, RIGHT)
+    second = goal_of(touched(state, "foot/4/panel", "RightFoot"), RIGHT)
+    assert first is not None
+    assert second is not None
+    assert (first.effector, second.effector) == ("RightFoot", "LeftFoot")
+
+
+def test_after_the_bar_the_participant_walks_to_the_start_square() -> None:
+    """No foot is asked for: the body goes there."""
+    state = started("foot")
+    for number in (4, 3, 2, 1):
+        state = touched(state, f"foot/{number}/panel", "RightFoot")
+    goal = goal_of(touched(state, "foot/target", "RightFoot"), RIGHT)
+    assert goal is not None
+    assert goal.kind is GoalKind.WALK_TO
+    assert goal.target_m is not None
+    assert (goal.target_m[0], goal.target_m[2]) == (0.0, 0.0)
+
+
+def test_a_frozen_phase_has_no_goal() -> None:
+    """Nothing is asked of anybody in the freeze."""
+    state, _ = advance(started("hand"), Command(CommandKind.FREEZE, 1.0))
+    assert goal_of(state, RIGHT) is None

@@ -1,0 +1,72 @@
+"""The scripted headset without a network: the same seed, the same movement."""
+
+import asyncio
+from typing import cast
+
+import numpy as np
+
+from app.client.telemetry import TelemetryClient
+from app.protocol import Tasks
+from app.rehearsal.body import make_person
+from app.rehearsal.headset import Headset
+from app.wire.messages import CompletionReport, ContactReport, PhaseOrder
+from tests.protocol.helpers import study
+from tests.rehearsal.orders import InstantServer, order
+
+AS_FAST_AS_IT_GOES = 1e9
+
+
+def play(seed: int, phase: PhaseOrder) -> InstantServer:
+    """A whole phase of one seed."""
+    server = InstantServer(phase)
+    person = make_person(np.random.default_rng(seed), None)
+    client = cast("TelemetryClient", server)
+    asyncio.run(Headset(client, person, shipped_tasks(), AS_FAST_AS_IT_GOES).run())
+    return server
+
+
+def shipped_tasks() -> Tasks:
+    """The boxes of the shipped study."""
+    return study().tasks
+
+
+def test_the_same_seed_gives_the_same_movement_and_the_same_touches() -> None:
+    """Bit for bit, frame after frame, in both streams; another seed gives another movement."""
+    phase = order(limb="hand", kind="task", duration_s=8.0, latency_ms=125.0)
+    first, again, other = play(3, phase), play(3, phase), play(4, phase)
+    assert first.digests == again.digests
+    assert first.reports == again.reports
+    assert set(first.digests).isdisjoint(other.digests)
+
+
+def test_a_foot_phase_walks_back_after_each_task() -> None:
+    """Tasks are completed, and the clock stands from each bar to the start square."""
+    phase = order(limb="foot", kind="task", duration_s=20.0)
+    played = play(3, phase)
+    words = [getattr(report, "what", report.kind) for report in played.reports]
+    assert words.count("completion") >= 1
+    assert words.count("walk_back_started") == words.count("completion")
+    assert abs(words.count("walk_back_ended") - words.count("walk_back_started")) <= 1
+
+
+def test_contacts_come_before_the_completion_they_lead_to() -> None:
+    """Whoever reads the reports in order can follow the task; numbers count on from the order."""
+    phase = order(limb="hand", kind="task", duration_s=20.0, completions=4, active_s=0.0)
+    reports = play(5, phase).reports
+    numbers = [report.number for report in reports if isinstance(report, CompletionReport)]
+    assert numbers == list(range(5, 5 + len(numbers)))
+    first = next(at for at, one in enumerate(reports) if isinstance(one, CompletionReport))
+    effects = [one.effect for one in reports[:first] if isinstance(one, ContactReport)]
+    assert effects.count("green") == 4
+
+
+def test_a_client_that_takes_over_after_an_odd_number_of_tasks_goes_the_other_way() -> None:
+    """The order turns round with each hand task, whoever counted it."""
+    phase = order(limb="hand", kind="task", duration_s=20.0)
+    there = _first_order(play(5, phase))
+    back = _first_order(play(5, phase.model_copy(update={"completions": 1})))
+    assert there == back[::-1]
+
+
+def _first_order(server: InstantServer) -> tuple[int, ...]:
+    return next(one.order for one in server.reports if isinstance(one, CompletionReport))

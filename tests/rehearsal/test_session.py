@@ -1,0 +1,226 @@
+"""What a rehearsed session leaves behind, on SQLite with a capture and on PostgreSQL without."""
+
+from itertools import pairwise
+from typing import Any, TypeVar
+
+import numpy as np
+import pytest
+from sqlalchemy import Select, select
+from sqlalchemy.orm import Session
+
+from app.features.headset.service import participant_info
+from app.features.sessions.journal import events_of, verify_chain
+from app.features.sessions.service import session_by_id
+from app.features.studies.service import protocol_of
+from app.models import (
+    Completion,
+    Contact,
+    JointErrorRow,
+    Participant,
+    Phase,
+    StudySession,
+    StudyVersion,
+)
+from app.science.tasks import (
+    Command,
+    CommandKind,
+    ContactInterval,
+    Laterality,
+    TaskLayout,
+    TaskRules,
+    rederive,
+)
+from tests.rehearsal.ledger import reconcile
+from tests.rehearsal.performed import Performed
+
+FRAME_S = 1 / 90
+TASK_PHASES = 6
+
+
+def test_every_task_phase_lasts_its_sixty_seconds_of_active_time(performed: Performed) -> None:
+    """Three blocks of a hand and a foot phase, each done and 60 s long to one frame."""
+    phases = [phase for phase in performed.view["phases"] if phase["kind"] == "task"]
+    assert [phase["limb"] for phase in phases] == ["hand", "foot"] * 3
+    assert {phase["status"] for phase in phases} == {"done"}
+    assert [phase["active_s"] for phase in phases] == pytest.approx([60.0] * 6, abs=FRAME_S)
+
+
+def test_the_session_is_complete_and_every_questionnaire_is_scored(performed: Performed) -> None:
+    """Every step is done; each task phase is followed by its questionnaire."""
+    view = performed.view
+    assert view["status"] == "completed"
+    assert {step["status"] for step in view["steps"]} == {"done"}
+    scored = [row["instrument"] for row in view["scores"]]
+    assert scored == ["karas2020"] * TASK_PHASES
+    assert all(None not in row["scores"].values() for row in view["scores"])
+
+
+def test_everything_is_marked_simulated(performed: Performed, db: Session) -> None:
+    """Session, participant and report say that nobody took part."""
+    session = session_by_id(db, performed.session_id)
+    assert (session.kind, db.get_one(Participant, session.participant_id).kind) == (
+        "simulated",
+        "simulated",
+    )
+    assert performed.view["simulated"] is True
+    assert performed.report["simulated"] is True
+    assert session.time_scale == performed.report["speed"]
+
+
+def test_what_was_sent_is_stored_bit_for_bit(performed: Performed, db: Session) -> None:
+    """By stream, epoch and seq: nothing lost, altered, stored twice or left out."""
+    found = reconcile(db, performed.session_id, performed.ledger)
+    assert found.sound
+    assert found.sent == found.acked == found.stored > 90_000
+
+
+def test_the_report_counts_what_the_server_stored(performed: Performed) -> None:
+    """Frames sent and stored agree in both streams, which have the same length."""
+    report = performed.report
+    assert report["frames_sent"] == report["frames_stored"]
+    assert report["frames_sent"]["target"] == report["frames_sent"]["actual"]
+    assert {row["frames_flagged"] for row in report["streams"]} == {0}
+
+
+def test_every_task_phase_has_completions_and_the_session_side_contacts(
+    performed: Performed,
+) -> None:
+    """The simulated participant does the tasks, and not without touching a side."""
+    phases = [phase for phase in performed.view["phases"] if phase["kind"] == "task"]
+    assert all(phase["completions"] > 0 for phase in phases)
+    assert sum(phase["completions"] for phase in phases) == performed.report["completions"]
+    assert performed.report["side_contacts"] > 0
+
+
+def test_the_event_log_verifies(performed: Performed, db: Session) -> None:
+    """Every hash of the log follows from the one before."""
+    checked = verify_chain(events_of(db, performed.session_id))
+    assert checked.ok
+    assert checked.events == len(performed.events)
+
+
+def test_latency_is_seen_in_the_joint_error_and_costs_the_controller_nothing(
+    performed: Performed, db: Session
+) -> None:
+    """No error at 0 ms, more with every step of latency, and none against the command."""
+    for limb in ("hand", "foot"):
+        present = [_mean_error_deg(db, performed, limb, ms, "present") for ms in (0, 125, 350)]
+        command = [_mean_error_deg(db, performed, limb, ms, "command") for ms in (0, 125, 350)]
+        assert present[0] < 1e-9
+        assert all(after > before + 0.5 for before, after in pairwise(present))
+        # What is left is the rounding of quaternions to 32 bits.
+        assert max(command) < 1e-4
+
+
+def test_walks_back_stop_the_clock(performed: Performed, db: Session) -> None:
+    """A phase spans its active time, its walks back and its pauses, and nothing else."""
+    for phase in _task_phases(db, performed):
+        events = _clock_events(performed, phase.phase_id)
+        begun, ended = events[0]["data"]["client_t_s"], events[-1]["data"]["client_t_s"]
+        stood = [
+            after["data"]["client_t_s"] - before["data"]["client_t_s"]
+            for before, after in pairwise(events)
+            if before["type"] in ("walk_back_started", "phase_paused")
+        ]
+        assert ended - begun == pytest.approx(phase.active_s + sum(stood), abs=FRAME_S)
+        if phase.limb == "foot":
+            # The last completion may come so late that the walk back is still under way.
+            assert len(stood) >= phase.walk_back_count > 0
+            assert ended - begun > phase.active_s + FRAME_S
+
+
+def test_the_stored_contacts_lead_to_the_stored_completions(
+    performed: Performed, db: Session
+) -> None:
+    """The task rules, played again over the record, find every completion at its instant."""
+    session = session_by_id(db, performed.session_id)
+    for phase in _task_phases(db, performed):
+        rules = TaskRules(_layout(db, session, phase.limb), _hand(db, session))
+        contacts = db.scalars(_of(Contact, phase).order_by(Contact.end_s, Contact.id))
+        intervals = [
+            ContactInterval(
+                row.surface,
+                row.body_part,
+                row.begin_s,
+                row.end_s,
+                row.begin_active_s,
+                row.end_active_s,
+            )
+            for row in contacts
+        ]
+        derived = rederive(rules, intervals, _commands(performed, phase.phase_id))
+        stored = db.scalars(_of(Completion, phase).order_by(Completion.number)).all()
+        assert [(one.number, one.completed_s) for one in derived] == [
+            (row.number, row.at_s) for row in stored
+        ]
+        assert [one.duration_s for one in derived] == [row.duration_s for row in stored]
+        assert [one.out_of_order for one in derived] == [row.out_of_order_touches for row in stored]
+
+
+def _task_phases(db: Session, performed: Performed) -> list[Phase]:
+    query = select(Phase).where(Phase.session_id == performed.session_id, Phase.kind == "task")
+    return list(db.scalars(query.order_by(Phase.phase_id)))
+
+
+Row = TypeVar("Row", Contact, Completion)
+
+
+def _of(table: type[Row], phase: Phase) -> Select[Row]:
+    return select(table).where(
+        table.session_id == phase.session_id, table.phase_id == phase.phase_id
+    )
+
+
+def _clock_events(performed: Performed, phase_id: int) -> list[dict[str, Any]]:
+    """The events of a phase's clock as the headset told them, from its start to its freeze."""
+    return [
+        event
+        for event in performed.events
+        if event["data"].get("phase_id") == phase_id
+        and event["data"].get("client_t_s") is not None
+        and event["type"] != "phase_ended"
+    ]
+
+
+def _commands(performed: Performed, phase_id: int) -> list[Command]:
+    kinds = {
+        "phase_started": CommandKind.START,
+        "phase_paused": CommandKind.PAUSE,
+        "phase_resumed": CommandKind.RESUME,
+        "phase_frozen": CommandKind.FREEZE,
+    }
+    return [
+        Command(kinds[event["type"]], event["data"]["client_t_s"])
+        for event in _clock_events(performed, phase_id)
+        if event["type"] in kinds
+    ]
+
+
+def _layout(db: Session, session: StudySession, limb: str | None) -> TaskLayout:
+    tasks = protocol_of(db.get_one(StudyVersion, session.study_version_id)).tasks
+    return tasks.hand.layout() if limb == "hand" else tasks.foot.layout()
+
+
+def _hand(db: Session, session: StudySession) -> Laterality:
+    return Laterality(participant_info(db, session).handedness or "")
+
+
+def _mean_error_deg(
+    db: Session, performed: Performed, limb: str, latency_ms: int, reference: str
+) -> float:
+    """Mean over the joints of the mean angle, in the phase of this limb and latency."""
+    phase = next(
+        phase
+        for phase in _task_phases(db, performed)
+        if (phase.limb, phase.latency_ms) == (limb, latency_ms)
+    )
+    means = db.scalars(
+        select(JointErrorRow.mean_rad).where(
+            JointErrorRow.session_id == performed.session_id,
+            JointErrorRow.phase_id == phase.phase_id,
+            JointErrorRow.reference == reference,
+            JointErrorRow.axis == "angle",
+        )
+    ).all()
+    assert len(means) == 21
+    return float(np.degrees(np.mean([mean for mean in means if mean is not None])))
