@@ -1,0 +1,106 @@
+"""What people do with the pages: an experimenter at the console, a participant at the tablet."""
+
+import re
+from collections.abc import Mapping
+
+from playwright.sync_api import Page, expect
+
+from tests.support.server import ADMIN_PASSWORD
+
+PATIENCE_MS = 30_000
+
+
+class Experimenter:
+    """At the console, by the words on the page."""
+
+    def __init__(self, page: Page, url: str) -> None:
+        self.page, self.url = page, url
+
+    def log_in(self) -> None:
+        """Open the console and sign in."""
+        self.page.goto(self.url)
+        self.page.get_by_label("User name").fill("admin")
+        self.page.get_by_label("Password", exact=True).fill(ADMIN_PASSWORD)
+        self.page.keyboard.press("Enter")
+        expect(self.page.get_by_role("heading", name="Studies")).to_be_visible()
+
+    def open_tab(self, study: str, tab: str = "") -> None:
+        """Go to a study's tab."""
+        self.page.goto(f"{self.url}/#/studies/{study}/{tab}")
+
+    def create_session(self) -> None:
+        """Make a session for a participant and open it."""
+        self.page.get_by_role("button", name="New session").first.click()
+        self.page.get_by_role("button", name="Create session").click()
+        expect(self.page.get_by_role("heading", name="Ready to start")).to_be_visible()
+
+    def code_for(self, device: str) -> str:
+        """Show the pairing code of the tablet or the headset, and read it."""
+        self.page.get_by_role("button", name=f"Pair the {device}").click()
+        shown = self.page.get_by_text(re.compile(r"^[0-9A-Z]{3}-[0-9A-Z]{3}$")).first
+        expect(shown).to_be_visible()
+        code = shown.inner_text()
+        self.page.keyboard.press("Escape")
+        return code
+
+    def press(self, name: str) -> None:
+        """Press the button of that name as soon as it is there."""
+        button = self.page.get_by_role("button", name=name).first
+        expect(button).to_be_enabled(timeout=PATIENCE_MS)
+        button.click()
+
+    def match_height(self, stated_cm: str, matched_cm: str) -> None:
+        """Enter both heights."""
+        self.page.get_by_label("Height as stated").fill(stated_cm)
+        self.page.get_by_label("Height as matched").fill(matched_cm)
+        self.press("Save heights")
+
+    def sees_step(self, name: str) -> None:
+        """Wait until the current step is the one of that name."""
+        heading = self.page.get_by_role("main").get_by_role("heading", name=name)
+        expect(heading.first).to_be_visible(timeout=PATIENCE_MS)
+
+
+class Participant:
+    """At the tablet."""
+
+    def __init__(self, page: Page, url: str) -> None:
+        self.page, self.url = page, url
+
+    def pair(self, code: str) -> None:
+        """Scan the code."""
+        self.page.goto(f"{self.url}/tablet?code={code}")
+
+    def agree(self) -> None:
+        """Consent."""
+        self.page.get_by_role("button", name="I agree to take part").click()
+
+    def have_read(self) -> None:
+        """Confirm the instructions."""
+        self.page.get_by_role("button", name="I have read this").click()
+
+    def fill_in(self, answers: Mapping[str, str]) -> None:
+        """Answer a form page by page: item key -> value of the option, or text to type."""
+        while True:
+            for question in self.page.locator("[data-name]").all():
+                item = question.get_attribute("data-name") or ""
+                if item in answers:
+                    self._answer(item, answers[item])
+            send = self.page.get_by_role("button", name="Send answers")
+            if send.is_visible():
+                send.click()
+                return
+            self.page.get_by_role("button", name="Next").click()
+
+    def waits(self) -> None:
+        """Wait until the answers are stored and the tablet says so, or goes on."""
+        send = self.page.get_by_role("button", name="Send answers")
+        expect(send).to_have_count(0, timeout=PATIENCE_MS)
+
+    def _answer(self, item: str, value: str) -> None:
+        question = self.page.locator(f'[data-name="{item}"]')
+        option = question.locator(f'input[value="{value}"]')
+        if option.count():
+            option.first.check(force=True)
+        else:
+            question.locator("input, textarea").first.fill(value)

@@ -1,0 +1,59 @@
+"""Somebody under a headset: a real headset client on a thread, at real speed."""
+
+import asyncio
+import json
+import threading
+import time
+from types import TracebackType
+from typing import Self
+
+import httpx2
+import numpy as np
+
+from app.client.telemetry import TelemetryClient
+from app.protocol import Tasks
+from app.rehearsal.body import make_person
+from app.rehearsal.headset import Headset
+
+
+class Wearer:
+    """Pairs by the code from the console and plays whatever the session asks for."""
+
+    def __init__(self, url: str, code: str) -> None:
+        self.error: BaseException | None = None
+        self._url, self._code = url, code
+        self._thread = threading.Thread(target=self._live, daemon=True)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        _type: type[BaseException] | None,
+        _error: BaseException | None,
+        _traceback: TracebackType | None,
+    ) -> None:
+        self._thread.join(timeout=20.0)
+
+    def _live(self) -> None:
+        try:
+            asyncio.run(self._wear())
+        except BaseException as error:  # noqa: BLE001 - the test reads it
+            self.error = error
+
+    async def _wear(self) -> None:
+        paired = httpx2.post(
+            f"{self._url}/api/devices/pair", json={"code": self._code, "name": "headset"}
+        ).json()
+        began_s = time.monotonic()
+        async with TelemetryClient(
+            url=f"{self._url.replace('http', 'ws', 1)}/api/vr/stream",
+            token=paired["token"],
+            name="test headset",
+            monotonic_s=lambda: time.monotonic() - began_s,
+        ) as client:
+            assert client.welcome is not None
+            tasks = Tasks.model_validate_json(json.dumps(client.welcome.tasks))
+            person = make_person(np.random.default_rng(7), None)
+            await Headset(client, person, tasks, speed=1.0).run()
