@@ -7,10 +7,17 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import DataError, IntegrityError, OperationalError
 from starlette.exceptions import HTTPException
 
-from app.errors import InvalidInput, NotAllowed, NotDurable, NotFound, ReembodyError
+from app.errors import (
+    Conflict,
+    InvalidInput,
+    NotAllowed,
+    NotDurable,
+    NotFound,
+    ReembodyError,
+)
 
 log = logging.getLogger(__name__)
 
@@ -45,8 +52,35 @@ def install_error_handler(app: FastAPI) -> None:
             )
         )
 
+    _install_database_handlers(app)
+
+    @app.exception_handler(HTTPException)
+    def framework(_: Request, error: HTTPException) -> JSONResponse:
+        # The framework wraps what goes wrong while a body is read, such as our limit on its size.
+        if isinstance(error.__cause__, ReembodyError):
+            return error_response(error.__cause__)
+        if error.status_code == NotFound.status:
+            return error_response(NotFound("there is nothing at this address"))
+        if error.status_code == NotAllowed.status:
+            return error_response(NotAllowed(str(error.detail)))
+        body = {"error": {**ReembodyError(str(error.detail)).as_json(), "code": "http"}}
+        return JSONResponse(body, status_code=error.status_code, headers=error.headers)
+
+    @app.exception_handler(Exception)
+    def anything_else(_: Request, _error: Exception) -> JSONResponse:
+        return error_response(
+            ReembodyError(
+                "something went wrong on the server; nothing was stored",
+                remedy="Try again. If it happens again, the server's log tells why.",
+            )
+        )
+
+
+def _install_database_handlers(app: FastAPI) -> None:
+    """What the database refuses, in our words: its own would tell of the inside."""
+
     @app.exception_handler(OperationalError)
-    def database(_: Request, error: OperationalError) -> JSONResponse:
+    def not_now(_: Request, error: OperationalError) -> JSONResponse:
         log.error("the database refused", exc_info=error)
         return error_response(
             NotDurable(
@@ -55,14 +89,24 @@ def install_error_handler(app: FastAPI) -> None:
             )
         )
 
-    @app.exception_handler(HTTPException)
-    def framework(_: Request, error: HTTPException) -> JSONResponse:
-        if error.status_code == NotFound.status:
-            return error_response(NotFound("there is nothing at this address"))
-        if error.status_code == NotAllowed.status:
-            return error_response(NotAllowed(str(error.detail)))
-        body = {"error": {"code": "http", "message": str(error.detail), "remedy": ""}}
-        return JSONResponse(body, status_code=error.status_code, headers=error.headers)
+    @app.exception_handler(IntegrityError)
+    def clash(_: Request, error: IntegrityError) -> JSONResponse:
+        log.warning("two requests clashed", exc_info=error)
+        return error_response(
+            Conflict(
+                "somebody else stored the same at the same moment; nothing was stored",
+                remedy="Look again, then decide.",
+            )
+        )
+
+    @app.exception_handler(DataError)
+    def unusable(_: Request, _error: DataError) -> JSONResponse:
+        return error_response(
+            InvalidInput(
+                "the request holds a value that cannot be stored; nothing was stored",
+                remedy="Leave out control characters and numbers beyond all measure.",
+            )
+        )
 
 
 def _jsonable(value: Any) -> Any:

@@ -45,7 +45,7 @@ class Guards:
             if scope["type"] == "websocket":
                 await send({"type": "websocket.close", "code": 4403, "reason": error.message})
             else:
-                await error_response(error)(scope, receive, send)
+                await error_response(error)(scope, receive, _headed(scope, send))
             return
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)

@@ -5,7 +5,7 @@ from fastapi import APIRouter, Request, Response
 from app.errors import NotSignedIn
 from app.features.accounts.schemas import AccountView, Credentials, SignedInView, WhoView
 from app.features.accounts.service import log_in, revoke_token
-from app.features.dependencies import LOGIN_COOKIE, Context, Writing, get_caller
+from app.features.dependencies import LOGIN_COOKIE, Context, Writing, bearer_token, get_caller
 
 router = APIRouter(tags=["accounts"])
 
@@ -46,9 +46,9 @@ def post_login(
 @router.post("/logout", status_code=204)
 def post_logout(request: Request, response: Response, db: Writing, context: Context) -> None:
     """End this login."""
-    token = request.cookies.get(LOGIN_COOKIE)
-    if token:
-        revoke_token(db, token, context.clock.utc_now())
+    for token in (bearer_token(request), request.cookies.get(LOGIN_COOKIE)):
+        if token:
+            revoke_token(db, token, context.clock.utc_now())
     response.delete_cookie(LOGIN_COOKIE)
 
 

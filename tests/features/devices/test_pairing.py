@@ -1,0 +1,196 @@
+"""Pairing tablets and headsets: a code works once, a token opens one session."""
+
+from concurrent.futures import ThreadPoolExecutor
+from datetime import UTC, datetime, timedelta
+
+import pytest
+from fastapi.testclient import TestClient
+from httpx2 import Response
+from sqlalchemy import inspect, text
+
+from app.clock import Clock
+from tests.features.lab import Lab, error, ok, running_lab
+
+
+def use(client: TestClient, code: str, **fields: str) -> Response:
+    """Type a code into a device."""
+    return client.post("/api/devices/pair", json={"code": code, **fields})
+
+
+def everything_stored(lab: Lab) -> str:
+    """The whole database as text."""
+    with lab.database.reading() as db:
+        tables = inspect(lab.database.engine).get_table_names()
+        return repr([db.execute(text(f'SELECT * FROM "{table}"')).all() for table in tables])  # noqa: S608
+
+
+def test_a_code_pairs_a_tablet(lab: Lab) -> None:
+    """The tablet gets a cookie that no script can read, and no token in the answer."""
+    session_id = lab.join()["id"]
+    tablet = lab.stranger()
+    answer = use(tablet, lab.show_code(session_id, "tablet"), name="iPad")
+    assert ok(answer) == {"device": "tablet", "session_id": session_id, "token": None}
+    cookie = answer.headers["set-cookie"].lower()
+    assert "httponly" in cookie
+    assert "samesite=strict" in cookie
+    assert ok(tablet.get("/api/tablet/state"))["session_id"] == session_id
+    assert lab.view(session_id)["devices"][0]["name"] == "iPad"
+
+
+def test_a_code_works_once(lab: Lab) -> None:
+    """A second tablet with the same code hears that it was used, and the first goes on."""
+    session_id = lab.join()["id"]
+    code = lab.show_code(session_id, "tablet")
+    first, second = lab.stranger(), lab.stranger()
+    ok(use(first, code))
+    refusal = error(use(second, code), 410, "gone")
+    assert "the device paired first goes on" in refusal["remedy"]
+    assert first.get("/api/tablet/state").status_code == 200
+
+
+def test_of_many_tablets_with_one_code_one_is_paired(lab: Lab) -> None:
+    """Eight at the same moment: one holder, seven refusals."""
+    session_id = lab.join()["id"]
+    code = lab.show_code(session_id, "tablet")
+    tablets = [lab.stranger() for _ in range(8)]
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(pool.map(lambda tablet: use(tablet, code).status_code, tablets))
+    assert sorted(answers) == [200, *[410] * 7]
+    assert len(lab.view(session_id)["devices"]) == 1
+
+
+def test_a_new_code_replaces_the_old_tablet(lab: Lab) -> None:
+    """Taking over is a deed of the operator: then the old cookie opens nothing."""
+    session_id = lab.join()["id"]
+    old = lab.tablet(session_id)
+    new = lab.tablet(session_id)
+    refusal = error(old.get("/api/tablet/state"), 401, "not_signed_in")
+    assert refusal["remedy"] == "Enter a new code from the console."
+    assert new.get("/api/tablet/state").status_code == 200
+
+
+def test_showing_a_code_alone_replaces_nobody(lab: Lab) -> None:
+    """The old tablet goes on until the new code is used."""
+    session_id = lab.join()["id"]
+    tablet = lab.tablet(session_id)
+    lab.show_code(session_id, "tablet")
+    assert tablet.get("/api/tablet/state").status_code == 200
+
+
+def test_a_newer_code_ends_an_older_one(lab: Lab) -> None:
+    """Only the code on the screen works."""
+    session_id = lab.join()["id"]
+    older, newer = (lab.show_code(session_id, "tablet") for _ in range(2))
+    error(use(lab.stranger(), older), 410, "gone")
+    ok(use(lab.stranger(), newer))
+
+
+def test_a_headset_and_a_tablet_do_not_replace_each_other(lab: Lab) -> None:
+    """A session has one of each."""
+    session_id = lab.join()["id"]
+    tablet = lab.tablet(session_id)
+    lab.headset_token(session_id)
+    assert tablet.get("/api/tablet/state").status_code == 200
+    assert {device["kind"] for device in lab.view(session_id)["devices"]} == {"tablet", "headset"}
+
+
+def test_a_headsets_token_is_no_tablets(lab: Lab) -> None:
+    """Neither as a bearer token nor as a cookie."""
+    token = lab.headset_token(lab.join()["id"])
+    device = lab.stranger()
+    error(
+        device.get("/api/tablet/state", headers={"authorization": f"Bearer {token}"}),
+        401,
+        "not_signed_in",
+    )
+    device.cookies["reembody_tablet"] = token
+    error(device.get("/api/tablet/state"), 401, "not_signed_in")
+
+
+def test_a_tablet_sees_its_own_session_only(lab: Lab) -> None:
+    """Each cookie leads to the session it was paired with, whatever is asked for."""
+    ids = [lab.join()["id"] for _ in range(2)]
+    tablets = [lab.tablet(session_id) for session_id in ids]
+    seen = [ok(tablet.get("/api/tablet/state"))["session_id"] for tablet in tablets]
+    assert seen == ids
+
+
+def test_a_revoked_device_is_out_at_once(lab: Lab) -> None:
+    """The operator unpairs it and its cookie opens nothing."""
+    session_id = lab.join()["id"]
+    tablet = lab.tablet(session_id)
+    device_id = lab.view(session_id)["devices"][0]["id"]
+    assert lab.operator.delete(f"/api/sessions/{session_id}/devices/{device_id}").is_success
+    error(tablet.get("/api/tablet/state"), 401, "not_signed_in")
+
+
+def test_a_device_is_revoked_in_its_own_session_only(lab: Lab) -> None:
+    """Another session's device is not found there."""
+    session_id, other = lab.join()["id"], lab.join()["id"]
+    tablet = lab.tablet(session_id)
+    device_id = lab.view(session_id)["devices"][0]["id"]
+    answer = lab.operator.delete(f"/api/sessions/{other}/devices/{device_id}")
+    error(answer, 404, "not_found")
+    assert tablet.get("/api/tablet/state").status_code == 200
+
+
+def test_an_unknown_code_is_not_found(lab: Lab) -> None:
+    """No session waits for it."""
+    error(use(lab.stranger(), "XXX-XXX"), 404, "not_found")
+
+
+def test_a_code_may_be_typed_carelessly(lab: Lab) -> None:
+    """Lower case, spaces and dashes do not matter."""
+    code = lab.show_code(lab.join()["id"], "tablet")
+    ok(use(lab.stranger(), f" {code.lower().replace('-', ' ')} "))
+
+
+def test_a_code_expires(database_url: str) -> None:
+    """After ten minutes it is too old."""
+    now = [datetime(2030, 1, 1, tzinfo=UTC)]
+    with running_lab(database_url, Clock(utc_now=lambda: now[0])) as lab:
+        code = lab.show_code(lab.join()["id"], "tablet")
+        now[0] += timedelta(minutes=10)
+        error(use(lab.stranger(), code), 410, "gone")
+
+
+def test_guessing_codes_is_slowed_down(fresh_lab: Lab) -> None:
+    """After twenty tries even a good code has to wait."""
+    code = fresh_lab.show_code(fresh_lab.join()["id"], "tablet")
+    device = fresh_lab.stranger()
+    for number in range(20):
+        error(use(device, f"AAA-{number:03d}"), 404, "not_found")
+    error(use(device, code), 429, "too_many_attempts")
+
+
+def test_codes_and_tokens_are_stored_as_hashes_only(fresh_lab: Lab) -> None:
+    """No table holds a code or a token that would open anything."""
+    session_id = fresh_lab.join()["id"]
+    code = fresh_lab.show_code(session_id, "tablet")
+    tablet = fresh_lab.stranger()
+    ok(use(tablet, code))
+    waiting = fresh_lab.show_code(session_id, "tablet")
+    secrets = [
+        fresh_lab.headset_token(session_id),
+        tablet.cookies["reembody_tablet"],
+        code.replace("-", ""),
+        waiting.replace("-", ""),
+        fresh_lab.operator.headers["authorization"].removeprefix("Bearer "),
+    ]
+    stored = everything_stored(fresh_lab)
+    assert [secret for secret in secrets if secret in stored] == []
+
+
+@pytest.mark.parametrize("device", ["phone", "", None])
+def test_only_tablets_and_headsets_pair(lab: Lab, device: str | None) -> None:
+    """Any other device is refused by field."""
+    path = f"/api/sessions/{lab.join()['id']}/pairings"
+    error(lab.operator.post(path, json={"device": device}), 422, "invalid_input")
+
+
+def test_the_link_opens_the_tablets_page_with_the_code(lab: Lab) -> None:
+    """What the QR code holds is the address and the code, drawn as SVG."""
+    path = f"/api/sessions/{lab.join()['id']}/pairings"
+    shown = ok(lab.operator.post(path, json={"device": "tablet"}))
+    assert shown["url"] == f"http://testserver/tablet?code={shown['code']}"
+    assert shown["qr_svg"].startswith("<svg")
