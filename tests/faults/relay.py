@@ -1,0 +1,77 @@
+"""A network between devices and the server that can be cut: a TCP relay on the loopback."""
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+
+from tests.support.server import free_port
+
+
+@dataclass
+class Relay:
+    """Passes bytes both ways while it is up. `cut()` breaks every connection, as a dead cable."""
+
+    target_port: int
+    port: int = field(default_factory=free_port)
+    up: bool = True
+    _writers: set[asyncio.StreamWriter] = field(default_factory=set)
+
+    @property
+    def url(self) -> str:
+        """Where devices find the server."""
+        return f"http://127.0.0.1:{self.port}"
+
+    def cut(self) -> None:
+        """Reset every connection at both ends; new ones come through if the relay is up."""
+        for writer in tuple(self._writers):
+            writer.transport.abort()
+
+    @asynccontextmanager
+    async def outage(self) -> AsyncIterator[None]:
+        """Nobody gets through while the block lasts."""
+        self.up = False
+        self.cut()
+        try:
+            yield
+        finally:
+            self.up = True
+
+    async def accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Relay one connection."""
+        if not self.up:
+            writer.transport.abort()
+            return
+        far_reader, far_writer = await asyncio.open_connection("127.0.0.1", self.target_port)
+        pair = (writer, far_writer)
+        self._writers.update(pair)
+        try:
+            ways = (_pass(reader, far_writer), _pass(far_reader, writer))
+            await asyncio.wait(
+                [asyncio.create_task(way) for way in ways],
+                return_when=asyncio.FIRST_COMPLETED,
+            )
+        finally:
+            for one in pair:
+                one.transport.abort()
+                self._writers.discard(one)
+
+
+async def _pass(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    with contextlib.suppress(OSError):
+        while data := await reader.read(65536):
+            writer.write(data)
+            await writer.drain()
+
+
+@asynccontextmanager
+async def relayed(target_port: int) -> AsyncIterator[Relay]:
+    """A relay in front of a server, for the time of the block."""
+    relay = Relay(target_port)
+    server = await asyncio.start_server(relay.accept, "127.0.0.1", relay.port)
+    try:
+        yield relay
+    finally:
+        server.close()
+        relay.cut()

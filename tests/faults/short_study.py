@@ -1,0 +1,51 @@
+"""The shipped study with short phases, stored on a server: faults need seconds, not minutes."""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app.rehearsal.cast import Cast
+from app.wire.messages import PhaseOrder
+from tests.features.sessions.engine_run import PLAN
+from tests.protocol.helpers import edited
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+KEY, PHASE_S, ROAM_S = "short-latency", 8.0, 4.0
+LOOK_EVERY_S = 0.005
+FIRST_FOOT_STEP = next(step.index for step in PLAN if step.limb == "foot")
+
+
+def add_short_study(server: LiveServer) -> str:
+    """Store it; its key."""
+    text = edited(
+        ("key: reembodiment-latency", f"key: {KEY}"),
+        ("duration_s: 120", f"duration_s: {ROAM_S}"),
+        *[("duration_s: 60\n        freeze_s: 5", f"duration_s: {PHASE_S}\n        freeze_s: 1")]
+        * 2,
+        *[("preparation_s: 5", "preparation_s: 1")] * 2,
+    )
+    with server.client() as client:
+        credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+        client.post("/api/login", json=credentials).raise_for_status()
+        client.post("/api/studies", json={"yaml": text}).raise_for_status()
+    return KEY
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Waits for moments of a rehearsal."""
+
+    cast: Cast
+
+    async def phase(self, phase_id: int, is_it: Callable[[PhaseOrder], bool]) -> None:
+        """Until the headset knows this phase in a state for which `is_it` holds."""
+        while True:
+            state = self.cast.headset.client.state
+            order = None if state is None else state.phase
+            if order is not None and order.phase_id == phase_id and is_it(order):
+                return
+            await asyncio.sleep(LOOK_EVERY_S)
+
+    async def running(self, phase_id: int) -> None:
+        """Until its clock runs."""
+        await self.phase(phase_id, lambda order: order.status == "running")

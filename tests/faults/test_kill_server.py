@@ -1,0 +1,114 @@
+"""The server is killed again and again, in every kind of step, and every session is finished.
+
+Fault 1 of the matrix: nothing that was acknowledged is lost, and the same phase goes on with the
+active time it had.
+"""
+
+import asyncio
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.features.sessions.journal import events_of, verify_chain
+from app.rehearsal.cast import perform
+from app.rehearsal.rehearse import RehearsalPlan, assembled
+from tests.faults.killer import Kill, Killer, figures
+from tests.faults.record import record_of
+from tests.faults.schedule import KILLS_PER_SESSION, KINDS, draw_schedule
+from tests.rehearsal.ledger import LedgerJournal, Reconciliation, reconcile
+from tests.rehearsal.performed import STUDY
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+FRAME_S = 1 / 90
+SPEED = 20.0
+
+
+def test_twenty_kills_lose_nothing_and_every_phase_goes_on(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A session at high speed, killed in every kind of step it has."""
+    kills = kill_until(tmp_path, KILLS_PER_SESSION, first_seed=1, capsys=capsys)
+    # A form is answered within a moment; that kill may have come just behind it.
+    assert set(KINDS) - {"questionnaire"} <= {kill.before.kind for kill in kills}
+
+
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+def test_two_hundred_kills_lose_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Ten sessions and more, each with other moments."""
+    kills = kill_until(tmp_path, 10 * KILLS_PER_SESSION, first_seed=2, capsys=capsys)
+    assert set(KINDS) <= {kill.before.kind for kill in kills}
+
+
+def kill_until(
+    folder: Path, wanted: int, *, first_seed: int, capsys: pytest.CaptureFixture[str]
+) -> list[Kill]:
+    """Rehearse sessions, each to its end, until there were so many kills; every one is checked."""
+    kills: list[Kill] = []
+    seed = first_seed
+    while len(kills) < wanted:
+        kills += _kill_during_a_session(folder / str(seed), seed, wanted - len(kills))
+        seed += 1
+    with capsys.disabled():
+        sys.stdout.write(figures(kills))
+    return kills
+
+
+def _kill_during_a_session(folder: Path, seed: int, most: int) -> list[Kill]:
+    ledger = LedgerJournal()
+    with LiveServer(folder) as server:
+        kills, session_id = asyncio.run(_rehearse(server, ledger, seed, most))
+        for kill in kills:
+            check_kill(kill)
+        check_session(server, session_id, ledger)
+    return kills
+
+
+async def _rehearse(
+    server: LiveServer, ledger: LedgerJournal, seed: int, most: int
+) -> tuple[list[Kill], str]:
+    targets = draw_schedule(np.random.default_rng(seed))
+    plan = RehearsalPlan(server.url, STUDY, speed=SPEED, seed=seed, password=ADMIN_PASSWORD)
+    async with assembled(plan, journal=ledger) as cast:
+        killer = Killer(server, cast, ledger)
+        async with asyncio.TaskGroup() as group:
+            group.create_task(perform(cast))
+            group.create_task(killer.run(targets, min(most, KILLS_PER_SESSION)))
+        return killer.kills, cast.operator.session_id
+
+
+def check_kill(kill: Kill) -> None:
+    """What was promised is on disk, once; the next server stands where the dead one stood."""
+    assert (kill.lost, kill.surplus) == (0, 0), kill
+    before, after = kill.before, kill.after
+    assert after.version >= before.version, kill
+    assert all(after.stored[key] >= seq for key, seq in before.stored.items()), kill
+    assert (after.step or 0) >= (before.step or 0), kill
+    if before.phase_id is not None and after.phase_id == before.phase_id:
+        assert kill.acked_active_s - 1e-9 <= after.active_s <= kill.used_active_s + 1e-9, kill
+
+
+def check_session(server: LiveServer, session_id: str, ledger: LedgerJournal) -> None:
+    """The session was finished as if nothing had happened."""
+    with record_of(server) as db:
+        found = reconcile(db, session_id, ledger)
+        rows = events_of(db, session_id)
+    assert found.sound
+    assert found == Reconciliation(found.sent, found.sent, found.sent, 0, 0, 0, 0)
+    assert verify_chain(rows).ok
+    with server.client() as client:
+        signed_in = {"username": "admin", "password": ADMIN_PASSWORD}
+        assert client.post("/api/login", json=signed_in).is_success
+        view = client.get(f"/api/sessions/{session_id}").json()
+        answers = client.get(f"/api/sessions/{session_id}/answers").json()
+    assert view["status"] == "completed"
+    # Never done over, never skipped, each form stored once.
+    assert {(step["status"], step["attempt"]) for step in view["steps"]} == {("done", 1)}
+    assert len({row["administration"] for row in answers}) == len(answers) == 7
+    phases = view["phases"]
+    assert {phase["status"] for phase in phases} == {"done"}
+    assert [phase["active_s"] for phase in phases] == pytest.approx(
+        [120.0] + [60.0] * 6, abs=FRAME_S
+    )

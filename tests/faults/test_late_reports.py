@@ -1,0 +1,60 @@
+"""A lost headset's journal tells late what the server could not know: the two sides agree again."""
+
+import pytest
+
+from app.features.sessions.engine import Refused
+from app.features.sessions.engine import commands as c
+from app.features.sessions.engine.state import PhaseState
+from tests.features.sessions.engine_run import PLAN, Run
+
+ASSUMED = ("headset_lost", "server_restarted")
+FOOT = next(step.key for step in PLAN if step.limb == "foot")
+
+
+def lost(cause: str, active_s: float = 20.0) -> Run:
+    """A foot phase whose headset was lost while the clock ran."""
+    run = Run().begin(FOOT)
+    run.do(c.HeadsetLost(active_s=active_s, cause=cause))
+    return run
+
+
+def phase_of(run: Run) -> PhaseState:
+    """The phase under way."""
+    assert run.state.phase is not None
+    return run.state.phase
+
+
+@pytest.mark.parametrize("cause", ASSUMED)
+def test_a_walk_back_that_began_before_the_loss_is_taken(cause: str) -> None:
+    """And its end lets the clock run again, without anybody's resume."""
+    run = lost(cause)
+    run.report("walk_back_started", 20.5)
+    assert (phase_of(run).status, phase_of(run).pause_cause) == ("walk_back", None)
+    run.report("walk_back_ended", 20.5)
+    assert (phase_of(run).status, phase_of(run).active_s) == ("running", 20.5)
+
+
+@pytest.mark.parametrize("cause", ASSUMED)
+def test_a_phase_whose_time_was_up_before_the_loss_ends(cause: str) -> None:
+    """Nothing is left to resume."""
+    run = lost(cause, active_s=59.5)
+    run.report("time_up", 60.0)
+    run.report("ended", 60.0)
+    assert run.state.phase is None
+
+
+def test_the_operators_early_resume_is_forgotten_with_the_assumed_pause() -> None:
+    """The headset was never paused, so it owes no resume."""
+    run = lost("server_restarted")
+    run.do(c.Resume(headset_connected=True))
+    run.report("walk_back_started", 21.0)
+    assert not phase_of(run).resuming
+
+
+def test_a_pause_that_somebody_made_is_not_corrected() -> None:
+    """The headset itself stood still: nothing can have happened in its clock."""
+    run = Run().begin(FOOT)
+    run.report("paused", 20.0)
+    for what in ("walk_back_started", "time_up"):
+        with pytest.raises(Refused):
+            run.report(what, 60.0)
