@@ -103,8 +103,10 @@ def _locked_ledger(
     )
     ledger = db.scalar(query)
     if ledger is None:
-        # Two first joins may both find nothing: queue on the study, then look again.
-        db.execute(select(Study.id).where(Study.id == version.study_id).with_for_update())
+        # Two first joins may both find nothing: queue on the study, then look again. Sharing its
+        # key, or whoever holds the ledger already could not refer to the study: a deadlock.
+        study = select(Study.id).where(Study.id == version.study_id)
+        db.execute(study.with_for_update(key_share=True))
         ledger = db.scalar(query)
     if ledger is None:
         ledger = Ledger(

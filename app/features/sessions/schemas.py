@@ -126,7 +126,10 @@ class DeviceView(BaseModel):
 
 
 class PhaseView(BaseModel):
-    """A phase that was prepared, with what happened in it so far."""
+    """A phase that was prepared, with what happened in it so far.
+
+    `side_contacts` counts how often a side turned red, `side_contact_s` sums how long (active s).
+    """
 
     phase_id: int
     step_index: int

@@ -72,7 +72,7 @@ def state_of(session: StudySession) -> SessionState:
 def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudySession:
     """The session; `lock` makes writers of the same session queue. Raises NotFound."""
     query = select(StudySession).where(StudySession.id == session_id)
-    session = db.scalar(query.with_for_update() if lock else query)
+    session = db.scalar(query.with_for_update(key_share=True) if lock else query)
     if session is None:
         raise NotFound("there is no such session", value=session_id)
     return session

@@ -29,6 +29,7 @@ from app.features.studies.service import protocol_of
 from app.models import Completion, Contact, Participant, Phase, Study, StudySession, StudyVersion
 from app.protocol import StudyProtocol
 from app.protocol.plan import Step
+from app.science.tasks import side_unit, union
 
 
 def session_view(db: Session, context: AppContext, session: StudySession) -> SessionView:
@@ -198,18 +199,7 @@ def _phases(db: Session, session: StudySession, *, blinded: bool) -> list[PhaseV
             .group_by(Completion.phase_id)
         ).all()
     )
-    sides = {
-        phase_id: (count, seconds)
-        for phase_id, count, seconds in db.execute(
-            select(
-                Contact.phase_id,
-                func.count(),
-                func.sum(Contact.end_active_s - Contact.begin_active_s),
-            )
-            .where(Contact.session_id == session.id, Contact.surface_kind == "side")
-            .group_by(Contact.phase_id)
-        )
-    }
+    sides = _side_contacts(db, session)
     phases = db.scalars(
         select(Phase).where(Phase.session_id == session.id).order_by(Phase.phase_id)
     )
@@ -231,6 +221,29 @@ def _phases(db: Session, session: StudySession, *, blinded: bool) -> list[PhaseV
         )
         for phase in phases
     ]
+
+
+def _side_contacts(db: Session, session: StudySession) -> dict[int, tuple[int, float]]:
+    """By phase: how often a side turned red, and for how long in all.
+
+    A side is red while at least one body part touches it, so parts' intervals are united first.
+    """
+    spans: dict[int, dict[str, list[tuple[float, float]]]] = {}
+    for phase_id, surface, begin_s, end_s in db.execute(
+        select(
+            Contact.phase_id, Contact.surface, Contact.begin_active_s, Contact.end_active_s
+        ).where(Contact.session_id == session.id, Contact.surface_kind == "side")
+    ):
+        unit = side_unit(surface) or surface
+        spans.setdefault(phase_id, {}).setdefault(unit, []).append((begin_s, end_s))
+    return {
+        phase_id: _count_and_length([red for own in by_side.values() for red in union(own)])
+        for phase_id, by_side in spans.items()
+    }
+
+
+def _count_and_length(spans: Sequence[tuple[float, float]]) -> tuple[int, float]:
+    return len(spans), sum(end_s - begin_s for begin_s, end_s in spans)
 
 
 def _notes(db: Session, session: StudySession) -> list[NoteView]:

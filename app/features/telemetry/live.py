@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.science.skeleton import JOINT_NAMES
+from app.science.tasks import side_unit
 from app.wire import Batch, FrameFlags, StreamName
 from app.wire.messages import CompletionReport, ContactReport, Report
 
@@ -25,19 +26,28 @@ class LiveTelemetry:
     _phase_id: int = 0
     _completions: int = 0
     _side_contacts: int = 0
+    _red_until_s: dict[str, float] = field(default_factory=dict)
 
     def count(self, report: Report) -> None:
         """Take note of a completion or a side contact."""
         if isinstance(report.body, CompletionReport):
             self._completions = report.body.number
         elif isinstance(report.body, ContactReport) and report.body.surface_kind == "side":
+            self._count_side(report.body)
+
+    def _count_side(self, contact: ContactReport) -> None:
+        """A side that several parts touch at once turns red once."""
+        side = side_unit(contact.surface) or contact.surface
+        if contact.begin_active_s > self._red_until_s.get(side, -1.0):
             self._side_contacts += 1
+        self._red_until_s[side] = max(self._red_until_s.get(side, -1.0), contact.end_active_s)
 
     def update(self, batch: Batch, flags: FrameFlags) -> dict[str, Any] | None:
         """The figures, when it is time to tell them again."""
         header = batch.header
         if header.phase_id != self._phase_id:
             self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
+            self._red_until_s = {}
         self._newest[header.stream] = batch
         self._flagged += int(flags.bad.sum())
         if header.stream is StreamName.TARGET:

@@ -76,7 +76,7 @@ def joint_error_map_drawing(errors: pd.DataFrame) -> Drawing:
         )
     )
     figure.update_xaxes(title_text="added latency (ms)", type="category")
-    figure.update_yaxes(title_text="joint", autorange="reversed")
+    figure.update_yaxes(title_text="joint", title_standoff=24, autorange="reversed")
     figure.update_layout(height=620)
     return drawn(key, title, f"{WHAT} {count_note(n)}", n, figure)
 

@@ -47,7 +47,7 @@ def progress_drawing(
     if own.value_counts().max() <= FEW:
         # Left alone, plotly would label halves of sessions.
         figure.update_yaxes(dtick=1)
-    caption = f"n = {n} participants. Balance counts completed sessions only."
+    caption = f"n = {n} participant{'s' if n != 1 else ''}. Balance counts completed sessions only."
     if blinded:
         caption += " The study is blinded, so orders are not told apart."
     return drawn(KEY, TITLE, caption, n, figure)

@@ -418,6 +418,7 @@ export const de: Record<keyof typeof en, string> = {
   "entry.recorded":
     "Es wird festgehalten, dass Sie diese Antworten eingegeben haben. Unbeantwortete Items bleiben leer.",
   "entry.none": "Gerade ist kein Formular auszufüllen.",
+  "unit.years": "Jahre",
   "form.yes": "Ja",
   "form.no": "Nein",
   "form.optional": "freiwillig",

@@ -412,6 +412,7 @@ export const en = {
   "entry.recorded":
     "The record will say that you entered these answers. Unanswered items stay empty.",
   "entry.none": "There is no form to fill in now.",
+  "unit.years": "years",
   "form.yes": "Yes",
   "form.no": "No",
   "form.optional": "optional",

@@ -135,14 +135,15 @@ function useModel(props: FormViewProps) {
   useEffect(() => {
     latest.current = props;
   });
-  // biome-ignore lint/correctness/useExhaustiveDependencies: texts follow the language
+  // The words change a moment after the language: a word of theirs tells which one they are in.
+  // biome-ignore lint/correctness/useExhaustiveDependencies: texts are new at every drawing
   const model = useMemo(() => {
     const made = new Model(surveyJson(administration, { language, words: texts, mayOmit }));
     made.locale = language;
     made.data = draft.current.data;
     made.currentPageNo = draft.current.page;
     return made;
-  }, [administration.key, language, mayOmit]);
+  }, [administration.key, language, mayOmit, texts.required]);
   useEffect(() => {
     const keep = (changed: Partial<FormDraft>) => {
       draft.current = { ...draft.current, ...changed };

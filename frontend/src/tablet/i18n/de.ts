@@ -41,6 +41,7 @@ export const de: Record<keyof typeof en, string> = {
   "ask.decline.title": "Das ist in Ordnung",
   "ask.decline.body":
     "Bitte sagen Sie es der Versuchsleitung. Sie müssen keinen Grund nennen und haben keinen Nachteil.",
+  "unit.years": "Jahre",
   "form.yes": "Ja",
   "form.no": "Nein",
   "form.optional": "freiwillig",

@@ -37,6 +37,7 @@ export const en = {
   "ask.decline.title": "That is all right",
   "ask.decline.body":
     "Please tell the experimenter. You need not give a reason, and there is no disadvantage.",
+  "unit.years": "years",
   "form.yes": "Yes",
   "form.no": "No",
   "form.optional": "optional",

@@ -4,6 +4,8 @@ import { useTexts } from "../i18n";
 /** The words around a form that the participant fills in. */
 export function useFormTexts(): FormTexts {
   const { t } = useTexts();
+  // Symbols (cm, kg) are the same in every language; words are not.
+  const units: Readonly<Record<string, string>> = { years: t("unit.years") };
   return {
     yes: t("form.yes"),
     no: t("form.no"),
@@ -14,6 +16,8 @@ export function useFormTexts(): FormTexts {
     submit: t("form.submit"),
     page: (number, total) => t("form.page", { number, total }),
     range: (low, high, unit) =>
-      low === null || high === null ? unit : t("form.range", { low, high, unit }).trim(),
+      low === null || high === null
+        ? (units[unit] ?? unit)
+        : t("form.range", { low, high, unit: units[unit] ?? unit }).trim(),
   };
 }
