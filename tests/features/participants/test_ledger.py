@@ -1,0 +1,160 @@
+"""The counterbalancing ledger: every order equally often, no slot held twice."""
+
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from tests.features.lab import STUDY, Json, Lab, error, ok
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+JOINS = 100
+
+
+def orders(views: list[Json]) -> Counter[tuple[float, ...]]:
+    """How often each order of latencies was given out."""
+    return Counter(tuple(view["sequence"]) for view in views)
+
+
+def change_study(lab: Lab, old: str, new: str) -> Json:
+    """A new version of the study with some words replaced."""
+    path = f"/api/studies/{STUDY}"
+    yaml = ok(lab.operator.get(path))["yaml"]
+    assert old in yaml
+    changed: Json = ok(
+        lab.operator.post(f"{path}/versions", json={"yaml": yaml.replace(old, new, 1)})
+    )
+    return changed
+
+
+def ledger(lab: Lab, kind: str = "people") -> Json:
+    """The ledger as the console shows it."""
+    shown: Json = ok(lab.operator.get(f"/api/studies/{STUDY}/ledger?kind={kind}"))
+    return shown
+
+
+def test_twelve_joins_give_each_order_twice(fresh_lab: Lab) -> None:
+    """Each block of six holds all six orders, and the joins follow the planned slots."""
+    planned = [slot["sequence"] for slot in ledger(fresh_lab)["slots"]]
+    views = [fresh_lab.join() for _ in range(12)]
+    assert [view["sequence"] for view in views] == planned
+    assert sorted(orders(views).values()) == [2] * 6
+    assert sorted(orders(views[:6]).values()) == [1] * 6
+    assert [view["slot"]["index"] for view in views] == list(range(12))
+
+
+def test_a_full_ledger_grows_by_a_whole_block(fresh_lab: Lab) -> None:
+    """The thirteenth join opens six new slots, every order once more."""
+    views = [fresh_lab.join() for _ in range(18)]
+    assert sorted(orders(views).values()) == [3] * 6
+    assert len(ledger(fresh_lab)["slots"]) == 18
+    assert views[12]["slot"] == {"index": 12, "block": 2, "replicate": 3}
+
+
+def test_a_closed_ledger_takes_nobody_more(fresh_lab: Lab) -> None:
+    """The thirteenth is refused with the way out, and gets in once a slot is free."""
+    change_study(fresh_lab, "when_full: grow", "when_full: closed")
+    views = [fresh_lab.join() for _ in range(12)]
+    refusal = error(fresh_lab.try_join(), 409, "conflict")
+    assert (refusal["value"], "Withdraw a session" in refusal["remedy"]) == (12, True)
+    fresh_lab.command(fresh_lab.command(views[4], "start"), "withdraw", reason="felt dizzy")
+    assert fresh_lab.join()["slot"]["index"] == 4
+
+
+@pytest.mark.parametrize(("end", "outcome"), [("withdraw", "withdrawn"), ("abort", "aborted")])
+def test_a_freed_slot_is_the_next_to_be_taken(fresh_lab: Lab, end: str, outcome: str) -> None:
+    """Balance counts completed sessions: the order is given out again, its first try is kept."""
+    views = [fresh_lab.join() for _ in range(3)]
+    fresh_lab.command(fresh_lab.command(views[1], "start"), end, reason="headset broke")
+    again = fresh_lab.join()
+    assert again["sequence"] == views[1]["sequence"]
+    slot = ledger(fresh_lab)["slots"][1]
+    outcomes = [attempt["outcome"] for attempt in slot["attempts"]]
+    assert (slot["state"], outcomes) == ("open", [outcome, "open"])
+    assert slot["attempts"][0]["reason"] == "headset broke"
+
+
+def test_people_simulated_and_test_sessions_have_ledgers_of_their_own(fresh_lab: Lab) -> None:
+    """Joins of one kind do not move the others."""
+    first = {kind: fresh_lab.join(kind=kind) for kind in ("people", "simulated", "test")}
+    assert {view["slot"]["index"] for view in first.values()} == {0}
+    assert [view["participant_code"] for view in first.values()] == [
+        "P-0001",
+        "SIM-0001",
+        "TEST-0001",
+    ]
+    assert len(ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/sessions?kind=people"))) == 1
+
+
+def test_versions_of_one_design_share_their_ledger(fresh_lab: Lab) -> None:
+    """New wording goes on where the old version stood; new orders begin anew."""
+    fresh_lab.join()
+    change_study(fresh_lab, "Acting through another body", "Acting through a second body")
+    second = fresh_lab.join()
+    assert (second["study_version"], second["slot"]["index"]) == (2, 1)
+    change_study(fresh_lab, "seed: 20200415", "seed: 7")
+    assert fresh_lab.join()["slot"]["index"] == 0
+
+
+def test_generated_codes_pass_over_those_in_use(fresh_lab: Lab) -> None:
+    """A code that somebody typed is not given out again."""
+    fresh_lab.join(participant_code="P-0002")
+    codes = [fresh_lab.join()["participant_code"] for _ in range(3)]
+    assert len({*codes, "P-0002"}) == 4
+
+
+@pytest.mark.parametrize("code", ["Anna Müller", "-x", "a/b", "x" * 41, "=1+1", "a\x00b"])
+def test_an_unusable_code_is_refused(lab: Lab, code: str) -> None:
+    """The refusal says what a code is made of, and takes no slot."""
+    before = len([slot for slot in ledger(lab)["slots"] if slot["state"] != "free"])
+    refusal = error(lab.try_join(participant_code=code), 422, "invalid_input")
+    assert refusal["valid"] == "1 to 40 letters, digits, - and _"
+    after = [slot for slot in ledger(lab)["slots"] if slot["state"] != "free"]
+    assert len(after) == before
+
+
+def test_a_busy_participant_is_refused(lab: Lab) -> None:
+    """Whoever has a session is led to it; after a withdrawal they may come again."""
+    view = lab.join(participant_code="busy-1")
+    refusal = error(lab.try_join(participant_code="busy-1"), 409, "conflict")
+    assert refusal["details"] == [{"session_id": view["id"], "status": "planned"}]
+    lab.command(lab.command(view, "start"), "withdraw", reason="came back later")
+    assert lab.join(participant_code="busy-1")["id"] != view["id"]
+
+
+@pytest.mark.parametrize(
+    ("fields", "status"),
+    [
+        ({"kind": "martians"}, 422),
+        ({"language": "fr"}, 422),
+        ({"time_scale": 10.0}, 422),
+        ({"kind": "test", "time_scale": 10.0}, 422),
+        ({"kind": "simulated", "time_scale": 0.0}, 422),
+        ({"kind": "simulated", "time_scale": 101.0}, 422),
+        ({"surprise": True}, 422),
+        ({"kind": "simulated", "time_scale": 20.0, "language": "de"}, 201),
+    ],
+)
+def test_only_simulated_sessions_run_faster_than_life(lab: Lab, fields: Json, status: int) -> None:
+    """Kind, language and time scale are checked before a slot is taken."""
+    assert lab.try_join(**fields).status_code == status
+
+
+def test_a_hundred_simultaneous_joins_stay_balanced(database_url: str, tmp_path: Path) -> None:
+    """Over real HTTP no slot is held twice and no order is more than one ahead."""
+    environment = {"REEMBODY_DATABASE_URL": database_url}
+    with LiveServer(tmp_path, environment=environment) as server, server.client() as client:
+        ok(client.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+
+        def join(_: int) -> Json:
+            view: Json = ok(client.post(f"/api/studies/{STUDY}/sessions", json={}))
+            return view
+
+        with ThreadPoolExecutor(20) as pool:
+            views = list(pool.map(join, range(JOINS)))
+    counts = orders(views)
+    assert len({view["slot"]["index"] for view in views}) == JOINS
+    assert len({view["participant_code"] for view in views}) == JOINS
+    assert len(counts) == 6
+    assert max(counts.values()) - min(counts.values()) <= 1

@@ -1,0 +1,148 @@
+"""Study files over HTTP: problems with their place, versions by content."""
+
+from typing import Any
+
+import pytest
+
+from app.models import Study, StudyVersion
+from tests.features.lab import STUDY, Json, Lab, error, ok
+
+BOMB = "a0: &a0 [x, x]\n" + "\n".join(
+    f"a{n}: &a{n} [*a{n - 1}, *a{n - 1}, *a{n - 1}]" for n in range(1, 30)
+)
+
+
+@pytest.fixture(scope="module")
+def yaml(lab: Lab) -> str:
+    """The shipped study's file as the interface gives it."""
+    return str(ok(lab.operator.get(f"/api/studies/{STUDY}"))["yaml"])
+
+
+def edit(yaml: str, *changes: tuple[str, str]) -> str:
+    """The file with words replaced."""
+    for old, new in changes:
+        assert old in yaml
+        yaml = yaml.replace(old, new, 1)
+    return yaml
+
+
+def rows(lab: Lab) -> tuple[int, int]:
+    """How many studies and versions are stored."""
+    with lab.database.reading() as db:
+        return db.query(Study).count(), db.query(StudyVersion).count()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path"),
+    [
+        ("languages: [en, de]", "languages: [en, de]\nfavourite_colour: red", "favourite_colour"),
+        ("latency_ms: 125", "latency_ms: -125", "conditions[1].latency_ms"),
+        ("replicates: 2", "replicates: two", "orders.replicates"),
+    ],
+)
+def test_a_problem_is_told_with_its_place(
+    lab: Lab, yaml: str, old: str, new: str, path: str
+) -> None:
+    """Path, line and column of an unknown key, a negative latency and a wrong type."""
+    file = edit(yaml, (old, new))
+    answer = lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": file})
+    refusal = error(answer, 422, "invalid_config")
+    (problem,) = refusal["details"]
+    assert problem["path"].replace(".1.", "[1].") == path
+    line = file.splitlines()[problem["line"] - 1]
+    assert new.splitlines()[-1].split(":")[0] in line
+    assert problem["column"] >= 1
+    assert problem["message"]
+    assert problem["remedy"]
+
+
+def test_all_problems_are_told_at_once(lab: Lab, yaml: str) -> None:
+    """Nobody has to mend a file line by line."""
+    file = edit(yaml, ("latency_ms: 125", "latency_ms: -1"), ("seed: 20200415", "seed: -1"))
+    refusal = error(lab.operator.post("/api/studies", json={"yaml": file}), 422, "invalid_config")
+    assert len(refusal["details"]) == 2
+
+
+@pytest.mark.parametrize("file", [BOMB, "[" * 1000, "a: !!python/object:os.system x", "", "\x00"])
+def test_a_hostile_file_is_refused_before_it_grows(lab: Lab, file: str) -> None:
+    """Aliases, depth and tags are limited while reading."""
+    before = rows(lab)
+    answer = lab.operator.post("/api/studies", json={"yaml": file})
+    assert error(answer, 422, "invalid_config")["details"][0]["line"] >= 1
+    assert rows(lab) == before
+
+
+def test_checking_stores_nothing(lab: Lab, yaml: str) -> None:
+    """A good file gets its hash, a bad one its problems, and nothing is kept of either."""
+    before = rows(lab)
+    check = "/api/studies/check"
+    fine = ok(lab.operator.post(check, json={"yaml": edit(yaml, ("seed: 20200415", "seed: 3"))}))
+    assert (fine["ok"], fine["key"], len(fine["content_hash"])) == (True, STUDY, 64)
+    bad = ok(lab.operator.post(check, json={"yaml": "key: x"}))
+    assert (bad["ok"], bool(bad["problems"])) == (False, True)
+    assert rows(lab) == before
+
+
+def test_the_same_content_is_the_same_version(fresh_lab: Lab) -> None:
+    """Comments and layout make no new version; a changed word does."""
+    study = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))
+    again = _version(fresh_lab, "# a comment\n" + study["yaml"])
+    assert again["versions"] == study["versions"]
+    changed = _version(fresh_lab, edit(study["yaml"], ("Acting", "Playing")))
+    assert [version["number"] for version in changed["versions"]] == [1, 2]
+    assert changed["content_hash"] != study["content_hash"]
+
+
+def test_a_version_is_frozen_from_its_first_start(fresh_lab: Lab) -> None:
+    """Joining does not freeze it; starting does, and it stays as it is."""
+    path = f"/api/studies/{STUDY}"
+    view = fresh_lab.join()
+    before = ok(fresh_lab.operator.get(path))
+    assert not before["frozen"]
+    fresh_lab.command(view, "start")
+    frozen = ok(fresh_lab.operator.get(path))
+    assert frozen["frozen"]
+    _version(fresh_lab, edit(frozen["yaml"], ("Acting", "Playing")))
+    versions = ok(fresh_lab.operator.get(path))["versions"]
+    assert versions[0] == frozen["versions"][0]
+    assert versions[1]["frozen_at"] is None
+
+
+def test_a_session_keeps_the_version_it_joined(fresh_lab: Lab) -> None:
+    """A new version does not change a session that is under way."""
+    view = fresh_lab.join()
+    yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    _version(fresh_lab, edit(yaml, ("duration_s: 120", "duration_s: 30")))
+    roam = [step for step in fresh_lab.view(view["id"])["steps"] if step["kind"] == "free_roam"]
+    assert roam[0]["duration_s"] == 120
+    assert fresh_lab.join()["study_version"] == 2
+
+
+def test_a_study_is_created_once(fresh_lab: Lab) -> None:
+    """A second study of that key is a clash; under another key it is a new study."""
+    yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    error(fresh_lab.operator.post("/api/studies", json={"yaml": yaml}), 409, "conflict")
+    other = edit(yaml, (f"key: {STUDY}", "key: another"))
+    assert ok(fresh_lab.operator.post("/api/studies", json={"yaml": other}))["key"] == "another"
+    keys = [study["key"] for study in ok(fresh_lab.operator.get("/api/studies"))]
+    assert keys == ["another", STUDY]
+
+
+def test_a_version_belongs_to_its_study(lab: Lab, yaml: str) -> None:
+    """A file of another study is refused with both keys."""
+    file = edit(yaml, (f"key: {STUDY}", "key: stray"))
+    answer = lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": file})
+    refusal = error(answer, 409, "conflict")
+    assert (refusal["value"], refusal["valid"]) == ("stray", STUDY)
+
+
+def test_an_unknown_study_is_not_found_and_the_known_are_named(lab: Lab) -> None:
+    """The refusal lists the keys there are."""
+    refusal = error(lab.operator.get("/api/studies/nothing"), 404, "not_found")
+    assert STUDY in refusal["valid"]
+
+
+def _version(lab: Lab, yaml: str) -> Json:
+    body: dict[str, Any] = {"yaml": yaml}
+    study: Json = ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json=body))
+    return study
