@@ -76,7 +76,10 @@ def get_caller(request: Request, context: Context) -> Caller:
 
 def get_tablet(request: Request, context: Context) -> Device:
     """The paired tablet; raises NotSignedIn when it is unknown or was replaced."""
-    return _device(request.cookies.get(TABLET_COOKIE) or bearer_token(request), "tablet", context)
+    token = request.cookies.get(TABLET_COOKIE) or bearer_token(request)
+    tablet = _device(token, "tablet", context)
+    context.hub.note_seen(tablet.id, context.clock.utc_now())
+    return tablet
 
 
 def get_headset(request: Request, context: Context) -> Device:

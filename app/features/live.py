@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import datetime
 from typing import Any
 
 from sqlalchemy import event
@@ -54,7 +55,18 @@ class Hub:
 
     _subscribers: dict[str, set[Subscription]] = field(default_factory=dict)
     _headsets: dict[str, int] = field(default_factory=dict)
+    _seen: dict[str, datetime] = field(default_factory=dict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def note_seen(self, device_id: str, now: datetime) -> None:
+        """A device has just asked for something."""
+        with self._lock:
+            self._seen[device_id] = now
+
+    def last_seen(self, device_id: str) -> datetime | None:
+        """When a device last asked for something, since the server started."""
+        with self._lock:
+            return self._seen.get(device_id)
 
     @contextmanager
     def subscribe(self, session_id: str) -> Iterator[Subscription]:

@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, FiniteFloat
 
 AnswerValue = bool | int | float | str | None
 
@@ -29,10 +29,10 @@ class SubmissionRequest(BaseModel):
     administration: str = Field(max_length=120)
     answers: dict[str, AnswerValue] = Field(max_length=200)
     shown_order: list[str] = Field(max_length=200)
-    seed: int
+    seed: int = Field(ge=0, lt=2**63)
     language: str = Field(max_length=8)
-    started_at_utc: datetime | None = None
-    timings: dict[str, float] = Field(default_factory=dict, max_length=200)
+    started_at_utc: AwareDatetime | None = None
+    timings: dict[str, FiniteFloat] = Field(default_factory=dict, max_length=200)
 
 
 class Receipt(BaseModel):

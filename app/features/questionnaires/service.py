@@ -225,6 +225,12 @@ def _check_answers(
             value=request.shown_order,
             valid=sorted(instrument.by_key),
         )
+    if request.language not in instrument.languages:
+        raise InvalidInput(
+            f"the form is not written in {request.language!r}",
+            value=request.language,
+            valid=list(instrument.languages),
+        )
 
 
 def _answer_rows(

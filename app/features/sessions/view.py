@@ -172,7 +172,7 @@ def _devices(db: Session, context: AppContext, session: StudySession) -> list[De
         if device.kind == "headset":
             connected = context.hub.headset_connected(session.id)
         else:
-            seen = device.last_seen_at
+            seen = context.hub.last_seen(device.id) or device.last_seen_at
             connected = seen is not None and (now - seen).total_seconds() < TABLET_SILENT_AFTER_S
         views.append(
             DeviceView(
@@ -181,7 +181,7 @@ def _devices(db: Session, context: AppContext, session: StudySession) -> list[De
                 name=device.name,
                 paired_at=device.paired_at,
                 connected=connected,
-                last_seen_at=device.last_seen_at,
+                last_seen_at=context.hub.last_seen(device.id) or device.last_seen_at,
             )
         )
     return views

@@ -102,5 +102,6 @@ def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
         if device is None or device.revoked_at is not None:
             return None
         device.last_seen_at = now
+        context.hub.note_seen(device.id, now)
         state = tablet_state(db, session_by_id(db, device.session_id))
     return ServerSentEvent(data=state, event="state", id=str(state.version))

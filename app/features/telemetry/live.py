@@ -22,7 +22,7 @@ class LiveTelemetry:
     _told_at_s: float = 0.0
     _frames: int = 0
     _flagged: int = 0
-    _first_t_s: float = float("nan")
+    _counted_until_s: float = float("nan")
     _phase_id: int = 0
     _completions: int = 0
     _side_contacts: int = 0
@@ -52,20 +52,23 @@ class LiveTelemetry:
         self._flagged += int(flags.bad.sum())
         if header.stream is StreamName.TARGET:
             self._frames += header.frame_count
-            if np.isnan(self._first_t_s):
-                self._first_t_s = float(batch.times_s[0])
         now_s = time.monotonic()
         if now_s - self._told_at_s < PERIOD_S or StreamName.ACTUAL not in self._newest:
             return None
         self._told_at_s = now_s
         return self._figures()
 
+    def _frame_rate(self, target: Batch | None) -> float | None:
+        """Target frames per second of the client's clock since the last figures."""
+        until_s = float("nan") if target is None else float(target.times_s[-1])
+        spanned_s = until_s - self._counted_until_s
+        frames, self._frames, self._counted_until_s = self._frames, 0, until_s
+        return frames / spanned_s if spanned_s > 0 else None
+
     def _figures(self) -> dict[str, Any]:
         actual = self._newest[StreamName.ACTUAL]
         target = self._newest.get(StreamName.TARGET)
-        spanned_s = float(actual.times_s[-1]) - self._first_t_s
-        fps = self._frames / spanned_s if spanned_s > 0 else None
-        self._frames, self._first_t_s = 0, float(actual.times_s[-1])
+        fps = self._frame_rate(target)
         return {
             "phase_id": self._phase_id,
             "active_s": actual.header.active_s,
