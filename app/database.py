@@ -7,7 +7,8 @@ keeps their waiting fair and short. PostgreSQL needs neither and gets neither.
 
 A request's transaction may begin and end on different threads. So the lock belongs to nobody in
 particular, and requests wait for it on threads of their own: if they waited on the threads that run
-endpoints, the one that holds the lock could find no thread to finish on.
+endpoints, the one that holds the lock could find no thread to finish on. PostgreSQL's row locks are
+waited for where endpoints run, so fewer requests may write at once than there are such threads.
 """
 
 import sqlite3
@@ -36,6 +37,8 @@ NAMING_CONVENTION = {
     "pk": "pk_%(table_name)s",
 }
 BUSY_TIMEOUT_S = 30.0
+WRITERS = 20
+"""Half of the threads that endpoints run on."""
 
 
 class Base(DeclarativeBase):
@@ -51,6 +54,7 @@ class Database:
     engine: Engine
     _write_lock: threading.Lock = field(default_factory=threading.Lock)
     _waiting_room: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(1000))
+    _writers: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(WRITERS))
 
     @property
     def is_sqlite(self) -> bool:
@@ -73,15 +77,26 @@ class Database:
     @asynccontextmanager
     async def writing_async(self) -> AsyncIterator[Session]:
         """The same for a request: waits and commits without holding up the event loop."""
-        if self.is_sqlite:
-            await run_sync(self._write_lock.acquire, limiter=self._waiting_room)
-        try:
+        async with self._turn():
             with self._writer() as session:
                 yield session
                 await run_sync(session.commit)
-        finally:
-            if self.is_sqlite:
+
+    @asynccontextmanager
+    async def _turn(self) -> AsyncIterator[None]:
+        if self.is_sqlite:
+            await run_sync(self._write_lock.acquire, limiter=self._waiting_room)
+            try:
+                yield
+            finally:
                 self._write_lock.release()
+        else:
+            request = object()
+            await self._writers.acquire_on_behalf_of(request)
+            try:
+                yield
+            finally:
+                self._writers.release_on_behalf_of(request)
 
     def _writer(self) -> Session:
         engine = self.engine.execution_options(reembody_writes=True)
