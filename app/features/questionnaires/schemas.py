@@ -1,11 +1,12 @@
 """Forms as they travel to a tablet and back."""
 
 from datetime import datetime
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, FiniteFloat
 
-AnswerValue = bool | int | float | str | None
+Whole = Annotated[int, Field(ge=-(2**53), le=2**53)]
+AnswerValue = bool | Whole | FiniteFloat | str | None
 
 
 class Administration(BaseModel):
