@@ -1,0 +1,57 @@
+"""Features know little of each other: what one may import of another is listed here."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+FEATURES = Path(__file__).resolve().parents[2] / "app" / "features"
+ALWAYS = {"service", "schemas"}
+"""What a feature does, and what travels in its name."""
+ALSO = {
+    "sessions": {
+        "engine",  # commands and state are the words in which features speak of a session
+        "contents",  # words beside the event log
+        "journal",  # the log's canonical JSON and its hash chain
+    },
+    "telemetry": {
+        "frames",  # reading movement back
+        "encoding",  # what a frame is
+        "positions",  # how far streams are stored
+        "writer",  # the headset's socket hands its messages over here
+        "ingest",  # and hears of their outcome
+        "live",  # the figures that do not wait for the commit
+    },
+    "analysis": {
+        "tables",  # an export is the tables
+        "codebook",  # and their columns
+    },
+}
+
+
+def imports() -> Iterator[tuple[str, str, str]]:
+    """(importing file, other feature, its module) for every import across features."""
+    for file in sorted(FEATURES.glob("*/**/*.py")):
+        own = file.relative_to(FEATURES).parts[0]
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if not isinstance(node, ast.ImportFrom) or node.module is None:
+                continue
+            parts = node.module.split(".")
+            if parts[:2] == ["app", "features"] and len(parts) > 3 and parts[2] != own:
+                yield str(file.relative_to(FEATURES)), parts[2], parts[3]
+
+
+def test_a_feature_uses_only_what_another_offers() -> None:
+    """Services and schemas are for everybody, other modules only where they are listed."""
+    strangers = [
+        f"{file} imports {feature}.{module}"
+        for file, feature, module in imports()
+        if module not in ALWAYS | ALSO.get(feature, set())
+    ]
+    assert strangers == []
+
+
+def test_nothing_is_listed_that_nobody_uses() -> None:
+    """The list shrinks when an import goes away."""
+    used = {(feature, module) for _, feature, module in imports()}
+    listed = {(feature, module) for feature, modules in ALSO.items() for module in modules}
+    assert listed - used == set()
