@@ -9,7 +9,7 @@ from app.features.sessions.contents import content_body, contents_of
 from app.features.sessions.engine import SessionState
 from app.features.sessions.service import plan_of, session_by_id, state_of
 from app.features.studies.service import protocol_of
-from app.features.telemetry.positions import positions_of, take_epoch
+from app.features.telemetry.positions import certain_active_s, positions_of, take_epoch
 from app.models import Answer, Completion, StudySession, StudyVersion, Submission
 from app.protocol.plan import Step
 from app.wire.messages import (
@@ -120,7 +120,8 @@ def _phase_order(
         preparation_s=step.preparation_s or 0.0,
         duration_s=step.duration_s or 0.0,
         freeze_s=step.freeze_s or 0.0,
-        active_s=phase.active_s,
+        # A headset that takes over in mid-phase goes on from here, before the loss is noticed too.
+        active_s=max(phase.active_s, certain_active_s(db, session.id, phase.phase_id)),
         completions=completions or 0,
         pausing=phase.pausing,
         resuming=phase.resuming,

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Mapping, Sequence
 
-from sqlalchemy import func, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.context import AppContext
@@ -13,12 +13,12 @@ from app.features.questionnaires.service import stored_scores
 from app.features.sessions.contents import content_body, contents_of
 from app.features.sessions.engine import SessionState, allowed_commands
 from app.features.sessions.journal import events_of
+from app.features.sessions.phase_views import phase_views
 from app.features.sessions.schemas import (
     CurrentView,
     DeviceView,
     EventView,
     NoteView,
-    PhaseView,
     SessionSummary,
     SessionView,
     SlotInfo,
@@ -26,10 +26,9 @@ from app.features.sessions.schemas import (
 )
 from app.features.sessions.service import plan_of, state_of
 from app.features.studies.service import protocol_of
-from app.models import Completion, Contact, Participant, Phase, Study, StudySession, StudyVersion
+from app.models import Participant, Study, StudySession, StudyVersion
 from app.protocol import StudyProtocol
 from app.protocol.plan import Step
-from app.science.tasks import side_unit, union
 
 
 def session_view(db: Session, context: AppContext, session: StudySession) -> SessionView:
@@ -53,7 +52,7 @@ def session_view(db: Session, context: AppContext, session: StudySession) -> Ses
         current=_current(plan, state),
         allowed=allowed_commands(plan, state),
         devices=_devices(db, context, session),
-        phases=_phases(db, session, blinded=blinded),
+        phases=phase_views(db, session, blinded=blinded),
         notes=_notes(db, session),
         scores=stored_scores(db, session),
     )
@@ -189,61 +188,6 @@ def _devices(db: Session, context: AppContext, session: StudySession) -> list[De
 
 TABLET_SILENT_AFTER_S = 30.0
 """A tablet is told every 10 s that the server is there; after three misses it counts as away."""
-
-
-def _phases(db: Session, session: StudySession, *, blinded: bool) -> list[PhaseView]:
-    completions = dict(
-        db.execute(
-            select(Completion.phase_id, func.count())
-            .where(Completion.session_id == session.id)
-            .group_by(Completion.phase_id)
-        ).all()
-    )
-    sides = _side_contacts(db, session)
-    phases = db.scalars(
-        select(Phase).where(Phase.session_id == session.id).order_by(Phase.phase_id)
-    )
-    return [
-        PhaseView(
-            phase_id=phase.phase_id,
-            step_index=phase.step_index,
-            attempt=phase.attempt,
-            kind=phase.kind,
-            limb=phase.limb,
-            latency_ms=None if blinded else phase.latency_ms,
-            status=phase.status,
-            active_s=phase.active_s,
-            completions=completions.get(phase.phase_id, 0),
-            side_contacts=sides.get(phase.phase_id, (0, 0.0))[0],
-            side_contact_s=sides.get(phase.phase_id, (0, 0.0))[1],
-            started_at=phase.started_at,
-            ended_at=phase.ended_at,
-        )
-        for phase in phases
-    ]
-
-
-def _side_contacts(db: Session, session: StudySession) -> dict[int, tuple[int, float]]:
-    """By phase: how often a side turned red, and for how long in all.
-
-    A side is red while at least one body part touches it, so parts' intervals are united first.
-    """
-    spans: dict[int, dict[str, list[tuple[float, float]]]] = {}
-    for phase_id, surface, begin_s, end_s in db.execute(
-        select(
-            Contact.phase_id, Contact.surface, Contact.begin_active_s, Contact.end_active_s
-        ).where(Contact.session_id == session.id, Contact.surface_kind == "side")
-    ):
-        unit = side_unit(surface) or surface
-        spans.setdefault(phase_id, {}).setdefault(unit, []).append((begin_s, end_s))
-    return {
-        phase_id: _count_and_length([red for own in by_side.values() for red in union(own)])
-        for phase_id, by_side in spans.items()
-    }
-
-
-def _count_and_length(spans: Sequence[tuple[float, float]]) -> tuple[int, float]:
-    return len(spans), sum(end_s - begin_s for begin_s, end_s in spans)
 
 
 def _notes(db: Session, session: StudySession) -> list[NoteView]:

@@ -5,55 +5,27 @@ cut to its new part, what skips ahead is asked for again: so resending is always
 never come about in silence.
 """
 
-from dataclasses import dataclass, field
 from datetime import datetime
 
-from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.errors import ReembodyError
 from app.features.context import AppContext
-from app.features.sessions.engine.commands import HeadsetLost, Materialise, Report
+from app.features.sessions.engine.commands import HeadsetLost
 from app.features.sessions.service import (
     apply_command,
     protocol_of_session,
     session_by_id,
     state_of,
 )
+from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.positions import certain_active_s, position
-from app.models import ClientReport, ClockProbe, Completion, Contact, Phase, TelemetryBatch
-from app.models.telemetry import TelemetryStream
+from app.models import ClockProbe, TelemetryBatch
 from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
 from app.wire.messages import (
-    REPORT_STREAM,
-    CompletionReport,
-    ContactReport,
     Flag,
-    MaterialisedReport,
-    Message,
-    PhaseReport,
     Probed,
-    RefusedReport,
     Resend,
-    StreamPosition,
 )
-from app.wire.messages import Report as ReportMessage
-
-
-@dataclass
-class Outcome:
-    """What to tell the sender once the transaction is on disk; `messages` were stored for it."""
-
-    positions: dict[tuple[str, int], StreamPosition] = field(default_factory=dict)
-    notices: list[Message] = field(default_factory=list)
-    phases_ended: list[int] = field(default_factory=list)
-    messages: int = 0
-
-    def stored_up_to(self, row: TelemetryStream) -> None:
-        """Acknowledge a stream as far as its row says."""
-        self.positions[(row.stream, row.epoch)] = StreamPosition(
-            stream=row.stream, epoch=row.epoch, next_seq=row.next_seq
-        )
 
 
 def store_batch(
@@ -96,49 +68,6 @@ def store_batch(
         outcome.notices.append(_flag(header, flags, skip))
 
 
-def store_report(
-    db: Session,
-    context: AppContext,
-    session_id: str,
-    message: ReportMessage,
-    now: datetime,
-    outcome: Outcome,
-) -> None:
-    """Store a report and act on it; one that does not fit is kept with the reason."""
-    row = position(db, session_id, REPORT_STREAM, message.epoch, now)
-    if message.seq > row.next_seq:
-        outcome.notices.append(Resend(stream=row.stream, epoch=row.epoch, next_seq=row.next_seq))
-        return
-    if message.seq < row.next_seq:
-        outcome.stored_up_to(row)
-        return
-    refusal = _act(db, context, session_id, message, outcome)
-    db.add(
-        ClientReport(
-            session_id=session_id,
-            epoch=message.epoch,
-            seq=message.seq,
-            type=message.body.kind,
-            payload=message.body.model_dump(),
-            accepted=refusal is None,
-            refusal=None if refusal is None else refusal.message[:400],
-            received_at=now,
-        )
-    )
-    row.next_seq, row.last_at = message.seq + 1, now
-    row.frames_stored += 1
-    outcome.stored_up_to(row)
-    if refusal is not None:
-        outcome.notices.append(
-            RefusedReport(
-                epoch=message.epoch,
-                seq=message.seq,
-                message=refusal.message,
-                remedy=refusal.remedy,
-            )
-        )
-
-
 def store_probe(db: Session, session_id: str, epoch: int, probe: Probed, now: datetime) -> None:
     """Keep one raw reading of the clocks."""
     db.add(
@@ -167,87 +96,6 @@ def store_loss(db: Session, context: AppContext, session_id: str, cause: str) ->
         return
     active_s = certain_active_s(db, session_id, state.phase.phase_id)
     apply_command(db, context, session, HeadsetLost(active_s=active_s, cause=cause), actor="system")
-
-
-def _act(
-    db: Session,
-    context: AppContext,
-    session_id: str,
-    message: ReportMessage,
-    outcome: Outcome,
-) -> ReembodyError | None:
-    """Do what a report says; the refusal if it does not fit."""
-    body = message.body
-    try:
-        with db.begin_nested():
-            match body:
-                case PhaseReport():
-                    _act_on_phase(db, context, session_id, body, outcome)
-                case MaterialisedReport():
-                    session = session_by_id(db, session_id, lock=True)
-                    command = Materialise(by="headset", client_t_s=body.t_s)
-                    apply_command(db, context, session, command, actor="headset")
-                case ContactReport():
-                    _require_phase(db, session_id, body.phase_id)
-                    values = body.model_dump(exclude={"kind"})
-                    db.add(Contact(session_id=session_id, **values))
-                case CompletionReport():
-                    _require_phase(db, session_id, body.phase_id)
-                    _require_new(db, session_id, body)
-                    db.add(_completion(session_id, body))
-    except ReembodyError as refusal:
-        return refusal
-    return None
-
-
-def _act_on_phase(
-    db: Session, context: AppContext, session_id: str, body: PhaseReport, outcome: Outcome
-) -> None:
-    session = session_by_id(db, session_id, lock=True)
-    command = Report(
-        what=body.what,
-        phase_id=body.phase_id,
-        client_t_s=body.t_s,
-        active_s=body.active_s,
-        cause=body.cause,
-    )
-    apply_command(db, context, session, command, actor="headset")
-    if body.what == "ended":
-        outcome.phases_ended.append(body.phase_id)
-
-
-def _completion(session_id: str, body: CompletionReport) -> Completion:
-    return Completion(
-        session_id=session_id,
-        phase_id=body.phase_id,
-        number=body.number,
-        at_s=body.t_s,
-        active_s=body.active_s,
-        duration_s=body.duration_s,
-        order=list(body.order),
-        out_of_order_touches=body.out_of_order_touches,
-    )
-
-
-def _require_phase(db: Session, session_id: str, phase_id: int) -> None:
-    known = db.scalar(
-        select(Phase.phase_id).where(Phase.session_id == session_id, Phase.phase_id == phase_id)
-    )
-    if known is None:
-        raise ReembodyError(
-            f"there is no phase {phase_id}",
-            value=phase_id,
-            remedy="Use the phase_id of the newest state message.",
-        )
-
-
-def _require_new(db: Session, session_id: str, body: CompletionReport) -> None:
-    if db.get(Completion, (session_id, body.phase_id, body.number)) is not None:
-        raise ReembodyError(
-            f"completion {body.number} of phase {body.phase_id} was reported before",
-            value=body.number,
-            remedy="Count on from the completions in the newest state message.",
-        )
 
 
 def _without_first(message: bytes, count: int) -> bytes:

@@ -16,13 +16,9 @@ from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
 from app.features.context import AppContext
-from app.features.telemetry.ingest import (
-    Outcome,
-    store_batch,
-    store_loss,
-    store_probe,
-    store_report,
-)
+from app.features.telemetry.ingest import store_batch, store_loss, store_probe
+from app.features.telemetry.outcome import Outcome
+from app.features.telemetry.reports import store_report
 from app.wire import BatchHeader, FrameFlags
 from app.wire.messages import Probed, Report
 

@@ -17,7 +17,8 @@ from app.database import Database
 from app.features.telemetry.encoding import ENCODING, Frames, decode_frames, encode_frames
 from app.features.telemetry.fold import Folder
 from app.features.telemetry.frames import concatenate, iter_frames, phase_frames
-from app.features.telemetry.ingest import Outcome, store_batch
+from app.features.telemetry.ingest import store_batch
+from app.features.telemetry.outcome import Outcome
 from app.models import TelemetryBatch, TelemetryChunk
 from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, flag_frames
 from tests.features.lab import Lab

@@ -1,0 +1,245 @@
+"""One headset's open socket: a reader, a talker, a follower; everything is stored by the writer.
+
+Reading stops while too many messages wait for the disk: the client then feels TCP's backpressure
+and its journal grows visibly instead of anything being dropped.
+"""
+
+import asyncio
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from pydantic import ValidationError
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
+
+from app.errors import InvalidInput
+from app.features.context import AppContext
+from app.features.devices.service import device_of_token
+from app.features.headset.service import headset_state, welcome
+from app.features.live import Subscription
+from app.features.sessions.service import session_by_id
+from app.features.telemetry.live import LiveTelemetry
+from app.features.telemetry.outcome import Outcome
+from app.features.telemetry.writer import (
+    Arrival,
+    BatchContent,
+    LossContent,
+    ProbeContent,
+    TelemetryWriter,
+)
+from app.wire import decode_batch, flag_frames
+from app.wire.messages import (
+    CLIENT_MESSAGE,
+    PROTOCOL_VERSION,
+    Ack,
+    Failure,
+    HeadsetState,
+    Hello,
+    Message,
+    Probe,
+    ProbeAnswer,
+    Probed,
+    Report,
+    Welcome,
+)
+
+log = logging.getLogger(__name__)
+MAX_IN_FLIGHT = 256
+HELLO_DEADLINE_S = 10.0
+Content = TypeVar("Content")
+CLOSE_REFUSED = 4400
+
+
+@dataclass(eq=False)
+class HeadsetConnection:
+    """One open socket. Methods called by the writer are safe from its thread."""
+
+    socket: WebSocket
+    context: AppContext
+    writer: TelemetryWriter
+    session_id: str
+    token: str
+    epoch: int = 0
+    live: LiveTelemetry = field(default_factory=LiveTelemetry)
+    _loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
+    _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
+    _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
+    _unanswered: int = 0
+
+    def deliver(self, outcome: Outcome) -> None:
+        """Called by the writer: these are on disk."""
+        self._call(self._delivered, outcome)
+
+    def fail(self, error: Exception) -> None:
+        """Called by the writer: the session's messages cannot be stored."""
+        message = Failure(code="not_stored", message=str(error)[:300], remedy="Reconnect.")
+        self._call(self._outbox.put_nowait, message)
+
+    async def run(self) -> None:
+        """Serve the socket until it closes."""
+        await self._greet()
+        with self.context.hub.subscribe(self.session_id) as subscription:
+            self.context.hub.headset_joined(self.session_id)
+            self.context.hub.publish(self.session_id, "session")
+            tasks = [
+                asyncio.create_task(self._read()),
+                asyncio.create_task(self._talk()),
+                asyncio.create_task(self._follow(subscription)),
+            ]
+            try:
+                done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+                for task in done:
+                    task.result()
+            finally:
+                for task in tasks:
+                    task.cancel()
+                await asyncio.gather(*tasks, return_exceptions=True)
+                self._leave()
+
+    def _leave(self) -> None:
+        self.context.hub.headset_left(self.session_id)
+        if not self.context.hub.headset_connected(self.session_id):
+            self._submit(LossContent("headset_lost"))
+        self.context.hub.publish(self.session_id, "session")
+
+    async def _greet(self) -> None:
+        """Take the hello and answer it."""
+        received = await asyncio.wait_for(self.socket.receive(), HELLO_DEADLINE_S)
+        if received["type"] == "websocket.disconnect":
+            raise WebSocketDisconnect(received.get("code", 1005))
+        text = received.get("text") or ""
+        hello = parse_message(text)
+        if not isinstance(hello, Hello) or hello.protocol != PROTOCOL_VERSION:
+            raise InvalidInput(
+                "the first message must be a hello of this protocol",
+                value=text[:200],
+                valid={"type": "hello", "protocol": PROTOCOL_VERSION},
+                remedy="Update the client.",
+            )
+        answer = await asyncio.to_thread(self._welcome, hello.epoch)
+        self.epoch = answer.epoch
+        await self._send(answer)
+
+    def _welcome(self, epoch: int | None) -> Welcome:
+        now = self.context.clock.utc_now()
+        with self.context.database.writing() as db:
+            return welcome(db, self.session_id, epoch, now)
+
+    async def _read(self) -> None:
+        while True:
+            received = await self.socket.receive()
+            if received["type"] == "websocket.disconnect":
+                raise WebSocketDisconnect(received.get("code", 1005))
+            message = received.get("bytes")
+            if message is not None:
+                await self._take_batch(message)
+            else:
+                await self._take_text(received.get("text") or "")
+
+    async def _take_batch(self, message: bytes) -> None:
+        batch = decode_batch(message)
+        self._require_epoch(batch.header.epoch)
+        flags = flag_frames(batch.times_s, batch.values)
+        await self._store(BatchContent(batch.header, message, flags))
+        # The live view does not wait for the commit.
+        news = self.live.update(batch, flags)
+        if news is not None:
+            self.context.hub.publish(self.session_id, "telemetry", news)
+
+    async def _take_text(self, text: str) -> None:
+        received_ns = self.context.clock.monotonic_ns()
+        message = parse_message(text)
+        match message:
+            case Report():
+                self._require_epoch(message.epoch)
+                self.live.count(message)
+                await self._store(message)
+            case Probe():
+                await self._send(
+                    ProbeAnswer(
+                        client_sent_s=message.client_sent_s,
+                        server_received_ns=received_ns,
+                        server_sent_ns=self.context.clock.monotonic_ns(),
+                    )
+                )
+            case Probed():
+                await self._store(ProbeContent(self.epoch, message))
+            case Hello():
+                raise InvalidInput("hello came twice", remedy="Open a new connection.")
+
+    async def _store(self, content: BatchContent | Report | ProbeContent) -> None:
+        await self._in_flight.acquire()
+        self._unanswered += 1
+        self._submit(content)
+
+    def _submit(self, content: BatchContent | Report | ProbeContent | LossContent) -> None:
+        self.writer.submit(Arrival(self.session_id, self, content))
+
+    def _delivered(self, outcome: Outcome) -> None:
+        # One delivery answers everything that was in the same commit.
+        for _ in range(min(outcome.messages, self._unanswered)):
+            self._in_flight.release()
+        self._unanswered = max(0, self._unanswered - outcome.messages)
+        if outcome.positions:
+            self._outbox.put_nowait(Ack(positions=tuple(outcome.positions.values())))
+        for notice in outcome.notices:
+            self._outbox.put_nowait(notice)
+
+    async def _talk(self) -> None:
+        while True:
+            message = await self._outbox.get()
+            await self._send(message)
+            if isinstance(message, Failure):
+                await self.socket.close(CLOSE_REFUSED)
+                return
+
+    async def _follow(self, subscription: Subscription) -> None:
+        """Send the session's state on every change; close when the pairing was revoked."""
+        while True:
+            news = await subscription.next(timeout_s=10.0)
+            if not news:
+                await asyncio.to_thread(self._require_pairing)
+            if "session" in news:
+                await self._send(await asyncio.to_thread(self._state))
+
+    def _state(self) -> HeadsetState:
+        with self.context.database.reading() as db:
+            device_of_token(db, self.token, "headset")
+            return headset_state(db, session_by_id(db, self.session_id))
+
+    def _require_pairing(self) -> None:
+        with self.context.database.reading() as db:
+            device_of_token(db, self.token, "headset")
+
+    def _require_epoch(self, epoch: int) -> None:
+        if epoch != self.epoch and epoch > self.epoch:
+            raise InvalidInput(
+                f"epoch {epoch} was not given out",
+                value=epoch,
+                valid=self.epoch,
+                remedy="Use the epoch of the welcome message, or an earlier one of this session.",
+            )
+
+    async def _send(self, message: Message) -> None:
+        if self.socket.application_state is WebSocketState.CONNECTED:
+            await self.socket.send_text(message.model_dump_json())
+
+    def _call(self, function: Callable[[Content], object], content: Content) -> None:
+        try:
+            self._loop.call_soon_threadsafe(function, content)
+        except RuntimeError:  # the loop has closed: nobody is left to tell
+            return
+
+
+def parse_message(text: str) -> Hello | Report | Probe | Probed:
+    """The client's message; raises InvalidInput with the first thing that does not fit."""
+    try:
+        return CLIENT_MESSAGE.validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        raise InvalidInput(
+            f"message not understood: {first['msg']} at {'.'.join(map(str, first['loc']))}",
+            value=text[:200],
+            remedy="See docs/protocol.md for the messages.",
+        ) from error

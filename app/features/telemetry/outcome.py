@@ -1,0 +1,25 @@
+"""What the writer tells a sender about its messages."""
+
+from dataclasses import dataclass, field
+
+from app.models.telemetry import TelemetryStream
+from app.wire.messages import (
+    Message,
+    StreamPosition,
+)
+
+
+@dataclass
+class Outcome:
+    """What to tell the sender once the transaction is on disk; `messages` were stored for it."""
+
+    positions: dict[tuple[str, int], StreamPosition] = field(default_factory=dict)
+    notices: list[Message] = field(default_factory=list)
+    phases_ended: list[int] = field(default_factory=list)
+    messages: int = 0
+
+    def stored_up_to(self, row: TelemetryStream) -> None:
+        """Acknowledge a stream as far as its row says."""
+        self.positions[(row.stream, row.epoch)] = StreamPosition(
+            stream=row.stream, epoch=row.epoch, next_seq=row.next_seq
+        )
