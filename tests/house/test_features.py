@@ -18,7 +18,7 @@ ALSO = {
         "encoding",  # what a frame is
         "positions",  # how far streams are stored
         "writer",  # the headset's socket hands its messages over here
-        "ingest",  # and hears of their outcome
+        "outcome",  # and hears what became of them
         "live",  # the figures that do not wait for the commit
     },
     "analysis": {
