@@ -11,7 +11,8 @@ from sqlalchemy import func, select
 from app.features.telemetry.encoding import Frames
 from app.features.telemetry.frames import concatenate, iter_frames
 from app.models import ClockProbe, TelemetryBatch, TelemetryChunk
-from tests.features.headset.site import HELLO, Site
+from app.wire import StreamName
+from tests.features.headset.site import HELLO, Headset, Site
 from tests.wire.samples import bits, every_odd_float, message, standing
 
 
@@ -118,8 +119,6 @@ def test_a_rotation_of_another_length_is_flagged_at_its_seq(site: Site) -> None:
 
 def test_both_streams_have_positions_of_their_own(site: Site) -> None:
     """The target may be ahead of the actual stream."""
-    from app.wire import StreamName
-
     session_id = site.join()
     with site.headset(site.token(session_id)) as headset:
         headset.say(message(numbered(0, 20)))
@@ -219,27 +218,9 @@ def test_the_clocks_are_probed(site: Site) -> None:
     assert row.server_received_ns == answer["server_received_ns"]
 
 
-def test_two_sessions_commit_together(site: Site) -> None:
-    """Frames of several sessions sent at the same moment are all acknowledged."""
-    ids = [site.join() for _ in range(3)]
-    tokens = [site.token(one) for one in ids]
-    with (
-        site.headset(tokens[0]) as a,
-        site.headset(tokens[1]) as b,
-        site.headset(tokens[2]) as c,
-    ):
-        for headset in (a, b, c):
-            headset.say(message(numbered(0, 5)))
-        for headset in (a, b, c):
-            headset.acknowledged("target", 5)
-    assert [frames_on_disk(site, one) for one in ids] == [5, 5, 5]
-
-
 @pytest.mark.parametrize("epoch", [0, -1, 2**31, "one"])
 def test_a_hello_with_an_unusable_epoch_is_refused(site: Site, epoch: object) -> None:
     """The first message is checked like any other."""
-    from tests.features.headset.site import Headset
-
     with site.socket(site.token(site.join())) as socket:
         headset = Headset(socket)
         headset.say({**HELLO, "epoch": epoch})
