@@ -74,6 +74,11 @@ class TimedRun(ABC):
         if order.status == "paused" and self.clock_runs:
             # The server lost us for a moment that was too short to notice here.
             reports = self._pause(t_s, "disconnected")
+        if self._paused and self.clock.active_before_s == 0.0:
+            # Taken over, and the other run had used more than was known then.
+            self._spent_s = max(self._spent_s, order.active_s)
+        if self._paused and order.status == "running":
+            return [self.report("paused", t_s, "restarted")]
         if order.resuming and self._paused:
             self._paused = False
             self.command(CommandKind.RESUME, t_s)
@@ -117,7 +122,10 @@ class TimedRun(ABC):
         )
 
     def _take_over(self, t_s: float) -> list[ReportBody]:
-        """Begin where another run of the client was lost: frozen, or standing still."""
+        """Begin where another run of the client was lost: frozen, or standing still.
+
+        Where the server has not noticed the loss yet, `follow` tells it about the pause.
+        """
         if self.order.status == "freezing":
             self._frozen_until_s = t_s + self.order.freeze_s
             return []
@@ -127,8 +135,6 @@ class TimedRun(ABC):
         reports: list[ReportBody] = list(self.news(t_s))
         if self.order.status == "walk_back":
             reports.append(self.report("walk_back_ended", t_s))
-        if self.order.status != "paused":
-            reports.append(self.report("paused", t_s, "restarted"))
         return reports
 
     def _pause(self, t_s: float, cause: str) -> list[ReportBody]:

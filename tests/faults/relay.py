@@ -17,6 +17,7 @@ class Relay:
     port: int = field(default_factory=free_port)
     up: bool = True
     _writers: set[asyncio.StreamWriter] = field(default_factory=set)
+    _tasks: set["asyncio.Task[None]"] = field(default_factory=set)
 
     @property
     def url(self) -> str:
@@ -27,6 +28,10 @@ class Relay:
         """Reset every connection at both ends; new ones come through if the relay is up."""
         for writer in tuple(self._writers):
             writer.transport.abort()
+
+    async def idle(self) -> None:
+        """Until no connection is left."""
+        await asyncio.gather(*self._tasks, return_exceptions=True)
 
     @asynccontextmanager
     async def outage(self) -> AsyncIterator[None]:
@@ -43,19 +48,27 @@ class Relay:
         if not self.up:
             writer.transport.abort()
             return
+        task = asyncio.current_task()
+        assert task is not None
+        self._tasks.add(task)
+        try:
+            await self._relay(reader, writer)
+        finally:
+            self._tasks.discard(task)
+
+    async def _relay(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         far_reader, far_writer = await asyncio.open_connection("127.0.0.1", self.target_port)
         pair = (writer, far_writer)
         self._writers.update(pair)
+        ways = (_pass(reader, far_writer), _pass(far_reader, writer))
+        tasks = [asyncio.create_task(way) for way in ways]
         try:
-            ways = (_pass(reader, far_writer), _pass(far_reader, writer))
-            await asyncio.wait(
-                [asyncio.create_task(way) for way in ways],
-                return_when=asyncio.FIRST_COMPLETED,
-            )
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
             for one in pair:
                 one.transport.abort()
-                self._writers.discard(one)
+            self._writers.difference_update(pair)
+            await asyncio.gather(*tasks, return_exceptions=True)
 
 
 async def _pass(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -75,3 +88,4 @@ async def relayed(target_port: int) -> AsyncIterator[Relay]:
     finally:
         server.close()
         relay.cut()
+        await relay.idle()

@@ -8,14 +8,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sqlalchemy import func, select
 
 from app.client.http import call
 from app.client.telemetry import TelemetryClient
+from app.features.telemetry.frames import phase_frames
+from app.models import ClientReport
 from app.rehearsal.answers import fill_in
 from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, answer, operate
-from app.rehearsal.headset import Headset
+from app.rehearsal.headset import FRAMES_PER_BATCH, MESSAGES_AHEAD, Headset
 from app.rehearsal.rehearse import RehearsalPlan, assembled, tasks_of
+from app.wire import StreamName
 from tests.faults.record import record_of
 from tests.faults.relay import Relay, relayed
 from tests.faults.short_study import PHASE_S, ROAM_S, Watch, add_short_study
@@ -26,6 +30,8 @@ FRAME_S = 1 / 90
 SPEED = 8.0
 HAND, FOOT = 2, 3
 """The ids of the first two task phases."""
+RESTART_S = 0.5
+LOST_FRAMES = 2 * MESSAGES_AHEAD * FRAMES_PER_BATCH
 Wear = Callable[[Cast, Relay], Coroutine[Any, Any, None]]
 
 
@@ -135,6 +141,7 @@ def test_a_headset_that_starts_again_goes_on_with_the_time_that_is_left(
         first.cancel()
         old = cast.headset.client
         await old.__aexit__(None, None, None)
+        await asyncio.sleep(RESTART_S)
         async with TelemetryClient(
             old.url, old.token, old.name, old.monotonic_s, journal=second
         ) as client:
@@ -147,8 +154,15 @@ def test_a_headset_that_starts_again_goes_on_with_the_time_that_is_left(
     merged = both_runs(ledger, second)
     with record_of(live_server) as db:
         found = reconcile(db, outcome.session_id, merged)
+        refused = db.scalar(select(func.count()).where(~ClientReport.accepted))
+        runs = phase_frames(db, outcome.session_id, StreamName.ACTUAL, HAND)
     assert found.sound
+    assert refused == 0
     assert outcome.pauses(HAND)
+    # Both runs together had the phase's time, but for what the first could not send any more.
+    active = [int(frames.active.sum()) for _, frames in runs]
+    assert len(active) == 2
+    assert PHASE_S * 90 - LOST_FRAMES <= sum(active) <= PHASE_S * 90 + 2
 
 
 def both_runs(first: LedgerJournal, second: LedgerJournal) -> LedgerJournal:

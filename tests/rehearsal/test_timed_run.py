@@ -83,6 +83,8 @@ def test_a_client_that_takes_over_stands_still_until_the_operator_resumes(
     """It goes on with the active time that is left, and does not start the phase again."""
     line = Timeline(FreeRun(order(status=status, active_s=0.75), 0.0))
     line.draw(1.0)
+    if status != "paused":
+        line.follow(order(status="running", active_s=0.75))
     assert line.words == words
     assert line.run.active_s(line.t_s) == 0.75
     line.follow(order(status="paused", active_s=0.75, resuming=True))
@@ -99,3 +101,13 @@ def test_a_client_that_takes_over_in_the_freeze_only_ends_the_phase() -> None:
     line = Timeline(FreeRun(order(status="freezing", active_s=1.0), 0.0))
     line.draw(0.5)
     assert line.words == ["ended"]
+
+
+def test_a_client_that_takes_over_learns_what_the_other_run_had_used_up() -> None:
+    """The server may know more once the loss is noticed; nobody gets the time twice."""
+    line = Timeline(FreeRun(order(status="running", active_s=0.25), 0.0))
+    line.draw(0.1)
+    line.follow(order(status="running", active_s=0.5))
+    line.follow(order(status="paused", active_s=0.75, resuming=True))
+    assert line.words == ["paused", "resumed"]
+    assert line.run.active_s(line.t_s) == 0.75
