@@ -1,0 +1,1 @@
+"""Measurements: `./run bench NAME [--json]`; figures come with machine, ratio and peer."""

@@ -1,0 +1,29 @@
+"""`./run bench NAME [--json]` runs a benchmark of this folder and prints its figures."""
+
+import argparse
+import importlib
+import json
+import sys
+from pathlib import Path
+
+from tests.benchmarks.report import Report, as_table
+
+HERE = Path(__file__).parent
+NAMES = sorted(path.stem for path in HERE.glob("*.py") if "def measure(" in path.read_text())
+
+
+def main(arguments: list[str]) -> int:
+    """Run what was asked for; 2 on an unknown name."""
+    parser = argparse.ArgumentParser(prog="./run bench", description="Measure.")
+    parser.add_argument("name", choices=NAMES, help="which benchmark")
+    parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+    parser.add_argument("--only", action="append", help="only these parts; may be repeated")
+    asked = parser.parse_args(arguments)
+    benchmark = importlib.import_module(f"tests.benchmarks.{asked.name}")
+    report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS))
+    print(json.dumps(report.as_json(), indent=2) if asked.json else as_table(report))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

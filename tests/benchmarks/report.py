@@ -1,0 +1,99 @@
+"""Figures with their units, what they are compared with, and the machine they came from."""
+
+import os
+import platform
+import sys
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One measured value. `peer` is the limit or rival measured in the same run, in words."""
+
+    part: str
+    name: str
+    value: float
+    unit: str
+    peer: str = ""
+    peer_value: float | None = None
+
+    @property
+    def ratio(self) -> float | None:
+        """Ours over the peer's."""
+        return self.value / self.peer_value if self.peer_value else None
+
+
+@dataclass
+class Report:
+    """All figures of a run."""
+
+    benchmark: str
+    machine: dict[str, Any] = field(default_factory=lambda: machine())
+    figures: list[Figure] = field(default_factory=list)
+
+    def add(self, *figures: Figure) -> None:
+        """Take figures in, telling each at once: a run takes minutes."""
+        for figure in figures:
+            print(
+                f"  {figure.part}: {figure.name} {figure.value:.4g} {figure.unit}", file=sys.stderr
+            )
+        self.figures += figures
+
+    def as_json(self) -> dict[str, Any]:
+        """For machines."""
+        rows = [{**asdict(figure), "ratio": figure.ratio} for figure in self.figures]
+        return {"benchmark": self.benchmark, "machine": self.machine, "figures": rows}
+
+
+def machine() -> dict[str, Any]:
+    """Cores, processor, Python and how busy the machine was at the start."""
+    return {
+        "cores": os.cpu_count(),
+        "cpu": _cpu_name(),
+        "system": f"{platform.system()} {platform.release()}",
+        "python": platform.python_version(),
+        "load_average_1min": round(os.getloadavg()[0], 2),
+    }
+
+
+def as_table(report: Report) -> str:
+    """For people: one line a figure."""
+    rows = [["part", "figure", "value", "unit", "beside", "value", "ratio"]]
+    rows += [_cells(figure) for figure in report.figures]
+    widths = [max(len(row[at]) for row in rows) for at in range(len(rows[0]))]
+    numbers = {2, 5, 6}
+    lines = [
+        "  ".join(
+            cell.rjust(width) if at in numbers else cell.ljust(width)
+            for at, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+    about = report.machine
+    head = (
+        f"{report.benchmark}: {about['cores']} x {about['cpu']}, {about['system']}, "
+        f"Python {about['python']}, load {about['load_average_1min']} before"
+    )
+    return "\n".join([head, "", *lines])
+
+
+def _cells(figure: Figure) -> list[str]:
+    peer = "" if figure.peer_value is None else _number(figure.peer_value)
+    ratio = "" if figure.ratio is None else f"{figure.ratio:.2f}"
+    value = _number(figure.value)
+    return [figure.part, figure.name, value, figure.unit, figure.peer, peer, ratio]
+
+
+def _number(value: float) -> str:
+    return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.3g}"
+
+
+def _cpu_name() -> str:
+    info = Path("/proc/cpuinfo")
+    if info.is_file():
+        for line in info.read_text().splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
