@@ -63,8 +63,11 @@ class Database:
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
-        """A consistent snapshot; nothing in it is ever written."""
+        """A consistent snapshot, however long it is read; nothing in it is ever written."""
         with Session(self.engine, expire_on_commit=False) as session:
+            if not self.is_sqlite:
+                # On SQLite every transaction sees one moment; PostgreSQL must be asked for it.
+                session.connection(execution_options={"isolation_level": "REPEATABLE READ"})
             yield session
 
     @contextmanager

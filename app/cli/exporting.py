@@ -6,7 +6,7 @@ from pathlib import Path
 from app.clock import Clock
 from app.database import migrate, open_database
 from app.features.analysis.tables import KINDS, Kind
-from app.features.exports.service import export_study, snapshot, usual_kind
+from app.features.exports.service import export_study, usual_kind
 from app.settings import Settings
 
 
@@ -21,7 +21,7 @@ def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
     migrate(url)
     database = open_database(url)
     try:
-        with snapshot(database) as db:
+        with database.reading() as db:
             chosen = usual_kind(db, study) if kind is None else _known(kind)
             done = export_study(
                 db, study, chosen, to, now=Clock().utc_now(), progress=_tell_progress

@@ -1,7 +1,6 @@
 """Exporting a study: one consistent look at the database, as a folder or as an archive."""
 
-from collections.abc import Generator, Iterator
-from contextlib import contextmanager
+from collections.abc import Generator
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -28,16 +27,6 @@ class Exported:
     files: int
 
 
-@contextmanager
-def snapshot(database: Database) -> Iterator[Session]:
-    """A session that sees one moment, however long it reads and whatever is stored meanwhile."""
-    with database.reading() as db:
-        if not database.is_sqlite:
-            # On SQLite every transaction is such a look; PostgreSQL must be asked for it.
-            db.connection(execution_options={"isolation_level": "REPEATABLE READ"})
-        yield db
-
-
 def export_study(
     db: Session,
     study_key: str,
@@ -61,7 +50,7 @@ def study_archive(
     database: Database, study_key: str, kind: Kind, *, now: datetime
 ) -> Generator[bytes]:
     """The same as one ZIP file, in pieces; close the iterator to stop early."""
-    with snapshot(database) as db:
+    with database.reading() as db:
         yield from zip_pieces(Contents(db, study_key, kind, now).members(), now)
 
 

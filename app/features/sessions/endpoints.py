@@ -2,8 +2,9 @@
 
 import asyncio
 from collections.abc import AsyncIterator
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy import select
 
@@ -33,6 +34,15 @@ from app.models import TelemetryStream
 
 router = APIRouter(tags=["sessions"])
 HEARTBEAT_S = 10.0
+
+
+def _known_session(session_id: str, context: Context) -> str:
+    """The id of a session that exists: a stream cannot say otherwise once it has begun."""
+    with context.database.reading() as db:
+        return session_by_id(db, session_id).id
+
+
+KnownSession = Annotated[str, Depends(_known_session)]
 
 
 @router.post("/studies/{key}/sessions", status_code=201)
@@ -139,7 +149,7 @@ def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
 
 @router.get("/sessions/{session_id}/live", response_class=EventSourceResponse)
 async def get_live(
-    session_id: str, context: Context, _: SignedIn
+    _: SignedIn, session_id: KnownSession, context: Context
 ) -> AsyncIterator[ServerSentEvent]:
     """News of a session: `session` on every change, `telemetry` a few times a second."""
     with context.hub.subscribe(session_id) as subscription:

@@ -17,7 +17,6 @@ from app.features.analysis.codebook import CODEBOOK, columns_of
 from app.features.exports.names import archive_name, samples_path
 from app.features.exports.samples import SampleFile
 from app.features.exports.service import Exported, export_study, study_archive, usual_kind
-from app.features.exports.service import snapshot as look
 from app.wire import StreamName
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.features.movement_builders import moving_values, store_chunks
@@ -39,7 +38,7 @@ def filled(database: Database) -> Database:
 
 
 def _export(database: Database, to: Path, **options: Any) -> Exported:
-    with look(database) as db:
+    with database.reading() as db:
         return export_study(db, STUDY, options.pop("kind", "people"), to, now=NOW, **options)
 
 
