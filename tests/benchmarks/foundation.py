@@ -3,8 +3,10 @@
 import tempfile
 from pathlib import Path
 
-from tests.benchmarks import acknowledgement, exporting, starting
+from tests.benchmarks.acknowledgement import figures as acknowledgement_figures
+from tests.benchmarks.exporting import figures as export_figures
 from tests.benchmarks.report import Report
+from tests.benchmarks.starting import figures as start_figures
 
 PARTS = ("start", "telemetry", "export")
 
@@ -15,9 +17,9 @@ def measure(parts: frozenset[str]) -> Report:
     with tempfile.TemporaryDirectory(prefix="reembody-bench-") as scratch:
         folder = Path(scratch)
         if "telemetry" in parts:
-            report.add(*acknowledgement.figures(folder / "telemetry"))
+            report.add(*acknowledgement_figures(folder / "telemetry"))
         if "export" in parts:
-            report.add(*exporting.figures(folder / "export"))
+            report.add(*export_figures(folder / "export"))
         if "start" in parts:
-            report.add(*starting.figures(folder / "start"))
+            report.add(*start_figures(folder / "start"))
     return report
