@@ -6,7 +6,6 @@ from app.science.instruments.answers import (
     valid_answers,
     validate_answers,
 )
-from app.science.instruments.csv_table import score_csv
 from app.science.instruments.errors import (
     AnswerError,
     DefinitionProblem,
@@ -27,7 +26,7 @@ from app.science.instruments.model import (
     Text,
 )
 from app.science.instruments.order import item_order
-from app.science.instruments.scoring import score_answers, score_table
+from app.science.instruments.scoring import score_answers
 
 __all__ = [
     "Answer",
@@ -49,8 +48,6 @@ __all__ = [
     "fits",
     "item_order",
     "score_answers",
-    "score_csv",
-    "score_table",
     "valid_answers",
     "validate_answers",
 ]

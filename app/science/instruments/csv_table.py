@@ -13,7 +13,7 @@ import pandas as pd
 from app.science.instruments.columns import item_name
 from app.science.instruments.errors import AnswerError, InstrumentTableError, shortened
 from app.science.instruments.model import Instrument
-from app.science.instruments.scoring import score_table
+from app.science.instruments.tables import score_table
 
 _SEPARATORS = (",", ";", "\t")
 

@@ -13,7 +13,6 @@ from typing import cast
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -198,6 +197,8 @@ def from_euler(order: str, angles_rad: FloatArray) -> FloatArray:
             f"Order {order!r} needs {len(order)} angles, got {angles_rad.shape[-1]}."
         )
     flat = angles_rad.reshape(-1, len(order))
+    from scipy.spatial.transform import Rotation  # slow to load, and rarely needed
+
     q = Rotation.from_euler(order, flat).as_quat(scalar_first=True)
     return np.asarray(q, dtype=np.float64).reshape(*angles_rad.shape[:-1], 4)
 
@@ -213,6 +214,8 @@ def to_euler(order: str, q: FloatArray) -> FloatArray:
     _check_order(order)
     if len(order) != 3:
         raise RotationError(f"{order!r} names {len(order)} axes: three are needed.")
+    from scipy.spatial.transform import Rotation
+
     rotation = Rotation.from_quat(q.reshape(-1, 4), scalar_first=True)
     angles = rotation.as_euler(order, suppress_warnings=True)  # type: ignore[call-overload]
     return np.asarray(angles, dtype=np.float64).reshape(*q.shape[:-1], 3)

@@ -17,7 +17,6 @@ from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from app.science.rotations import (
     FloatArray,
@@ -185,6 +184,8 @@ def _in_place(
 
 def _slow(values: FloatArray, smoothing: float) -> FloatArray:
     """Return the slow part: the straight line through the values plus its smoothed remainder."""
+    from scipy.ndimage import gaussian_filter1d  # slow to load; a server never retargets
+
     frames = np.arange(len(values))
     line = np.polyval(np.polyfit(frames, values, 1), frames)
     rest = gaussian_filter1d(values - line, smoothing, mode="nearest")

@@ -13,8 +13,8 @@ from app.science.instruments import (
     InstrumentTableError,
     Score,
     score_answers,
-    score_table,
 )
+from app.science.instruments.tables import score_table
 from tests.science.instruments.helpers import shipped, small
 
 KARAS = shipped("karas2020")
