@@ -6,20 +6,10 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.features.questionnaires.schemas import StoredScores
+from app.protocol.plan import StepKind
 
 Kind = Literal["people", "simulated", "test"]
 Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]
-StepKind = Literal[
-    "consent",
-    "form",
-    "instructions",
-    "height",
-    "materialise",
-    "free_roam",
-    "task",
-    "questionnaire",
-    "debrief",
-]
 StepStatus = Literal["pending", "current", "done", "skipped"]
 CurrentStatus = Literal["ready", "preparing", "running", "paused", "walk_back", "freezing"]
 PhaseStatus = Literal["preparing", "running", "paused", "walk_back", "freezing", "done", "voided"]
