@@ -363,7 +363,7 @@ export const en = {
   "device.revoke.tablet": "Disconnect the tablet",
   "device.revoke.headset": "Disconnect the headset",
   "pairing.how.tablet": "Scan the code with the tablet, or enter it at the address below.",
-  "pairing.how.headset": "Enter this code in the headset's browser, at the address below.",
+  "pairing.how.headset": "Give this code and the address below to the client on the headset.",
   "pairing.qr": "QR code with the pairing address",
   "pairing.left": "Valid for {{time}} min",
   "pairing.expired": "The code has expired.",
