@@ -21,7 +21,7 @@ LOOKS_EVERY_S = 0.5
 FAST_SHUTDOWN_S = 10.0
 
 
-class Told(Exception):  # noqa: N818  # a request, not an error
+class Told(Exception):  # a request, not an error
     """SIGTERM came."""
 
 
