@@ -50,8 +50,9 @@ class Experimenter:
         button.click()
 
     def match_height(self, stated_cm: str, matched_cm: str) -> None:
-        """Enter both heights."""
-        self.page.get_by_label("Height as stated").fill(stated_cm)
+        """Find the height that was stated on the tablet, and enter the matched one."""
+        stated = self.page.get_by_label("Height as stated")
+        expect(stated).to_have_value(f"{stated_cm} cm", timeout=PATIENCE_MS)
         self.page.get_by_label("Height as matched").fill(matched_cm)
         self.press("Save heights")
 

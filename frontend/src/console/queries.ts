@@ -26,6 +26,12 @@ export const dashboardQuery = (key: string, kind: Kind) =>
 export const sessionQuery = (id: string) =>
   queryOptions({ queryKey: ["sessions", id], queryFn: () => sessions.get(id) });
 
+export const answersQuery = (id: string, version: number) =>
+  queryOptions({
+    queryKey: ["sessions", id, "answers", version],
+    queryFn: () => sessions.answers(id),
+  });
+
 export const eventsQuery = (id: string, version: number) =>
   queryOptions({
     queryKey: ["sessions", id, "events", version],

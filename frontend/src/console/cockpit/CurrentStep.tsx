@@ -47,6 +47,7 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
       {session.current?.status === "paused" && <PauseReason live={live} />}
       {step?.kind === "height" && session.allowed.includes("complete_step") ? (
         <HeightForm
+          session={session}
           step={step.index}
           send={live.send}
           sending={live.sending}

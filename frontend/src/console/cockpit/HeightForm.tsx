@@ -1,9 +1,12 @@
 /** Height as the participant states it and as it was matched to the avatar: both are kept. */
 import { Button, NumberInput } from "@mantine/core";
+import type { SessionView, StoredAnswers } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { metresFromCentimetres } from "@shared/units";
+import { useQuery } from "@tanstack/react-query";
 import { type JSX, type ReactNode, useState } from "react";
 import { useTexts } from "../i18n";
+import { answersQuery } from "../queries";
 import { Key } from "../ui/Key";
 import classes from "./CurrentStep.module.css";
 import type { Send } from "./useSession";
@@ -12,15 +15,20 @@ const SHORTEST_CM = 100;
 const TALLEST_CM = 230;
 
 interface HeightFormProps {
+  readonly session: SessionView;
   readonly step: number;
   readonly send: Send;
   readonly sending: boolean;
   readonly exceptions: ReactNode;
 }
 
-export function HeightForm({ step, send, sending, exceptions }: HeightFormProps): JSX.Element {
+export function HeightForm(props: HeightFormProps): JSX.Element {
+  const { session, step, send, sending, exceptions } = props;
   const { t } = useTexts();
-  const [stated, setStated] = useState<number | string>("");
+  const answers = useQuery(answersQuery(session.id, session.version));
+  // What the participant wrote on the tablet stands here already; typing over it wins.
+  const [typed, setStated] = useState<number | string | null>(null);
+  const stated = typed ?? heightIn(answers.data ?? []) ?? "";
   const [matched, setMatched] = useState<number | string>("");
   const valid = isHeight(stated) && isHeight(matched);
   const save = () => {
@@ -73,5 +81,11 @@ export function HeightForm({ step, send, sending, exceptions }: HeightFormProps)
   );
 }
 
-const isHeight = (value: number | string): value is number =>
+/** The height that a form of this session was answered with, in centimetres. */
+function heightIn(forms: readonly StoredAnswers[]): number | null {
+  const said = forms.map((form) => form.answers.height_cm).filter(isHeight);
+  return said.at(-1) ?? null;
+}
+
+const isHeight = (value: unknown): value is number =>
   typeof value === "number" && value >= SHORTEST_CM && value <= TALLEST_CM;

@@ -369,7 +369,8 @@ export const de: Record<keyof typeof en, string> = {
   "device.revoke.headset": "Headset trennen",
   "pairing.how.tablet":
     "Scannen Sie den Code mit dem Tablet oder geben Sie ihn unter der Adresse ein.",
-  "pairing.how.headset": "Geben Sie diesen Code und die Adresse unten dem Programm auf dem Headset.",
+  "pairing.how.headset":
+    "Geben Sie diesen Code und die Adresse unten dem Programm auf dem Headset.",
   "pairing.qr": "QR-Code mit der Adresse zum Koppeln",
   "pairing.left": "Gültig für {{time}} min",
   "pairing.expired": "Der Code ist abgelaufen.",

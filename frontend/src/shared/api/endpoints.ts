@@ -16,6 +16,7 @@ import type {
   SessionEvent,
   SessionSummary,
   SessionView,
+  StoredAnswers,
   StudyDetail,
   StudySummary,
   Submission,
@@ -76,6 +77,8 @@ export const sessions = {
     ),
   events: (id: string) =>
     answer<readonly SessionEvent[]>(server.GET("/api/sessions/{session_id}/events", session(id))),
+  answers: (id: string) =>
+    answer<readonly StoredAnswers[]>(server.GET("/api/sessions/{session_id}/answers", session(id))),
   pair: (id: string, device: Device) =>
     answer<Pairing>(
       server.POST("/api/sessions/{session_id}/pairings", { ...session(id), body: { device } }),

@@ -12,6 +12,7 @@ type Schemas = components["schemas"];
 type With<Type, Exact> = Readonly<Omit<Type, keyof Exact> & Exact>;
 
 export type SessionSummary = Schemas["SessionSummary"];
+export type StoredAnswers = Schemas["StoredAnswers"];
 export type SessionView = Schemas["SessionView"];
 export type Step = Schemas["StepView"];
 export type Current = Schemas["CurrentView"];
