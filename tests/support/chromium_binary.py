@@ -11,6 +11,7 @@ import os
 import shutil
 from dataclasses import dataclass, field
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 from tests.support.node import npm_ci, run_node
 from tests.support.shared_run import locked
@@ -18,6 +19,7 @@ from tests.support.shared_run import locked
 SYSTEM = ("/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome")
 REPOSITORY = Path(__file__).resolve().parents[2]
 PACKAGE = Path(__file__).resolve().parent / "chromium"
+FONTS_CONFIG = "fonts-of-the-package.conf"
 
 
 @dataclass(frozen=True)
@@ -53,7 +55,7 @@ def packaged_chromium() -> Chromium:
         executable,
         {
             "LD_LIBRARY_PATH": f"{libraries}:{inherited}" if inherited else str(libraries),
-            "FONTCONFIG_PATH": str(unpacked / "fonts"),
+            "FONTCONFIG_FILE": str(unpacked / FONTS_CONFIG),
         },
     )
 
@@ -69,9 +71,11 @@ def axe_script() -> Path:
 def installed_packages() -> Path:
     """The folder in `.cache/` with the packages installed and Chromium unpacked.
 
-    Its name is the hash of the lock file: another version gets another folder.
+    Its name is the hash of the lock file and of what is made here: another version gets another
+    folder.
     """
-    key = hashlib.sha256((PACKAGE / "package-lock.json").read_bytes()).hexdigest()[:16]
+    what = (PACKAGE / "package-lock.json").read_bytes() + FONTS_CONFIG.encode()
+    key = hashlib.sha256(what).hexdigest()[:16]
     cache = REPOSITORY / ".cache" / "chromium"
     folder = cache / key
     with locked(cache / "install.lock"):
@@ -94,3 +98,12 @@ def _unpack(folder: Path) -> None:
         "AWS_LAMBDA_JS_RUNTIME": "nodejs24.x",
     }
     run_node("unpack.mjs", cwd=folder, environment=environment)
+    # The package's own configuration looks for fonts in fixed places; a Chromium that finds none
+    # ends at the first text it has to draw with a fallback.
+    (unpacked / FONTS_CONFIG).write_text(
+        "<?xml version='1.0'?><!DOCTYPE fontconfig SYSTEM 'fonts.dtd'><fontconfig>"
+        f"<dir>{escape(str(unpacked / 'fonts'))}</dir>"
+        f"<cachedir>{escape(str(unpacked / 'fonts-cache'))}</cachedir>"
+        "</fontconfig>\n",
+        encoding="utf-8",
+    )
