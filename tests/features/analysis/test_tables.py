@@ -168,4 +168,4 @@ def test_an_unknown_study_and_an_unknown_kind_are_refused(database: Database) ->
             tables.phases_table(db, "nothing", "people")
         assert unknown.value.valid == [STUDY]
         with pytest.raises(ValueError, match="valid are people, simulated, test, all"):
-            tables.phases_table(db, STUDY, "robots")  # type: ignore[arg-type]
+            tables.phases_table(db, STUDY, "robots")  # type: ignore[arg-type]  # the fact

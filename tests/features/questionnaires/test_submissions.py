@@ -88,7 +88,7 @@ def test_other_answers_to_a_stored_form_are_refused(
     lab: Lab,
     session_id: str,
     tablet: TestClient,
-    new_key: bool,  # noqa: FBT001
+    new_key: bool,  # noqa: FBT001 - pytest passes it by name
 ) -> None:
     """Under the same key or another one: 409, and the first answers stand."""
     body = filled(due(tablet))

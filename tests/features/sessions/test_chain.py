@@ -117,7 +117,7 @@ def test_an_inserted_row_is_found(lab: Lab, logged: str) -> None:
         row = db.get_one(SessionEvent, (logged, 3))
         columns = {
             name: getattr(row, name)
-            for name in SessionEvent.__table__.columns.keys()  # noqa: SIM118
+            for name in SessionEvent.__table__.columns.keys()  # noqa: SIM118 - not a dict: it iterates over columns
         }
         db.add(SessionEvent(**{**columns, "seq": 4, "previous_hash": row.hash}))
     assert check(lab, logged).broken_at == 4
