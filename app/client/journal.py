@@ -34,6 +34,7 @@ class Journal:
     end: int = 0
     _entries: dict[int, Entry] = field(default_factory=dict)
     _stored: dict[tuple[str, int], int] = field(default_factory=dict)
+    _produced: dict[tuple[str, int], int] = field(default_factory=dict)
     _bytes: int = 0
 
     @property
@@ -60,9 +61,15 @@ class Journal:
         """The first seq that is not known to be stored."""
         return self._stored.get((stream, epoch), 0)
 
+    @property
+    def produced(self) -> dict[tuple[str, int], int]:
+        """How far the client itself has come: the next seq of every (stream, epoch)."""
+        return dict(self._produced)
+
     def add(self, entry: Entry) -> None:
         """Keep a message until it is acknowledged."""
         self._entries[self.end] = entry
+        self._produced[entry.stream, entry.epoch] = entry.seq_end
         self._bytes += len(entry.message)
         self.end += 1
 

@@ -11,7 +11,8 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from app.client.journal import Entry, Journal
-from app.client.probing import probe_forever, probed
+from app.client.probing import Prober
+from app.client.producing import Announcer
 from app.wire import StreamName
 from app.wire.messages import (
     PROTOCOL_VERSION,
@@ -66,6 +67,7 @@ class TelemetryClient:
     reconnects: int = 0
     failure: Failure | None = None
     _socket: ClientConnection | None = None
+    _announcer: Announcer | None = None
     _keeper: asyncio.Task[None] | None = None
     _ready: asyncio.Event = field(default_factory=asyncio.Event)
     _changed: asyncio.Condition = field(default_factory=asyncio.Condition)
@@ -91,6 +93,9 @@ class TelemetryClient:
         _traceback: TracebackType | None,
     ) -> None:
         """Close; what is not acknowledged stays in the journal."""
+        if self._announcer is not None:
+            with contextlib.suppress(ConnectionClosed):
+                await self._announcer.tell()
         if self._keeper is not None:
             self._keeper.cancel()
             with contextlib.suppress(asyncio.CancelledError):
@@ -173,7 +178,7 @@ class TelemetryClient:
             finally:
                 # A connection that got as far as the welcome begins the waiting anew.
                 attempt = 0 if self._socket is not None else attempt
-                self._socket = None
+                self._socket = self._announcer = None
             await asyncio.sleep(RETRY_S[min(attempt, len(RETRY_S) - 1)])
             attempt += 1
 
@@ -195,13 +200,15 @@ class TelemetryClient:
         self._socket = socket
         self._ready.set()
         await self._notify()
+        prober = Prober(socket, self.monotonic_s, self.probe_every_s)
+        self._announcer = Announcer(socket, self.journal)
         beside = [
-            asyncio.create_task(probe_forever(socket, self.monotonic_s, self.probe_every_s)),
-            asyncio.create_task(self._send_journal(socket)),
+            asyncio.create_task(work)
+            for work in (prober.run(), self._announcer.run(), self._send_journal(socket))
         ]
         try:
             async for text in socket:
-                await self._take(socket, text)
+                await self._take(prober, text)
         finally:
             for task in beside:
                 task.cancel()
@@ -221,7 +228,7 @@ class TelemetryClient:
                 self._next_place = max(self._next_place, self.journal.first)
             await self._added.wait()
 
-    async def _take(self, socket: ClientConnection, text: str | bytes) -> None:
+    async def _take(self, prober: Prober, text: str | bytes) -> None:
         received_s = self.monotonic_s()
         message = SERVER_MESSAGE.validate_json(text)
         match message:
@@ -239,7 +246,7 @@ class TelemetryClient:
             case Failure():
                 self.failure = message
             case ProbeAnswer():
-                await socket.send(probed(message, received_s).model_dump_json())
+                await prober.take(message, received_s)
             case _:
                 log.debug("unexpected message %s", message.type)
         await self._notify()

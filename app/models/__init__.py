@@ -3,6 +3,7 @@
 from app.models.accounts import Account, LoginToken
 from app.models.devices import Device, PairingCode
 from app.models.ledger import Ledger, LedgerSlot, Participant, SlotAttempt
+from app.models.quality import AlarmRow, PhaseLatency, PhaseQuality
 from app.models.questionnaires import Answer, ScoreValue, Submission
 from app.models.sessions import Phase, SessionContent, SessionEvent, StudySession
 from app.models.studies import InstrumentVersion, Study, StudyVersion
@@ -19,6 +20,7 @@ from app.models.telemetry import (
 
 __all__ = [
     "Account",
+    "AlarmRow",
     "Answer",
     "ClientReport",
     "ClockProbe",
@@ -33,6 +35,8 @@ __all__ = [
     "PairingCode",
     "Participant",
     "Phase",
+    "PhaseLatency",
+    "PhaseQuality",
     "ScoreValue",
     "SessionContent",
     "SessionEvent",

@@ -21,8 +21,9 @@ from app.models.types import Id, UtcDateTime, UtcTime
 class TelemetryStream(Base):
     """How far a stream of one client run (epoch) is stored: all of `seq < next_seq`.
 
-    `phase_id` and `active_s` are those of the newest stored frame: after a crash they tell how much
-    active time is certain.
+    `produced` is how far the client says it has come: what lies between is still in its journal, or
+    lost with it. `phase_id` and `active_s` are those of the newest stored frame: after a crash they
+    tell how much active time is certain.
     """
 
     __tablename__ = "telemetry_streams"
@@ -31,6 +32,7 @@ class TelemetryStream(Base):
     stream: Mapped[str] = mapped_column(String(20), primary_key=True)
     epoch: Mapped[int] = mapped_column(BigInteger, primary_key=True, autoincrement=False)
     next_seq: Mapped[int] = mapped_column(BigInteger, default=0)
+    produced: Mapped[int] = mapped_column(BigInteger, default=0, server_default="0")
     frames_stored: Mapped[int] = mapped_column(BigInteger, default=0)
     frames_flagged: Mapped[int] = mapped_column(BigInteger, default=0)
     phase_id: Mapped[int] = mapped_column(default=0)
@@ -91,7 +93,8 @@ class ClientReport(Base):
 class Contact(Base):
     """One body part touching one surface, for one interval of active time.
 
-    Times are the client's monotonic seconds, `*_active_s` the phase's active time. `effect` says
+    Times are the monotonic seconds of the client run `epoch`, `*_active_s` the phase's active time.
+    `effect` says
     what the task made of it: green, out_of_order, wrong_part, early, side, target, start or none.
     """
 
@@ -103,6 +106,7 @@ class Contact(Base):
 
     id: Mapped[Id]
     session_id: Mapped[str] = mapped_column(String(32))
+    epoch: Mapped[int] = mapped_column(BigInteger, server_default="1")
     phase_id: Mapped[int]
     surface: Mapped[str] = mapped_column(String(40))
     surface_kind: Mapped[str] = mapped_column(String(20))
@@ -127,6 +131,7 @@ class Completion(Base):
     session_id: Mapped[str] = mapped_column(String(32), primary_key=True)
     phase_id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
     number: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    epoch: Mapped[int] = mapped_column(BigInteger, server_default="1")
     at_s: Mapped[float]
     active_s: Mapped[float]
     duration_s: Mapped[float]
@@ -161,7 +166,10 @@ class JointErrorRow(Base):
 
 
 class ClockProbe(Base):
-    """One exchange of clock readings, raw; the mapping is made at analysis."""
+    """One exchange of clock readings, raw; the mapping is made at analysis.
+
+    An answer that did not come in time leaves null in all three times behind the first.
+    """
 
     __tablename__ = "clock_probes"
 
@@ -169,7 +177,7 @@ class ClockProbe(Base):
     session_id: Mapped[str] = mapped_column(ForeignKey("sessions.id"), index=True)
     epoch: Mapped[int] = mapped_column(BigInteger)
     client_sent_s: Mapped[float]
-    server_received_ns: Mapped[int] = mapped_column(BigInteger)
-    server_sent_ns: Mapped[int] = mapped_column(BigInteger)
+    server_received_ns: Mapped[int | None] = mapped_column(BigInteger)
+    server_sent_ns: Mapped[int | None] = mapped_column(BigInteger)
     client_received_s: Mapped[float | None]
     server_utc: Mapped[datetime] = mapped_column(UtcDateTime)

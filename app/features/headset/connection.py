@@ -24,6 +24,7 @@ from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.writer import (
     Arrival,
     BatchContent,
+    Content,
     LossContent,
     ProbeContent,
     TelemetryWriter,
@@ -33,6 +34,7 @@ from app.wire.messages import (
     CLIENT_MESSAGE,
     PROTOCOL_VERSION,
     Ack,
+    ClientMessages,
     Failure,
     HeadsetState,
     Hello,
@@ -40,6 +42,7 @@ from app.wire.messages import (
     Probe,
     ProbeAnswer,
     Probed,
+    Produced,
     Report,
     Welcome,
 )
@@ -47,7 +50,7 @@ from app.wire.messages import (
 log = logging.getLogger(__name__)
 MAX_IN_FLIGHT = 256
 HELLO_DEADLINE_S = 10.0
-Content = TypeVar("Content")
+Told = TypeVar("Told")
 CLOSE_REFUSED = 4400
 
 
@@ -165,15 +168,18 @@ class HeadsetConnection:
                 )
             case Probed():
                 await self._store(ProbeContent(self.epoch, message))
+            case Produced():
+                self._require_epoch(message.epoch)
+                await self._store(message)
             case Hello():
                 raise InvalidInput("hello came twice", remedy="Open a new connection.")
 
-    async def _store(self, content: BatchContent | Report | ProbeContent) -> None:
+    async def _store(self, content: Content) -> None:
         await self._in_flight.acquire()
         self._unanswered += 1
         self._submit(content)
 
-    def _submit(self, content: BatchContent | Report | ProbeContent | LossContent) -> None:
+    def _submit(self, content: Content) -> None:
         self.writer.submit(Arrival(self.session_id, self, content))
 
     def _delivered(self, outcome: Outcome) -> None:
@@ -225,14 +231,14 @@ class HeadsetConnection:
         if self.socket.application_state is WebSocketState.CONNECTED:
             await self.socket.send_text(message.model_dump_json())
 
-    def _call(self, function: Callable[[Content], object], content: Content) -> None:
+    def _call(self, function: Callable[[Told], object], told: Told) -> None:
         try:
-            self._loop.call_soon_threadsafe(function, content)
+            self._loop.call_soon_threadsafe(function, told)
         except RuntimeError:  # the loop has closed: nobody is left to tell
             return
 
 
-def parse_message(text: str) -> Hello | Report | Probe | Probed:
+def parse_message(text: str) -> ClientMessages:
     """The client's message; raises InvalidInput with the first thing that does not fit."""
     try:
         return CLIENT_MESSAGE.validate_json(text)

@@ -1,12 +1,15 @@
-"""Storing one message inside the writer's transaction.
+"""Storing messages inside the writer's transaction.
 
 In every stream seqs are consecutive. What is stored already is acknowledged again, what overlaps is
 cut to its new part, what skips ahead is asked for again: so resending is always safe and a hole can
 never come about in silence.
 """
 
+from dataclasses import dataclass, field
 from datetime import datetime
+from typing import Any, cast
 
+from sqlalchemy import Table, insert
 from sqlalchemy.orm import Session
 
 from app.features.context import AppContext
@@ -18,84 +21,106 @@ from app.features.sessions.service import (
     state_of,
 )
 from app.features.telemetry.outcome import Outcome
-from app.features.telemetry.positions import certain_active_s, position
+from app.features.telemetry.positions import Positions, certain_active_s
 from app.models import ClockProbe, TelemetryBatch
+from app.models.types import new_id
 from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
-from app.wire.messages import (
-    Flag,
-    Probed,
-    Resend,
-)
+from app.wire.messages import Flag, Probed, Produced, Resend
+
+BATCHES = cast("Table", TelemetryBatch.__table__)
+PROBES = cast("Table", ClockProbe.__table__)
 
 
-def store_batch(
-    db: Session,
-    session_id: str,
-    header: BatchHeader,
-    message: bytes,
-    flags: FrameFlags,
-    now: datetime,
-    outcome: Outcome,
-) -> None:
-    """Store a batch as it came, with its flags counted beside it."""
-    row = position(db, session_id, header.stream, header.epoch, now)
-    if header.seq_first > row.next_seq:
-        outcome.notices.append(Resend(stream=row.stream, epoch=row.epoch, next_seq=row.next_seq))
-        return
-    if header.seq_end <= row.next_seq:
-        outcome.stored_up_to(row)
-        return
-    skip = row.next_seq - header.seq_first
-    db.add(
-        TelemetryBatch(
-            session_id=session_id,
-            stream=header.stream,
-            epoch=header.epoch,
-            seq_first=row.next_seq,
-            frame_count=header.frame_count - skip,
-            phase_id=header.phase_id,
-            received_at=now,
-            message=message if skip == 0 else _without_first(message, skip),
-        )
-    )
-    bad = int(flags.bad[skip:].sum())
-    row.next_seq = header.seq_end
-    row.frames_stored += header.frame_count - skip
-    row.frames_flagged += bad
-    row.phase_id, row.active_s, row.last_at = header.phase_id, header.active_s, now
-    outcome.stored_up_to(row)
-    if bad:
-        outcome.notices.append(_flag(header, flags, skip))
+@dataclass
+class Intake:
+    """What one transaction takes in. Rows gather here and are written together by `flush`.
 
-
-def store_probe(db: Session, session_id: str, epoch: int, probe: Probed, now: datetime) -> None:
-    """Keep one raw reading of the clocks."""
-    db.add(
-        ClockProbe(
-            session_id=session_id,
-            epoch=epoch,
-            client_sent_s=probe.client_sent_s,
-            server_received_ns=probe.server_received_ns,
-            server_sent_ns=probe.server_sent_ns,
-            client_received_s=probe.client_received_s,
-            server_utc=now,
-        )
-    )
-
-
-def store_loss(db: Session, context: AppContext, session_id: str, cause: str) -> None:
-    """The headset is gone: a running clock stops at the last active time that is on disk.
-
-    Where the study says `on_disconnect: continue`, the headset goes on by its journal.
+    Whoever reads the tables within the transaction flushes first.
     """
-    session = session_by_id(db, session_id, lock=True)
-    state = state_of(session)
-    if state.status != "active" or state.phase is None:
-        return
-    if protocol_of_session(db, session).on_disconnect == "continue":
-        return
-    active_s = certain_active_s(db, session_id, state.phase.phase_id)
-    apply_command(db, context, session, HeadsetLost(active_s=active_s, cause=cause), actor="system")
+
+    db: Session
+    context: AppContext
+    now: datetime
+    positions: Positions = field(init=False)
+    _batches: list[dict[str, Any]] = field(default_factory=list)
+    _probes: list[dict[str, Any]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.positions = Positions(self.db, self.now)
+
+    def flush(self) -> None:
+        """Write what has gathered."""
+        self.positions.flush()
+        for table, rows in ((BATCHES, self._batches), (PROBES, self._probes)):
+            if rows:
+                self.db.execute(insert(table), rows)
+                rows.clear()
+
+    def store_batch(
+        self, session_id: str, header: BatchHeader, message: bytes, flags: FrameFlags, told: Outcome
+    ) -> None:
+        """Store a batch as it came, with its flags counted beside it."""
+        at = self.positions.at(session_id, header.stream, header.epoch)
+        if header.seq_first > at.next_seq:
+            told.notices.append(Resend(**at.as_told.model_dump()))
+            return
+        skip = at.next_seq - header.seq_first
+        if skip < header.frame_count:
+            self._batches.append(
+                {
+                    "session_id": session_id,
+                    "stream": str(header.stream),
+                    "epoch": header.epoch,
+                    "seq_first": at.next_seq,
+                    "frame_count": header.frame_count - skip,
+                    "phase_id": header.phase_id,
+                    "received_at": self.now,
+                    "message": message if skip == 0 else _without_first(message, skip),
+                }
+            )
+            bad = int(flags.bad[skip:].sum())
+            at.stored(header.frame_count - skip)
+            at.frames_flagged += bad
+            at.phase_id, at.active_s = header.phase_id, header.active_s
+            if bad:
+                told.notices.append(_flag(header, flags, skip))
+        told.stored_up_to(at)
+
+    def store_probe(self, session_id: str, epoch: int, probe: Probed) -> None:
+        """Keep one raw reading of the clocks."""
+        times = probe.model_dump(exclude={"type"})
+        self._probes.append(
+            {
+                "id": new_id(),
+                "session_id": session_id,
+                "epoch": epoch,
+                "server_utc": self.now,
+                **times,
+            }
+        )
+
+    def store_produced(self, session_id: str, produced: Produced) -> None:
+        """Take note of how far the client itself has come."""
+        for stream, count in produced.streams.items():
+            at = self.positions.at(session_id, stream, produced.epoch)
+            if count > at.produced:
+                at.produced, at.is_changed = count, True
+
+    def store_loss(self, session_id: str, cause: str) -> None:
+        """The headset is gone: a running clock stops at the last active time that is on disk.
+
+        Where the study says `on_disconnect: continue`, the headset goes on by its journal.
+        """
+        self.flush()
+        session = session_by_id(self.db, session_id, lock=True)
+        state = state_of(session)
+        if state.status != "active" or state.phase is None:
+            return
+        if protocol_of_session(self.db, session).on_disconnect == "continue":
+            return
+        active_s = certain_active_s(self.db, session_id, state.phase.phase_id)
+        lost = HeadsetLost(active_s=active_s, cause=cause)
+        apply_command(self.db, self.context, session, lost, actor="system")
 
 
 def _without_first(message: bytes, count: int) -> bytes:

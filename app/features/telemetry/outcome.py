@@ -2,11 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from app.models.telemetry import TelemetryStream
-from app.wire.messages import (
-    Message,
-    StreamPosition,
-)
+from app.features.telemetry.positions import Position
+from app.wire.messages import Message, StreamPosition
 
 
 @dataclass
@@ -18,8 +15,7 @@ class Outcome:
     phases_ended: list[int] = field(default_factory=list)
     messages: int = 0
 
-    def stored_up_to(self, row: TelemetryStream) -> None:
-        """Acknowledge a stream as far as its row says."""
-        self.positions[(row.stream, row.epoch)] = StreamPosition(
-            stream=row.stream, epoch=row.epoch, next_seq=row.next_seq
-        )
+    def stored_up_to(self, position: Position) -> None:
+        """Acknowledge a stream as far as it stands now."""
+        _, stream, epoch = position.key
+        self.positions[stream, epoch] = position.as_told

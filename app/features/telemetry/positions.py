@@ -1,42 +1,107 @@
 """How far each stream is stored. The writer is the only one who moves a position."""
 
+from collections.abc import Iterable
+from dataclasses import dataclass, field
 from datetime import datetime
+from typing import Any, cast
 
-from sqlalchemy import func, select
+from sqlalchemy import Table, bindparam, func, insert, select, update
 from sqlalchemy.orm import Session
 
 from app.models import TelemetryStream
 from app.wire.messages import REPORT_STREAM, StreamPosition
 
+Key = tuple[str, str, int]
+"""Session, stream, epoch."""
+TABLE = cast("Table", TelemetryStream.__table__)
+MOVING = ("next_seq", "produced", "frames_stored", "frames_flagged", "phase_id", "active_s")
 
-def position(
-    db: Session, session_id: str, stream: str, epoch: int, now: datetime
-) -> TelemetryStream:
-    """The stream's row, made at its first message.
 
-    The row is held for the whole transaction: SQLAlchemy forgets clean rows, and reading one again
-    for every message costs a query and a flush each, most of the time that storing takes.
+@dataclass
+class Position:
+    """Where one stream stands within the writer's transaction; see `TelemetryStream`."""
+
+    key: Key
+    next_seq: int = 0
+    produced: int = 0
+    frames_stored: int = 0
+    frames_flagged: int = 0
+    phase_id: int = 0
+    active_s: float = 0.0
+    is_new: bool = True
+    is_changed: bool = False
+
+    def stored(self, frames: int) -> None:
+        """So many frames (or reports) more are in this transaction."""
+        self.next_seq += frames
+        self.frames_stored += frames
+        self.is_changed = True
+
+    @property
+    def as_told(self) -> StreamPosition:
+        """As the client hears of it."""
+        _, stream, epoch = self.key
+        return StreamPosition(stream=stream, epoch=epoch, next_seq=self.next_seq)
+
+
+@dataclass
+class Positions:
+    """The positions that one transaction moves: read with one query, written with one more.
+
+    A query and an update for every message would cost more than storing the message.
     """
-    key = (session_id, stream, epoch)
-    held: dict[tuple[str, str, int], TelemetryStream] = db.info.setdefault("stream_rows", {})
-    row = held.get(key) or db.get(TelemetryStream, key)
-    if row is None:
-        row = TelemetryStream(
-            session_id=session_id,
-            stream=stream,
-            epoch=epoch,
-            next_seq=0,
-            frames_stored=0,
-            frames_flagged=0,
-            phase_id=0,
-            active_s=0.0,
-            first_at=now,
-            last_at=now,
-        )
-        db.add(row)
-        db.flush()
-    held[key] = row
-    return row
+
+    db: Session
+    now: datetime
+    _held: dict[Key, Position] = field(default_factory=dict)
+    _sessions: set[str] = field(default_factory=set)
+
+    def fetch(self, session_ids: Iterable[str]) -> None:
+        """Read every position of these sessions."""
+        asked = sorted(set(session_ids) - self._sessions)
+        if not asked:
+            return
+        self._sessions.update(asked)
+        for row in self.db.execute(select(TABLE).where(TABLE.c.session_id.in_(asked))).mappings():
+            key = (row["session_id"], row["stream"], row["epoch"])
+            values = {name: row[name] for name in MOVING}
+            self._held[key] = Position(key, **values, is_new=False)
+
+    def at(self, session_id: str, stream: str, epoch: int) -> Position:
+        """A stream's position, 0 at its first message."""
+        self.fetch([session_id])
+        key = (session_id, str(stream), epoch)
+        return self._held.setdefault(key, Position(key))
+
+    def flush(self) -> None:
+        """Write what has moved, so that queries of this transaction see it."""
+        moved = [one for one in self._held.values() if one.is_changed]
+        fresh = [self._row(one) for one in moved if one.is_new]
+        known = [self._row(one) for one in moved if not one.is_new]
+        if fresh:
+            self.db.execute(insert(TABLE), [{**row, "first_at": self.now} for row in fresh])
+        if known:
+            self.db.execute(_UPDATE, [_as_parameters(row) for row in known])
+        for one in moved:
+            one.is_new = one.is_changed = False
+
+    def _row(self, position: Position) -> dict[str, Any]:
+        session_id, stream, epoch = position.key
+        moving = {name: getattr(position, name) for name in MOVING}
+        at = {"session_id": session_id, "stream": stream, "epoch": epoch, "last_at": self.now}
+        return {**at, **moving}
+
+
+_KEY = ("session_id", "stream", "epoch")
+_UPDATE = (
+    update(TABLE)
+    .where(*(TABLE.c[name] == bindparam(f"key_{name}") for name in _KEY))
+    .values({name: bindparam(f"new_{name}") for name in (*MOVING, "last_at")})
+)
+
+
+def _as_parameters(row: dict[str, Any]) -> dict[str, Any]:
+    return {f"{'key' if name in _KEY else 'new'}_{name}": value for name, value in row.items()}
 
 
 def positions_of(db: Session, session_id: str) -> tuple[StreamPosition, ...]:
@@ -60,7 +125,21 @@ def take_epoch(db: Session, session_id: str, now: datetime) -> int:
         select(func.max(TelemetryStream.epoch)).where(TelemetryStream.session_id == session_id)
     )
     epoch = (newest or 0) + 1
-    position(db, session_id, REPORT_STREAM, epoch, now)
+    db.add(
+        TelemetryStream(
+            session_id=session_id,
+            stream=REPORT_STREAM,
+            epoch=epoch,
+            phase_id=0,
+            active_s=0.0,
+            next_seq=0,
+            frames_stored=0,
+            frames_flagged=0,
+            first_at=now,
+            last_at=now,
+        )
+    )
+    db.flush()
     return epoch
 
 

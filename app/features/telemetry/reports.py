@@ -12,8 +12,8 @@ from app.features.sessions.service import (
     apply_command,
     session_by_id,
 )
+from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
-from app.features.telemetry.positions import position
 from app.models import ClientReport, Completion, Contact, Phase
 from app.wire.messages import (
     REPORT_STREAM,
@@ -27,47 +27,43 @@ from app.wire.messages import (
 from app.wire.messages import Report as ReportMessage
 
 
-def store_report(
-    db: Session,
-    context: AppContext,
-    session_id: str,
-    message: ReportMessage,
-    now: datetime,
-    outcome: Outcome,
-) -> None:
+def store_report(intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome) -> None:
     """Store a report and act on it; one that does not fit is kept with the reason."""
-    row = position(db, session_id, REPORT_STREAM, message.epoch, now)
-    if message.seq > row.next_seq:
-        outcome.notices.append(Resend(stream=row.stream, epoch=row.epoch, next_seq=row.next_seq))
+    at = intake.positions.at(session_id, REPORT_STREAM, message.epoch)
+    if message.seq > at.next_seq:
+        outcome.notices.append(Resend(**at.as_told.model_dump()))
         return
-    if message.seq < row.next_seq:
-        outcome.stored_up_to(row)
-        return
-    refusal = _act(db, context, session_id, message, outcome)
-    db.add(
-        ClientReport(
-            session_id=session_id,
-            epoch=message.epoch,
-            seq=message.seq,
-            type=message.body.kind,
-            payload=message.body.model_dump(),
-            accepted=refusal is None,
-            refusal=None if refusal is None else refusal.message[:400],
-            received_at=now,
-        )
-    )
-    row.next_seq, row.last_at = message.seq + 1, now
-    row.frames_stored += 1
-    outcome.stored_up_to(row)
-    if refusal is not None:
-        outcome.notices.append(
-            RefusedReport(
-                epoch=message.epoch,
-                seq=message.seq,
-                message=refusal.message,
-                remedy=refusal.remedy,
+    if message.seq == at.next_seq:
+        # Acting looks at what is stored, so the frames before it must be.
+        intake.flush()
+        refusal = _act(intake.db, intake.context, session_id, message, outcome)
+        intake.db.add(_row(session_id, message, refusal, intake.now))
+        at.stored(1)
+        if refusal is not None:
+            outcome.notices.append(
+                RefusedReport(
+                    epoch=message.epoch,
+                    seq=message.seq,
+                    message=refusal.message,
+                    remedy=refusal.remedy,
+                )
             )
-        )
+    outcome.stored_up_to(at)
+
+
+def _row(
+    session_id: str, message: ReportMessage, refusal: ReembodyError | None, now: datetime
+) -> ClientReport:
+    return ClientReport(
+        session_id=session_id,
+        epoch=message.epoch,
+        seq=message.seq,
+        type=message.body.kind,
+        payload=message.body.model_dump(),
+        accepted=refusal is None,
+        refusal=None if refusal is None else refusal.message[:400],
+        received_at=now,
+    )
 
 
 def _act(
@@ -91,11 +87,11 @@ def _act(
                 case ContactReport():
                     _require_phase(db, session_id, body.phase_id)
                     values = body.model_dump(exclude={"kind"})
-                    db.add(Contact(session_id=session_id, **values))
+                    db.add(Contact(session_id=session_id, epoch=message.epoch, **values))
                 case CompletionReport():
                     _require_phase(db, session_id, body.phase_id)
                     _require_new(db, session_id, body)
-                    db.add(_completion(session_id, body))
+                    db.add(_completion(session_id, message.epoch, body))
     except ReembodyError as refusal:
         return refusal
     return None
@@ -117,9 +113,10 @@ def _act_on_phase(
         outcome.phases_ended.append(body.phase_id)
 
 
-def _completion(session_id: str, body: CompletionReport) -> Completion:
+def _completion(session_id: str, epoch: int, body: CompletionReport) -> Completion:
     return Completion(
         session_id=session_id,
+        epoch=epoch,
         phase_id=body.phase_id,
         number=body.number,
         at_s=body.t_s,

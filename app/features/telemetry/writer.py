@@ -13,14 +13,13 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from sqlalchemy.exc import OperationalError
-from sqlalchemy.orm import Session
 
 from app.features.context import AppContext
-from app.features.telemetry.ingest import store_batch, store_loss, store_probe
+from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.reports import store_report
 from app.wire import BatchHeader, FrameFlags
-from app.wire.messages import Probed, Report
+from app.wire.messages import Probed, Produced, Report
 
 log = logging.getLogger(__name__)
 RETRY_S = 0.5
@@ -42,7 +41,7 @@ class Arrival:
 
     session_id: str
     sender: Sender
-    content: "BatchContent | Report | ProbeContent | LossContent"
+    content: "Content"
 
 
 @dataclass(frozen=True)
@@ -67,6 +66,9 @@ class LossContent:
     """The headset's connection broke."""
 
     cause: str
+
+
+Content = BatchContent | Report | ProbeContent | Produced | LossContent
 
 
 @dataclass
@@ -145,26 +147,31 @@ class TelemetryWriter:
         outcomes: dict[int, tuple[Sender, Outcome]] = {}
         ended: list[tuple[str, int]] = []
         with self.context.database.writing() as db:
+            intake = Intake(db, self.context, self.context.clock.utc_now())
+            intake.positions.fetch(arrival.session_id for arrival in arrivals)
             for arrival in arrivals:
                 _, outcome = outcomes.setdefault(id(arrival.sender), (arrival.sender, Outcome()))
-                self._store_one(db, arrival, outcome)
+                _store_one(intake, arrival, outcome)
                 outcome.messages += not isinstance(arrival.content, LossContent)
                 ended += [(arrival.session_id, phase) for phase in outcome.phases_ended]
                 outcome.phases_ended.clear()
+            intake.flush()
         for sender, outcome in outcomes.values():
             sender.deliver(outcome)
         for session_id, phase_id in ended:
             self.on_phase_ended(session_id, phase_id)
 
-    def _store_one(self, db: Session, arrival: Arrival, outcome: Outcome) -> None:
-        now = self.context.clock.utc_now()
-        session_id = arrival.session_id
-        match arrival.content:
-            case BatchContent(header, message, flags):
-                store_batch(db, session_id, header, message, flags, now, outcome)
-            case Report() as report:
-                store_report(db, self.context, session_id, report, now, outcome)
-            case ProbeContent(epoch, probe):
-                store_probe(db, session_id, epoch, probe, now)
-            case LossContent(cause):
-                store_loss(db, self.context, session_id, cause)
+
+def _store_one(intake: Intake, arrival: Arrival, outcome: Outcome) -> None:
+    session_id = arrival.session_id
+    match arrival.content:
+        case BatchContent(header, message, flags):
+            intake.store_batch(session_id, header, message, flags, outcome)
+        case Report() as report:
+            store_report(intake, session_id, report, outcome)
+        case ProbeContent(epoch, probe):
+            intake.store_probe(session_id, epoch, probe)
+        case Produced() as produced:
+            intake.store_produced(session_id, produced)
+        case LossContent(cause):
+            intake.store_loss(session_id, cause)

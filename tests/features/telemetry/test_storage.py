@@ -17,7 +17,7 @@ from app.database import Database
 from app.features.telemetry.encoding import ENCODING, Frames, decode_frames, encode_frames
 from app.features.telemetry.fold import Folder
 from app.features.telemetry.frames import concatenate, iter_frames, phase_frames
-from app.features.telemetry.ingest import store_batch
+from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
 from app.models import TelemetryBatch, TelemetryChunk
 from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, flag_frames
@@ -71,7 +71,9 @@ def store(
     now = lab.context.clock.utc_now() + timedelta(seconds=ahead_s)
     flags = flag_frames(batch.times_s, batch.values)
     with lab.database.writing() as db:
-        store_batch(db, session_id, batch.header, sent, flags, now, outcome)
+        intake = Intake(db, lab.context, now)
+        intake.store_batch(session_id, batch.header, sent, flags, outcome)
+        intake.flush()
     return outcome
 
 
