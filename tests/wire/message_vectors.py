@@ -1,0 +1,220 @@
+"""One JSON message of every kind, and messages that nobody may accept."""
+
+from typing import Any
+
+Json = dict[str, Any]
+BEYOND_A_DOUBLE = 2**53 + 1
+"""A count of nanoseconds that a double cannot hold: clients must hand it back digit by digit."""
+
+CONTACT: Json = {
+    "kind": "contact",
+    "phase_id": 2,
+    "surface": "hand/2/left",
+    "surface_kind": "side",
+    "box": 2,
+    "side": "left",
+    "body_part": "RightHand",
+    "begin_s": 20.25,
+    "end_s": 20.75,
+    "begin_active_s": 7.25,
+    "end_active_s": 7.75,
+    "effect": "side",
+}
+PHASE: Json = {
+    "kind": "phase",
+    "phase_id": 2,
+    "what": "started",
+    "t_s": 12.5,
+    "active_s": 0.0,
+    "cause": "headset",
+}
+COMPLETION: Json = {
+    "kind": "completion",
+    "phase_id": 2,
+    "number": 1,
+    "t_s": 31.5,
+    "active_s": 18.5,
+    "duration_s": 18.5,
+    "order": [4, 3, 2, 1],
+    "out_of_order_touches": 0,
+}
+PROBED: Json = {
+    "type": "probed",
+    "client_sent_s": 3.0,
+    "server_received_ns": BEYOND_A_DOUBLE,
+    "server_sent_ns": BEYOND_A_DOUBLE + 1000,
+    "client_received_s": 3.0015,
+}
+TIMED_OUT: Json = {**PROBED, **dict.fromkeys(list(PROBED)[2:])}
+PRODUCED: Json = {
+    "type": "produced",
+    "epoch": 1,
+    "streams": {"target": 540, "actual": 540, "reports": 3},
+}
+
+
+def report(body: Json) -> Json:
+    """A report with this body."""
+    return {"type": "report", "epoch": 1, "seq": 0, "body": body}
+
+
+FROM_CLIENT: list[tuple[str, Json]] = [
+    (
+        "hello_of_a_new_run",
+        {"type": "hello", "protocol": 1, "client": "Käthe's client 0.3", "epoch": None},
+    ),
+    ("hello_again", {"type": "hello", "protocol": 1, "client": "my client 0.3", "epoch": 7}),
+    ("materialised", report({"kind": "materialised", "t_s": 10.125})),
+    ("phase_started", report(PHASE)),
+    ("phase_paused", report({**PHASE, "what": "paused", "cause": "disconnected"})),
+    ("contact_with_a_side", report(CONTACT)),
+    (
+        "contact_with_the_target",
+        report(
+            {
+                **CONTACT,
+                "surface": "hand/target",
+                "surface_kind": "target",
+                "box": None,
+                "side": None,
+                "effect": "completed",
+            }
+        ),
+    ),
+    ("completion", report(COMPLETION)),
+    ("last_report_there_can_be", {**report(PHASE), "seq": 2**53 - 1, "epoch": 2**31 - 1}),
+    ("probe", {"type": "probe", "client_sent_s": 3.0}),
+    ("probed", PROBED),
+    ("probed_in_vain", TIMED_OUT),
+    ("produced", PRODUCED),
+    ("produced_of_one_stream", {**PRODUCED, "streams": {"reports": 4}}),
+]
+
+STATE: Json = {
+    "type": "state",
+    "version": 12,
+    "status": "active",
+    "step_index": 6,
+    "step_kind": "task",
+    "materialised": True,
+    "recording": True,
+    "phase": {
+        "phase_id": 2,
+        "kind": "task",
+        "limb": "hand",
+        "status": "running",
+        "latency_ms": 125.0,
+        "preparation_s": 5.0,
+        "duration_s": 60.0,
+        "freeze_s": 5.0,
+        "active_s": 12.5,
+        "completions": 1,
+        "pausing": False,
+        "resuming": False,
+    },
+    "participant": {"handedness": "right", "footedness": "both", "stature_m": 1.72},
+}
+STATE_BEFORE: Json = {
+    **STATE,
+    "status": "planned",
+    "step_index": None,
+    "step_kind": None,
+    "materialised": False,
+    "recording": False,
+    "phase": None,
+    "participant": {"handedness": None, "footedness": None, "stature_m": None},
+}
+POSITIONS: list[Json] = [
+    {"stream": "target", "epoch": 1, "next_seq": 540},
+    {"stream": "reports", "epoch": 1, "next_seq": 3},
+]
+WELCOME: Json = {
+    "type": "welcome",
+    "protocol": 1,
+    "session_id": "0f8c",
+    "epoch": 2,
+    "time_scale": 1.0,
+    "language": "de",
+    "avatar": "delayed_copy",
+    "on_disconnect": "pause",
+    "undelayed_parts": ["Hips"],
+    "tasks": {"hand": {"boxes": []}, "foot": {}},
+    "texts": {"t_pose": "Bitte die Arme ausstrecken."},
+    "positions": POSITIONS,
+    "state": STATE_BEFORE,
+}
+FLAG: Json = {
+    "type": "flag",
+    "code": "non_unit",
+    "stream": "actual",
+    "epoch": 1,
+    "seq": 7,
+    "frames": 1,
+    "message": "1 frame(s) hold a rotation that is not of unit length",
+}
+REFUSED: Json = {
+    "type": "refused",
+    "epoch": 1,
+    "seq": 2,
+    "message": "phase 2 is not running",
+    "remedy": "Follow the newest state.",
+}
+ANSWER: Json = {
+    "type": "probe",
+    "client_sent_s": 3.0,
+    "server_received_ns": BEYOND_A_DOUBLE,
+    "server_sent_ns": BEYOND_A_DOUBLE + 1000,
+}
+
+FROM_SERVER: list[tuple[str, Json]] = [
+    ("welcome", WELCOME),
+    ("state", STATE),
+    ("state_before_the_start", STATE_BEFORE),
+    ("ack", {"type": "ack", "positions": POSITIONS}),
+    ("resend", {"type": "resend", **POSITIONS[0]}),
+    ("flag", FLAG),
+    ("refused", REFUSED),
+    (
+        "error",
+        {
+            "type": "error",
+            "code": "not_signed_in",
+            "message": "this headset is not paired",
+            "remedy": "Pair it again.",
+        },
+    ),
+    ("answer_to_a_probe", ANSWER),
+]
+
+REFUSED_CLIENT: list[tuple[str, Json]] = [
+    ("unknown_type", {"type": "hallo", "protocol": 1, "client": "x", "epoch": None}),
+    ("unknown_field", {**PRODUCED, "surprise": 1}),
+    ("hello_with_epoch_zero", {"type": "hello", "protocol": 1, "client": "x", "epoch": 0}),
+    ("hello_without_protocol", {"type": "hello", "client": "x", "epoch": None}),
+    ("time_is_null", report({"kind": "materialised", "t_s": None})),
+    ("time_is_negative", report({**CONTACT, "end_s": -1.0})),
+    ("time_is_beyond_range", report({**PHASE, "t_s": 1.0e9 + 1.0})),
+    ("phase_id_is_negative", report({**CONTACT, "phase_id": -1})),
+    ("phase_id_is_beyond_range", report({**CONTACT, "phase_id": 2**31})),
+    ("phase_id_is_not_whole", report({**CONTACT, "phase_id": 1.5})),
+    ("unknown_arrow", report({**PHASE, "what": "stopped"})),
+    ("unknown_surface_kind", report({**CONTACT, "surface_kind": "ceiling"})),
+    ("surface_is_too_long", report({**CONTACT, "surface": "x" * 41})),
+    ("name_with_nul", report({**CONTACT, "body_part": "Right\0Hand"})),
+    ("completion_number_zero", report({**COMPLETION, "number": 0})),
+    ("order_is_too_long", report({**COMPLETION, "order": [1] * 17})),
+    ("seq_is_beyond_range", {**report(PHASE), "seq": 2**53}),
+    ("epoch_is_zero", {**report(PHASE), "epoch": 0}),
+    ("probed_by_half", {**PROBED, "client_received_s": None}),
+    ("produced_of_an_unknown_stream", {**PRODUCED, "streams": {"thoughts": 1}}),
+    ("produced_is_negative", {**PRODUCED, "streams": {"target": -1}}),
+]
+REFUSED_SERVER: list[tuple[str, Json]] = [
+    ("welcome_without_positions", {k: v for k, v in WELCOME.items() if k != "positions"}),
+    ("welcome_without_an_epoch", {**WELCOME, "epoch": None}),
+    ("ack_without_a_stream", {"type": "ack", "positions": [{"epoch": 1, "next_seq": 5}]}),
+    ("ack_in_words", {"type": "ack", "positions": "all"}),
+    ("state_without_a_phase", {k: v for k, v in STATE.items() if k != "phase"}),
+    ("unknown_flag", {**FLAG, "code": "ugly"}),
+    ("error_without_words", {"type": "error", "code": "invalid"}),
+]
