@@ -37,6 +37,7 @@ NAMING_CONVENTION = {
     "pk": "pk_%(table_name)s",
 }
 BUSY_TIMEOUT_S = 30.0
+LONGEST_LOG_PAGES = 65_536
 WRITERS = 20
 """Half of the threads that endpoints run on."""
 
@@ -73,9 +74,15 @@ class Database:
     @contextmanager
     def writing(self) -> Iterator[Session]:
         """One transaction: committed as the block ends, rolled back if it raises. Not nestable."""
-        with self._write_lock if self.is_sqlite else nullcontext(), self._writer() as session:
+        with self.write_turn(), self._writer() as session:
             yield session
             session.commit()
+
+    @contextmanager
+    def write_turn(self) -> Iterator[None]:
+        """Keep every other writer of this process out, on SQLite."""
+        with self._write_lock if self.is_sqlite else nullcontext():
+            yield
 
     @asynccontextmanager
     async def writing_async(self) -> AsyncIterator[Session]:
@@ -154,7 +161,14 @@ def _prepare_sqlite(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEn
         return
     # Transactions are opened explicitly by `_begin_sqlite`.
     dbapi_connection.isolation_level = None
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+    pragmas = (
+        "journal_mode=WAL",
+        "synchronous=FULL",
+        "foreign_keys=ON",
+        # The server copies the log itself, beside its commits; this is only a limit to its length.
+        f"wal_autocheckpoint={LONGEST_LOG_PAGES}",
+    )
+    for pragma in pragmas:
         dbapi_connection.execute(f"PRAGMA {pragma}")
 
 

@@ -166,13 +166,29 @@ def test_readers_meet_every_frame_once_while_folding(lab: Lab, session_id: str) 
 
 
 def test_a_wall_clock_that_was_set_back_hides_nothing(lab: Lab, session_id: str) -> None:
-    """Batches folded out of order are still read in the order of their seqs."""
-    store(lab, session_id, 0, numbered(0, 10), ahead_s=6000)
-    store(lab, session_id, 10, numbered(10, 10))
-    store(lab, session_id, 20, numbered(20, 10), ahead_s=6000)
+    """Batches stamped with a later time than those behind them are folded and read in order."""
+    for second, ahead_s in enumerate((6000.0, 6000.0, AHEAD_S, AHEAD_S)):
+        times_s = 2.0 * second + np.linspace(0.0, 0.1, 10)
+        store(lab, session_id, 10 * second, numbered(0, 10), ahead_s=ahead_s, times_s=times_s)
     fold(lab)
-    assert batches(lab, session_id) == 2
-    assert read(lab.database, session_id).seq.tolist() == list(range(30))
+    assert batches(lab, session_id) == 0
+    assert read(lab.database, session_id).seq.tolist() == list(range(40))
+
+
+def test_a_chunk_waits_until_it_is_whole(lab: Lab, session_id: str) -> None:
+    """While a stream goes on, only whole seconds are folded; its rest follows when it is quiet."""
+    now = lab.context.clock.utc_now()
+    folder = Folder(replace(lab.context, clock=Clock(utc_now=lambda: now + LATER)))
+    for batch in range(16):
+        times_s = (10 * batch + np.arange(10)) / 90.0
+        newest_s = LATER.total_seconds() - (15 - batch) / 9.0
+        store(lab, session_id, 10 * batch, numbered(0, 10), ahead_s=newest_s, times_s=times_s)
+    while folder.fold_once():
+        pass
+    assert batches(lab, session_id) == 7
+    later = Folder(replace(lab.context, clock=Clock(utc_now=lambda: now + 2 * LATER)))
+    assert later.fold_once() == 7
+    assert read(lab.database, session_id).seq.tolist() == list(range(160))
 
 
 def test_a_chunk_is_found_by_its_sound_times(lab: Lab, session_id: str) -> None:
