@@ -1,7 +1,12 @@
-"""Alembic's environment: migrates politely, with a limit on how long it waits for locks."""
+"""Alembic's environment: all steps in one transaction, with a limit on how long it waits for locks.
+
+Whoever is interrupted finds the schema from before, whole. Alembic believes that SQLite cannot undo
+a changed schema, because Python's driver used to commit before such statements; ours leaves
+transactions to `app.database`, so it can.
+"""
 
 from alembic import context
-from sqlalchemy import text
+from sqlalchemy import Connection, text
 
 import app.models  # noqa: F401 - registers the tables
 from app.database import Base, make_engine
@@ -13,20 +18,41 @@ def run() -> None:
     """Migrate the database whose address `alembic_config` put into the attributes."""
     url = context.config.attributes.get("url") or context.config.get_main_option("sqlalchemy.url")
     engine = make_engine(url).execution_options(reembody_writes=True)
-    with engine.connect() as connection:
-        if connection.dialect.name == "postgresql":
-            connection.execute(text(f"SET lock_timeout = '{LOCK_TIMEOUT}'"))
-            connection.commit()
-        context.configure(
-            connection=connection,
-            target_metadata=Base.metadata,
-            render_as_batch=connection.dialect.name == "sqlite",
-            compare_type=True,
-            transaction_per_migration=False,
-        )
-        with context.begin_transaction():
-            context.run_migrations()
-    engine.dispose()
+    applied: list[str] = []
+    try:
+        with engine.connect() as connection:
+            _prepare(connection)
+            context.configure(
+                connection=connection,
+                target_metadata=Base.metadata,
+                render_as_batch=connection.dialect.name == "sqlite",
+                compare_type=True,
+                transactional_ddl=True,
+                transaction_per_migration=False,
+                on_version_apply=lambda step, **_: applied.append(step.up_revision_id),
+            )
+            with context.begin_transaction():
+                context.run_migrations()
+                if applied and connection.dialect.name == "sqlite":
+                    _check_references(connection)
+    finally:
+        engine.dispose()
+
+
+def _prepare(connection: Connection) -> None:
+    if connection.dialect.name == "postgresql":
+        connection.execute(text(f"SET lock_timeout = '{LOCK_TIMEOUT}'"))
+        connection.commit()
+    elif connection.dialect.name == "sqlite":
+        # Changing a table on SQLite is making it anew: dropping the old one must not count as
+        # deleting what others refer to. It can only be set outside of a transaction.
+        connection.connection.cursor().execute("PRAGMA foreign_keys=OFF")
+
+
+def _check_references(connection: Connection) -> None:
+    broken = connection.execute(text("PRAGMA foreign_key_check")).all()
+    if broken:
+        raise RuntimeError(f"migrating left rows that refer to nothing: {broken[:5]}")
 
 
 run()

@@ -1,0 +1,141 @@
+"""Stopping a migration somewhere in it, and telling which schema is left.
+
+Run as a program it migrates the database at the address it is given and kills itself meanwhile:
+`python -m tests.faults.interrupted URL REVISION AFTER_S`.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from alembic import command
+from alembic.script import ScriptDirectory
+from sqlalchemy import Connection, Engine, column, event, inspect, select, table
+
+from app.database import alembic_config, open_database
+from tests.support.filled import VERSION_TABLE, contents
+
+READING = {"SELECT", "PRAGMA", "SHOW", "SET", "BEGIN"}
+Step = tuple[str, str]
+"""The revision before, and the one that it becomes."""
+
+
+class Interrupted(Exception):
+    """The migration was stopped here."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a database is: its revision, its schema in words, everything in its tables."""
+
+    revision: str | None
+    schema: dict[str, Any]
+    contents: dict[str, list[dict[str, Any]]]
+
+
+def steps() -> list[Step]:
+    """Every step there is, the oldest first; `base` is an empty database."""
+    script = ScriptDirectory.from_config(alembic_config("sqlite://"))
+    newest_first = [revision.revision for revision in script.walk_revisions()]
+    revisions = ["base", *reversed(newest_first)]
+    return list(pairwise(revisions))
+
+
+def upgrade(url: str, revision: str) -> None:
+    """Migrate to a revision, as the product does."""
+    if revision != "base":
+        command.upgrade(alembic_config(url), revision)
+
+
+def found(url: str) -> Found:
+    """Look at a database."""
+    database = open_database(url)
+    try:
+        with database.engine.connect() as connection:
+            look = inspect(connection)
+            names = look.get_table_names()
+            schema = {name: _in_words(connection, name) for name in names}
+            version = select(column("version_num")).select_from(table(VERSION_TABLE))
+            revision = connection.scalar(version) if VERSION_TABLE in names else None
+        schema.pop(VERSION_TABLE, None)
+        return Found(revision, schema, contents(database.engine))
+    finally:
+        database.close()
+
+
+def _in_words(connection: Connection, name: str) -> dict[str, Any]:
+    look = inspect(connection)
+    return {
+        "columns": [{**one, "type": str(one["type"])} for one in look.get_columns(name)],
+        "key": look.get_pk_constraint(name),
+        "references": sorted(look.get_foreign_keys(name), key=str),
+        "unique": sorted(look.get_unique_constraints(name), key=str),
+        "checks": sorted(look.get_check_constraints(name), key=str),
+        "indices": sorted((_plain(index) for index in look.get_indexes(name)), key=str),
+    }
+
+
+def _plain(index: Any) -> dict[str, Any]:
+    options = {name: str(value) for name, value in index.get("dialect_options", {}).items()}
+    return {**index, "dialect_options": options}
+
+
+@contextmanager
+def counted() -> Iterator[list[str]]:
+    """The statements that change something, as they are executed."""
+    seen: list[str] = []
+
+    def note(_c: Any, _cursor: Any, statement: str, *_: Any) -> None:
+        if statement.split(None, 1)[0].upper() not in READING:
+            seen.append(statement)
+
+    event.listen(Engine, "after_cursor_execute", note)
+    try:
+        yield seen
+    finally:
+        event.remove(Engine, "after_cursor_execute", note)
+
+
+@contextmanager
+def stopped_after(changes: int) -> Iterator[None]:
+    """Raise Interrupted behind the statement with this number, or instead of committing."""
+    with counted() as seen:
+
+        def stop(*_: Any) -> None:
+            if len(seen) >= changes:
+                raise Interrupted
+
+        for moment in ("after_cursor_execute", "commit"):
+            event.listen(Engine, moment, stop)
+        try:
+            yield
+        finally:
+            for moment in ("after_cursor_execute", "commit"):
+                event.remove(Engine, moment, stop)
+
+
+def killed_after(url: str, revision: str, after_s: float) -> bool:
+    """Migrate in a process that is killed so long after its first statement; whether it was."""
+    arguments = [sys.executable, "-m", "tests.faults.interrupted", url, revision, str(after_s)]
+    ended = subprocess.run(arguments, check=False, capture_output=True, text=True)
+    assert ended.returncode in (0, -signal.SIGKILL), ended.stderr
+    return ended.returncode != 0
+
+
+def _main(url: str, revision: str, after_s: str) -> None:
+    kill = threading.Timer(float(after_s), os.kill, (os.getpid(), signal.SIGKILL))
+    kill.daemon = True
+    # The time counts from the first statement, not from loading what is needed to get there.
+    event.listen(Engine, "before_cursor_execute", lambda *_: kill.start(), once=True)
+    command.upgrade(alembic_config(url), revision)
+
+
+if __name__ == "__main__":
+    _main(*sys.argv[1:])

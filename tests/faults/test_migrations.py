@@ -1,0 +1,161 @@
+"""A migration that is interrupted anywhere leaves the old schema or the new one, with all data.
+
+Fault 28 of the matrix. Every revision there is takes part, also those that are added later.
+"""
+
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.database import open_database
+from tests.faults.bench import Bench, PostgresBench, SqliteBench
+from tests.faults.interrupted import (
+    Found,
+    Interrupted,
+    Step,
+    counted,
+    found,
+    killed_after,
+    steps,
+    stopped_after,
+    upgrade,
+)
+from tests.support.filled import fill
+from tests.support.postgres import running_cluster
+
+STEPS = steps()
+KILLS, MANY_KILLS = 4, 60
+STOPS_ON_POSTGRES = 10
+"""PostgreSQL is slow to copy; the long form stops at every statement there too."""
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def bench(request: pytest.FixtureRequest, tmp_path: Path) -> Bench:
+    """Where databases are made."""
+    return SqliteBench(tmp_path) if request.param == "sqlite" else PostgresBench(running_cluster())
+
+
+@dataclass(frozen=True)
+class Known:
+    """A filled database before a step, and what it is before and after, undisturbed."""
+
+    url: str
+    old: Found
+    new: Found
+    changes: int
+    took_s: float
+
+
+@contextmanager
+def undisturbed(bench: Bench, step: Step) -> Iterator[Known]:
+    """Take the step once on a copy."""
+    before, after = step
+    with bench.empty() as url:
+        upgrade(url, before)
+        database = open_database(url)
+        fill(database.engine)
+        database.close()
+        old = found(url)
+        with bench.copy(url) as copy:
+            began_s = time.monotonic()
+            with counted() as changes:
+                upgrade(copy, after)
+            took_s = time.monotonic() - began_s
+            yield Known(url, old, found(copy), len(changes), took_s)
+
+
+@pytest.mark.parametrize("step", STEPS, ids="-".join)
+def test_a_step_stopped_at_a_statement_can_be_taken_again(
+    bench: Bench, step: Step, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Behind every statement and instead of the commit: the old schema; then the new one."""
+    most = None if isinstance(bench, SqliteBench) else STOPS_ON_POSTGRES
+    stop_often(bench, step, most, capsys)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("step", STEPS, ids="-".join)
+def test_a_step_stopped_at_every_statement_on_postgresql(
+    step: Step, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The same without leaving any out."""
+    stop_often(PostgresBench(running_cluster()), step, None, capsys)
+
+
+def stop_often(
+    bench: Bench, step: Step, most: int | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Stop behind each statement, or behind so many of them evenly spread; the last always."""
+    with undisturbed(bench, step) as known:
+        stops = np.unique(np.linspace(1, known.changes, most or known.changes, dtype=int)).tolist()
+        assert stops[-1] == known.changes > 1
+        for changes in stops:
+            with bench.copy(known.url) as url:
+                with pytest.raises(Interrupted), stopped_after(changes):
+                    upgrade(url, step[1])
+                assert found(url) == known.old
+                upgrade(url, step[1])
+                assert found(url) == known.new
+    tell(
+        capsys,
+        bench,
+        f"{'-'.join(step)}: stopped at {len(stops)} of {known.changes} statements, unusable 0",
+    )
+
+
+def tell(capsys: pytest.CaptureFixture[str], bench: Bench, figure: str) -> None:
+    """Print a figure."""
+    with capsys.disabled():
+        sys.stdout.write(f"\n{type(bench).__name__.removesuffix('Bench')}, {figure}\n")
+
+
+@pytest.mark.parametrize("step", STEPS, ids="-".join)
+def test_a_step_keeps_every_row(bench: Bench, step: Step) -> None:
+    """What both schemas know is the same before and after."""
+    with undisturbed(bench, step) as known:
+        for table, rows in known.old.contents.items():
+            now = known.new.contents.get(table)
+            if now is None:
+                continue
+            shared = rows[0].keys() & now[0].keys()
+            assert [{name: row[name] for name in shared} for row in now] == [
+                {name: row[name] for name in shared} for row in rows
+            ]
+
+
+def test_a_killed_migration_can_be_taken_again(
+    bench: Bench, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """SIGKILL at random moments of the way from the first revision to the newest."""
+    kill_often(bench, KILLS, capsys)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(1200)
+def test_a_migration_killed_many_times(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+    """The same at many more moments."""
+    kill_often(bench, MANY_KILLS, capsys)
+
+
+def kill_often(bench: Bench, kills: int, capsys: pytest.CaptureFixture[str]) -> None:
+    """Start, kill, look, go on; the moments are drawn from a seed."""
+    rng = np.random.default_rng(28)
+    step = (STEPS[0][1], STEPS[-1][1])
+    outcomes = {"old": 0, "new": 0}
+    with undisturbed(bench, step) as known:
+        for _ in range(kills):
+            with bench.copy(known.url) as url:
+                killed = killed_after(url, step[1], float(rng.uniform(0.0, 2 * known.took_s)))
+                now = found(url)
+                assert now in (known.old, known.new)
+                assert killed or now == known.new
+                outcomes["old" if now == known.old else "new"] += 1
+                upgrade(url, step[1])
+                assert found(url) == known.new
+    tell(capsys, bench, f"killed {kills} times, found {outcomes}, unusable 0")
