@@ -15,6 +15,7 @@ from app.features.devices.endpoints import router as devices
 from app.features.exports.endpoints import router as exports
 from app.features.headset.socket import serve_headset
 from app.features.participants.endpoints import router as participants
+from app.features.receipts.endpoints import router as receipts
 from app.features.sessions.endpoints import router as sessions
 from app.features.studies.endpoints import router as studies
 from app.features.tablet.endpoints import router as tablet
@@ -32,7 +33,11 @@ class Health(BaseModel):
 def build_router() -> APIRouter:
     """The routes under /api."""
     router = APIRouter(prefix="/api")
-    for part in (accounts, studies, participants, sessions, devices, tablet, analysis, exports):
+    parts = (
+        *(accounts, studies, participants, sessions, devices, tablet),
+        *(analysis, exports, receipts),
+    )
+    for part in parts:
         router.include_router(part)
     router.add_api_route("/health", get_health, methods=["GET"], tags=["health"])
     router.add_api_websocket_route("/vr/stream", vr_stream)

@@ -3,7 +3,7 @@
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -13,6 +13,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+INCOMPLETE = 1
 UNUSABLE = 2
 
 
@@ -59,6 +60,24 @@ def export(
         fail(f"{error.message}. {error.remedy}".strip())
     except (ValueError, OSError) as error:
         fail(str(error))
+
+
+@app.command()
+def verify(
+    session: Annotated[str, typer.Option(help="Id of the session.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print the receipt as JSON.")] = False,
+) -> None:
+    """Prove from the record what of a session is there; exit code 1 if anything is missing."""
+    from app.cli.verifying import verify_session
+    from app.errors import ReembodyError
+
+    try:
+        text, complete = verify_session(session, as_json=as_json)
+    except ReembodyError as error:
+        fail(f"{error.message}. {error.remedy}".strip())
+    print(text)
+    if not complete:
+        raise typer.Exit(INCOMPLETE)
 
 
 @app.command()
@@ -117,7 +136,7 @@ def rehearse(
         fail(str(error))
 
 
-def fail(message: str) -> None:
+def fail(message: str) -> NoReturn:
     """Say what is wrong and leave with the status for unusable input."""
     print(f"reembody: {message}", file=sys.stderr)
     raise typer.Exit(UNUSABLE)

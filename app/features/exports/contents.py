@@ -5,6 +5,7 @@ from the database while it is written; only the README at the end knows what cam
 """
 
 import hashlib
+import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -26,9 +27,10 @@ from app.features.analysis.tables import (
     sessions_table,
 )
 from app.features.exports.cells import csv_pieces
-from app.features.exports.names import samples_path
+from app.features.exports.names import receipt_path, samples_path
 from app.features.exports.readme import FileCount, Origin, readme_text
 from app.features.exports.samples import SampleFile
+from app.features.receipts.service import receipt_of
 from app.features.studies.service import study_by_key
 from app.models import StudyVersion
 
@@ -43,6 +45,8 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "events": events_table,
 }
 README = "README.txt"
+FOLDERS = {"samples": ".csv", "receipts": ".json"}
+"""The folders of an export, and how their files end."""
 TOP_LEVEL = frozenset({*(f"{name}.csv" for name in (*TABLE_FILES, "codebook")), README})
 
 
@@ -66,7 +70,7 @@ class Contents:
     sessions: int = 0
 
     def members(self) -> Iterator[Member]:
-        """Tables, codebook, the frames of each session, and the README last."""
+        """Tables, codebook, frames and receipt of each session, and the README last."""
         sessions = sessions_table(self.db, self.study_key, self.kind)
         self.sessions = len(sessions)
         for name, table in TABLE_FILES.items():
@@ -77,7 +81,12 @@ class Contents:
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
             samples = SampleFile(self.db, session_id, bool(simulated), avatar)
             yield self._member(samples_path(code, session_id), samples.pieces())
+            yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         yield Member(README, iter([self._readme(sessions).encode()]))
+
+    def _receipt(self, session_id: str) -> Iterator[bytes]:
+        """What of the session is there, and the proof; told by this very export's record."""
+        yield json.dumps(receipt_of(self.db, session_id).as_json(), indent=2).encode() + b"\n"
 
     def _member(self, path: str, pieces: Iterator[bytes]) -> Member:
         return Member(path, self._counted(path, pieces))

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from app.errors import Conflict
-from app.features.exports.contents import README, TOP_LEVEL, Member
+from app.features.exports.contents import FOLDERS, README, TOP_LEVEL, Member
 from app.features.exports.readme import MARK
 
 Progress = Callable[[str], None]
@@ -32,7 +32,8 @@ def write_folder(members: Iterable[Member], to: Path, *, progress: Progress = si
     beside = Path(tempfile.mkdtemp(prefix=f".{to.name}.", suffix=".partial", dir=to.parent))
     try:
         fresh = beside / "new"
-        (fresh / "samples").mkdir(parents=True)
+        for folder in FOLDERS:
+            (fresh / folder).mkdir(parents=True)
         for member in members:
             progress(member.path)
             with (fresh / member.path).open("xb") as file:
@@ -54,13 +55,16 @@ def check_target(to: Path) -> None:
         raise _refused(to, "is not an export of ours")
     for path in sorted(to.rglob("*")):
         inside = path.relative_to(to)
-        ours = str(inside) in TOP_LEVEL or inside == Path("samples") or _is_sample(inside)
+        ours = str(inside) in TOP_LEVEL or _is_in_folder(inside)
         if not ours or path.is_symlink():
             raise _refused(to, f"also holds {inside}, which no export wrote")
 
 
-def _is_sample(inside: Path) -> bool:
-    return inside.parent == Path("samples") and inside.suffix == ".csv"
+def _is_in_folder(inside: Path) -> bool:
+    return any(
+        inside == Path(folder) or (inside.parent == Path(folder) and inside.suffix == suffix)
+        for folder, suffix in FOLDERS.items()
+    )
 
 
 def _swap(fresh: Path, to: Path, old: Path) -> None:

@@ -16,6 +16,11 @@ def samples_path(participant_code: str, session_id: str) -> str:
     return f"samples/{safe_name(participant_code)}_{safe_name(session_id)}.csv"
 
 
+def receipt_path(participant_code: str, session_id: str) -> str:
+    """Where the receipt of a session stands in an export."""
+    return f"receipts/{safe_name(participant_code)}_{safe_name(session_id)}.json"
+
+
 def archive_name(study_key: str, kind: str) -> str:
     """The file name of an export as one file."""
     return f"reembody_{safe_name(study_key)}_{safe_name(kind)}.zip"

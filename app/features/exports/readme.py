@@ -20,6 +20,9 @@ Reading the files
   and seq; the cells of a stream are empty where it has no frame. Positions in metres (world: x to
   the right, y up, -z ahead), quaternions w, x, y, z. Frames stand as they came: NaN and Infinity
   are values that were sent, and such rows are flagged.
+  receipts/ holds one file per session that says how many frames were made, stored and are missing,
+  whether the event log was changed, whether the completions follow from the contacts, and which
+  latency the avatar really had. "complete": true means that nothing is missing.
   The hips carry no latency. latency_ms is what was added to the delay of the equipment.
 """
 

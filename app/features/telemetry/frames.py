@@ -33,8 +33,23 @@ def iter_frames(
 ) -> Iterator[tuple[int, Frames]]:
     """Pieces of about a second in seq order, each with its phase_id; of one phase or of all.
 
-    `since_s` leaves out chunks that end before that client time.
+    `since_s` leaves out chunks that end before that client time. Raises ValueError where a piece
+    is damaged.
     """
+    for piece in iter_pieces(db, session_id, stream, epoch, phase_id, since_s=since_s):
+        yield piece.phase_id, decode_piece(piece)
+
+
+def iter_pieces(
+    db: Session,
+    session_id: str,
+    stream: str,
+    epoch: int,
+    phase_id: int | None = None,
+    *,
+    since_s: float | None = None,
+) -> Iterator[Piece]:
+    """The same, as it is stored: chunks, and batches that are not in a chunk yet."""
     # Batches first: one that is folded between the two reads is then seen twice, never missed;
     # seqs that were seen already are left out below.
     batches = _batches(db, session_id, stream, epoch, phase_id)
@@ -51,18 +66,19 @@ def iter_frames(
         chunk_query = chunk_query.where(TelemetryChunk.phase_id == phase_id)
     if since_s is not None:
         chunk_query = chunk_query.where(TelemetryChunk.t_last_s >= since_s)
-    # Usually all batches come behind the chunks; a wall clock that was set back folds them out of
-    # order. Of a chunk and a batch with the same seq the chunk holds more.
+    # Of a chunk and a batch with the same seq the chunk holds more.
     chunks = db.scalars(chunk_query.execution_options(yield_per=64))
     pieces: Iterator[Piece] = merge(chunks, batches, key=lambda piece: piece.seq_first)
     next_seq = 0
     for row in pieces:
         if row.seq_first >= next_seq:
-            yield (
-                row.phase_id,
-                _of_chunk(row) if isinstance(row, TelemetryChunk) else _of_batch(row),
-            )
+            yield row
             next_seq = row.seq_first + row.frame_count
+
+
+def decode_piece(piece: Piece) -> Frames:
+    """Its frames; raises ValueError where its bytes are not what was written."""
+    return _of_chunk(piece) if isinstance(piece, TelemetryChunk) else _of_batch(piece)
 
 
 def phase_frames(

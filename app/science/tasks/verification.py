@@ -21,17 +21,26 @@ _Step = ContactChange | Command
 
 
 def rederive(
-    rules: TaskRules, intervals: Iterable[ContactInterval], commands: Iterable[Command]
+    rules: TaskRules,
+    intervals: Iterable[ContactInterval],
+    commands: Iterable[Command],
+    *,
+    initial: TaskState | None = None,
 ) -> tuple[Completion, ...]:
     """The completions that follow from stored intervals and commands (in the order given).
 
-    Raises TaskRuleError where the record contradicts itself.
+    `initial` is for a run that began where another had stopped; by default the rules' own. Raises
+    TaskRuleError where the record contradicts itself.
     """
-    return completions(replay(rules, intervals, commands)[1])
+    return completions(replay(rules, intervals, commands, initial=initial)[1])
 
 
 def replay(
-    rules: TaskRules, intervals: Iterable[ContactInterval], commands: Iterable[Command]
+    rules: TaskRules,
+    intervals: Iterable[ContactInterval],
+    commands: Iterable[Command],
+    *,
+    initial: TaskState | None = None,
 ) -> tuple[TaskState, tuple[TaskEvent, ...]]:
     """Final state and all events that follow from stored intervals and commands.
 
@@ -41,7 +50,7 @@ def replay(
     told: dict[float, list[_Step]] = defaultdict(list)
     for command in commands:
         told[command.time_s].append(command)
-    state = rules.initial()
+    state = initial or rules.initial()
     events: list[TaskEvent] = []
     for time_s in sorted(contacts.keys() | told.keys()):
         counted = state.started and not state.paused

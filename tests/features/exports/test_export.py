@@ -55,12 +55,13 @@ def _rows(data: bytes) -> list[dict[str, str]]:
 
 
 def test_an_export_has_every_file(filled: Database, tmp_path: Path) -> None:
-    """The tables, the codebook, the README and one file of frames for each session."""
+    """The tables, the codebook, the README, and frames and a receipt for each session."""
     done = _export(filled, tmp_path / "out")
     tree = _tree(tmp_path / "out")
     samples = {name for name in tree if name.startswith("samples/")}
-    assert set(tree) - samples == FILES
-    assert len(samples) == done.sessions == 2
+    receipts = {name for name in tree if name.startswith("receipts/")}
+    assert set(tree) - samples - receipts == FILES
+    assert len(samples) == len(receipts) == done.sessions == 2
     assert done.files == len(tree)
 
 

@@ -1,0 +1,1 @@
+"""The receipt: what of a session is there, proven from what is stored."""

@@ -1,0 +1,63 @@
+"""The delay that the avatar had in each phase, beside the ordered one."""
+
+from dataclasses import dataclass
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.models import Phase, PhaseLatency
+
+MS_PER_S = 1000.0
+
+
+@dataclass(frozen=True)
+class LatencyReceipt:
+    """One phase. Null where it could not be told, with the reason; low and high span 95 %.
+
+    `off`: by more than 10 ms and more than one frame.
+    """
+
+    phase_id: int
+    kind: str
+    limb: str | None
+    latency_ms: float
+    achieved_latency_ms: float | None
+    achieved_latency_low_ms: float | None
+    achieved_latency_high_ms: float | None
+    movement_s: float
+    off: bool
+    reason: str | None
+
+
+def latency_receipts(db: Session, session_id: str) -> tuple[LatencyReceipt, ...]:
+    """Every phase that was carried through and whose frames have been looked at."""
+    rows = db.execute(
+        select(Phase, PhaseLatency)
+        .join(
+            PhaseLatency,
+            (PhaseLatency.session_id == Phase.session_id)
+            & (PhaseLatency.phase_id == Phase.phase_id),
+        )
+        .where(Phase.session_id == session_id)
+        .order_by(Phase.phase_id)
+    )
+    return tuple(_receipt(phase, latency) for phase, latency in rows)
+
+
+def _receipt(phase: Phase, latency: PhaseLatency) -> LatencyReceipt:
+    return LatencyReceipt(
+        phase_id=phase.phase_id,
+        kind=phase.kind,
+        limb=phase.limb,
+        latency_ms=phase.latency_ms,
+        achieved_latency_ms=_ms(latency.achieved_s),
+        achieved_latency_low_ms=_ms(latency.low_s),
+        achieved_latency_high_ms=_ms(latency.high_s),
+        movement_s=latency.movement_s,
+        off=latency.flagged,
+        reason=latency.reason,
+    )
+
+
+def _ms(time_s: float | None) -> float | None:
+    return None if time_s is None else MS_PER_S * time_s

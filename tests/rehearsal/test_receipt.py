@@ -1,0 +1,40 @@
+"""The receipt of a whole rehearsed session, beside what its headset knows it sent."""
+
+import hashlib
+
+import pytest
+from sqlalchemy.orm import Session
+
+from app.features.receipts.service import Receipt, receipt_of
+from app.wire.messages import REPORT_STREAM
+from tests.rehearsal.performed import Performed
+
+
+@pytest.fixture
+def receipt(performed: Performed, db: Session) -> Receipt:
+    """Made from the record alone."""
+    return receipt_of(db, performed.session_id)
+
+
+def test_the_session_is_complete(receipt: Receipt) -> None:
+    """Nothing is missing, nothing was changed, everything follows."""
+    assert receipt.problems == ()
+    assert receipt.complete
+    assert receipt.chain_ok
+
+
+def test_sent_is_what_the_headset_sent(performed: Performed, receipt: Receipt) -> None:
+    """By stream and epoch, counted on either side."""
+    told = {(one.stream, one.epoch): (one.sent, one.stored) for one in receipt.streams}
+    sent = {key: len(known) for key, known in performed.ledger.sent.items()}
+    assert told == {key: (count, count) for key, count in sent.items()}
+    assert any(stream == REPORT_STREAM for stream, _ in told)
+    assert len({one.sha256 for one in receipt.streams} - {hashlib.sha256().hexdigest()}) >= 3
+
+
+def test_every_completion_follows_from_its_contacts(performed: Performed, receipt: Receipt) -> None:
+    """In each of the six task phases."""
+    assert len(receipt.completions) == 6
+    assert all(one.agree for one in receipt.completions)
+    rederived = sum(one.rederived for one in receipt.completions)
+    assert rederived == performed.report["completions"] > 0
