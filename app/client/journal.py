@@ -2,7 +2,8 @@
 
 Everything goes into the journal first, in order, and leaves it when it is acknowledged. After a
 reconnect what is left is sent again, in the same order. The journal is bounded: when it is full the
-producer has to wait, which it can see; nothing is ever dropped.
+producer has to wait, which it can see; nothing is ever dropped. This one lives in memory and dies
+with its process; `FileJournal` does not.
 """
 
 from collections.abc import Iterable, Iterator
@@ -19,6 +20,11 @@ class Entry:
     epoch: int
     seq_end: int
     message: bytes | str
+
+    @property
+    def size_bytes(self) -> int:
+        """What it counts for against the journal's limit."""
+        return len(self.message)
 
 
 @dataclass
@@ -51,7 +57,8 @@ class Journal:
         return len(self._entries)
 
     def __iter__(self) -> Iterator[Entry]:
-        return iter(tuple(self._entries.values()))
+        entries = (self.at(place) for place in range(self.first, self.end))
+        return iter(tuple(entry for entry in entries if entry is not None))
 
     def at(self, place: int) -> Entry | None:
         """The message at a place, None if it has left or has not come."""
@@ -66,11 +73,15 @@ class Journal:
         """How far the client itself has come: the next seq of every (stream, epoch)."""
         return dict(self._produced)
 
+    def produced_up_to(self, stream: str, epoch: int, next_seq: int) -> None:
+        """The client has made all of `seq < next_seq`, whether or not it is journaled yet."""
+        self._produced[stream, epoch] = next_seq
+
     def add(self, entry: Entry) -> None:
         """Keep a message until it is acknowledged."""
         self._entries[self.end] = entry
-        self._produced[entry.stream, entry.epoch] = entry.seq_end
-        self._bytes += len(entry.message)
+        self.produced_up_to(entry.stream, entry.epoch, entry.seq_end)
+        self._bytes += entry.size_bytes
         self.end += 1
 
     def acknowledge(self, positions: Iterable[tuple[str, int, int]]) -> None:
@@ -83,5 +94,5 @@ class Journal:
             if entry.seq_end > self.stored_up_to(entry.stream, entry.epoch):
                 break
             del self._entries[self.first]
-            self._bytes -= len(entry.message)
+            self._bytes -= entry.size_bytes
             self.first += 1

@@ -10,9 +10,9 @@ from typing import Any
 import httpx2
 from websockets.sync.client import ClientConnection, connect
 
-from app.database import Database
+from app.database import Database, open_database
 from tests.features.lab import STUDY, Json, ok
-from tests.support.server import LiveServer
+from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 SUBPROTOCOL = "reembody.v1"
 HELLO: Json = {"type": "hello", "protocol": 1, "client": "test"}
@@ -122,3 +122,15 @@ class Site:
             headset.say({**HELLO, "epoch": epoch})
             headset.welcome = headset.hear("welcome")
             yield headset
+
+
+@contextmanager
+def open_site(server: LiveServer) -> Iterator[Site]:
+    """A running server on its embedded SQLite, with its operator signed in."""
+    with server.client() as operator:
+        ok(operator.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+        database = open_database(f"sqlite:///{server.data_dir / 'reembody.sqlite'}")
+        try:
+            yield Site(server, operator, database)
+        finally:
+            database.close()

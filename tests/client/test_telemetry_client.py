@@ -1,0 +1,135 @@
+"""The Python client against the real server: what it told it had made, and what it left behind."""
+
+import asyncio
+import time
+from pathlib import Path
+
+from sqlalchemy import select
+
+from app.client.file_journal import FileJournal
+from app.client.journal import Journal
+from app.client.telemetry import TelemetryClient
+from app.features.receipts.service import Receipt, receipt_of
+from app.features.telemetry.frames import concatenate, iter_frames
+from app.models import TelemetryStream
+from app.wire import StreamName
+from tests.faults.record import record_of
+from tests.features.headset.site import Site, open_site
+from tests.support.server import LiveServer
+from tests.wire.samples import message, standing
+
+FRAMES = 9
+
+
+def client(site: Site, token: str, journal: Journal) -> TelemetryClient:
+    """A client of the site's server."""
+    url = f"{site.server.url.replace('http', 'ws', 1)}/api/vr/stream"
+    return TelemetryClient(url, token, "test", time.monotonic, journal=journal)
+
+
+async def send(headset: TelemetryClient, batches: int, first: int = 0) -> None:
+    """Journal so many batches of the target."""
+    for at in range(first, first + batches):
+        text = message(standing(FRAMES), seq_first=at * FRAMES, epoch=headset.epoch)
+        await headset.send_batch(StreamName.TARGET, (at + 1) * FRAMES, text)
+
+
+def receipt(server: LiveServer, session_id: str) -> Receipt:
+    """What the record proves."""
+    with record_of(server) as db:
+        return receipt_of(db, session_id)
+
+
+def test_a_clean_end_tells_how_much_was_made(live_server: LiveServer) -> None:
+    """The server then knows that it has everything."""
+    with open_site(live_server) as site:
+        session_id = site.join()
+        token = site.token(session_id)
+
+        async def run() -> None:
+            async with client(site, token, Journal()) as headset:
+                await send(headset, 20)
+                await headset.drained()
+
+        asyncio.run(run())
+        told = _produced(live_server, session_id)
+    assert told == {("target", 1): 180}
+    assert receipt(live_server, session_id).complete
+
+
+def test_a_headset_that_dies_with_its_journal_leaves_a_known_hole(
+    live_server: LiveServer,
+) -> None:
+    """What it had made and not sent is counted as missing, to the frame."""
+    with open_site(live_server) as site:
+        session_id = site.join()
+        token = site.token(session_id)
+
+        async def run() -> None:
+            async with client(site, token, Journal()) as headset:
+                await send(headset, 10)
+                await headset.drained()
+                # The next frames never leave the headset, but it has told of them.
+                for at in range(10, 15):
+                    headset.journal.produced_up_to(StreamName.TARGET, 1, (at + 1) * FRAMES)
+
+        asyncio.run(run())
+        _produced(live_server, session_id)
+    found = receipt(live_server, session_id)
+    stream = next(one for one in found.streams if one.stream == "target")
+    assert (stream.sent, stream.stored, stream.missing) == (135, 90, 45)
+    assert stream.gaps == ((90, 135),)
+    assert not found.complete
+
+
+def test_a_journal_in_files_is_delivered_by_the_next_process(
+    live_server: LiveServer, tmp_path: Path
+) -> None:
+    """Under the epoch in which it was made, before and beside what the new run makes."""
+    with open_site(live_server) as site:
+        session_id = site.join()
+        token = site.token(session_id)
+
+        async def first() -> None:
+            journal = FileJournal(folder=tmp_path / "journal")
+            async with client(site, token, journal) as headset:
+                await send(headset, 10)
+                await headset.drained()
+                live_server.kill()
+                await send(headset, 30, first=10)
+            journal.close()
+
+        async def second() -> None:
+            journal = FileJournal(folder=tmp_path / "journal")
+            async with client(site, token, journal) as headset:
+                assert headset.epoch == 2
+                await send(headset, 5)
+                await headset.drained()
+            journal.close()
+
+        asyncio.run(first())
+        live_server.start()
+        asyncio.run(second())
+        found = receipt(live_server, session_id)
+    assert found.complete
+    assert {(one.stream, one.epoch): one.stored for one in found.streams if one.stored} == {
+        ("target", 1): 360,
+        ("target", 2): 45,
+    }
+    with record_of(live_server) as db:
+        frames = concatenate([f for _, f in iter_frames(db, session_id, "target", 1)])
+    assert frames.seq.tolist() == list(range(360))
+
+
+def _produced(server: LiveServer, session_id: str) -> dict[tuple[str, int], int]:
+    """What the client told that it had made, once that is stored."""
+    give_up_s = time.monotonic() + 10.0
+    while True:
+        with record_of(server) as db:
+            rows = db.scalars(
+                select(TelemetryStream).where(TelemetryStream.session_id == session_id)
+            ).all()
+        told = {(row.stream, row.epoch): row.produced for row in rows if row.produced}
+        if told or time.monotonic() > give_up_s:
+            return told
+        time.sleep(0.02)
