@@ -1,0 +1,167 @@
+"""The disk below a trace: replays its events and says what could be found after a power loss."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from tests.faults.power.files import Choice, Rng, TracedFile
+from tests.faults.tracing.events import NEVER, Event
+
+Image = dict[str, bytes]
+"""The files of a folder by name."""
+REBUILT = "-shm"
+"""What the name of a file ends with that is rebuilt, whatever it holds."""
+MOODS = ("nothing", "everything", "scattered", "most", "few", "later first", "earlier first")
+"""How the disk treated what was not synced yet."""
+
+
+@dataclass
+class _Name:
+    """What a name stood for: the certain file (or none) first, then each change with its stamp."""
+
+    certain: TracedFile | None = None
+    changes: list[tuple[int, TracedFile | None]] = field(default_factory=list)
+
+    @property
+    def now(self) -> TracedFile | None:
+        return self.changes[-1][1] if self.changes else self.certain
+
+    def sync(self, began: int) -> None:
+        """The folder's sync that began then has returned."""
+        while self.changes and self.changes[0][0] < began:
+            self.certain = self.changes.pop(0)[1]
+
+    def could_be(self) -> list[TracedFile | None]:
+        return [self.certain, *(file for _, file in self.changes)]
+
+
+@dataclass
+class Disk:
+    """A folder that was empty before the trace. Feed it with `advance`, then take images."""
+
+    folder: str
+    _names: dict[str, _Name] = field(default_factory=dict)
+
+    def begin(self, event: Event) -> None:
+        """A call has begun: from now on it may have happened."""
+        if event.what in ("write", "truncate"):
+            name = self._names.get(event.path)
+            # A removed file that is still open is nobody's concern.
+            if name is not None and name.now is not None:
+                name.now.changes.append(event)
+        elif event.what == "create":
+            self._name(event.path).changes.append((event.ended, TracedFile()))
+        elif event.what == "unlink":
+            self._name(event.path).changes.append((event.ended, None))
+        elif event.what == "rename":
+            moved = self._name(event.path).now
+            self._name(event.to_path).changes.append((event.ended, moved))
+            self._name(event.path).changes.append((event.ended, None))
+        elif event.what == "other":
+            raise ValueError(f"{event.call} on {event.path} is not emulated")
+
+    def end(self, event: Event) -> None:
+        """A call has returned: a sync makes certain what had returned before it began."""
+        if event.what != "sync":
+            return
+        if event.path == self.folder:
+            for name in self._names.values():
+                name.sync(event.began)
+        elif event.path in self._names:
+            file = self._names[event.path].now
+            if file is not None:
+                file.sync(event.began)
+
+    def certain(self) -> Image:
+        """Only what no power loss can take."""
+        return {
+            Path(path).name: bytes(name.certain.certain)
+            for path, name in self._names.items()
+            if name.certain is not None and not path.endswith(REBUILT)
+        }
+
+    def after_power_loss(self, rng: Rng, mood: str) -> Image:
+        """One of the many ways the disk could look."""
+        found: Image = {}
+        sector = int(rng.choice((512, 4096)))
+        for path, name in sorted(self._names.items()):
+            if path.endswith(REBUILT):
+                if rng.random() < 0.5:
+                    found[Path(path).name] = rng.bytes(32768)
+                continue
+            versions = name.could_be()
+            file = versions[_which(rng, mood, len(versions))]
+            if file is not None:
+                found[Path(path).name] = _torn(file, sector, rng, mood)
+        return found
+
+    def _name(self, path: str) -> _Name:
+        return self._names.setdefault(path, _Name())
+
+
+def _which(rng: Rng, mood: str, count: int) -> int:
+    if mood == "nothing":
+        return 0
+    return count - 1 if mood == "everything" else int(rng.integers(count))
+
+
+def _torn(file: TracedFile, sector: int, rng: Rng, mood: str) -> bytes:
+    sizes = file.sizes()
+    noise = rng.random() < 0.5
+    fill = rng.bytes(max(sizes)) if noise else bytes(max(sizes))
+    choose = _choice(rng, mood, len(file.changes))
+    return file.image(sector, choose, _size(sizes, rng, mood), fill)
+
+
+def _size(sizes: list[int], rng: Rng, mood: str) -> int:
+    if mood == "nothing":
+        return sizes[0]
+    # Data that are there count only as far as the size does, so give them a chance.
+    if mood != "scattered" or rng.random() < 0.5:
+        return sizes[-1]
+    return sizes[int(rng.integers(len(sizes)))]
+
+
+def _choice(rng: Rng, mood: str, count: int) -> Choice:
+    """Which version a sector has, for a mood."""
+    cut = int(rng.integers(count + 1))
+
+    def choose(places: list[int]) -> int:
+        latest = len(places)
+        match mood:
+            case "nothing":
+                return 0
+            case "everything":
+                return latest
+            case "most":
+                return latest if rng.random() < 0.9 else int(rng.integers(latest + 1))
+            case "few":
+                return latest if rng.random() < 0.1 else 0
+            case "later first":
+                return latest if places[-1] >= cut else 0
+            case "earlier first":
+                return int(np.searchsorted(places, cut))
+            case _:
+                return int(rng.integers(latest + 1))
+
+    return choose
+
+
+def timeline(events: Sequence[Event]) -> list[tuple[int, bool, Event]]:
+    """(stamp, whether it is the return, event) of every call that did not fail, in order."""
+    moments = [(event.began, False, event) for event in events if not event.failed]
+    moments += [
+        (event.ended, True, event) for event in events if not event.failed and event.ended != NEVER
+    ]
+    return sorted(moments, key=lambda moment: moment[:2])
+
+
+def replay(disk: Disk, moments: Iterable[tuple[int, bool, Event]]) -> None:
+    """Let the disk live through some of a timeline."""
+    for _, returned, event in moments:
+        if returned:
+            disk.end(event)
+        else:
+            disk.begin(event)

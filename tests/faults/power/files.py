@@ -1,0 +1,108 @@
+"""One file as a disk may hold it: what is certain, and every change since."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from tests.faults.tracing.events import Event
+
+Rng = np.random.Generator
+Choice = Callable[[list[int]], int]
+"""Of the changes to a sector (their places among all since the last sync), how many happened."""
+
+
+@dataclass
+class TracedFile:
+    """The content that is certain, and the changes that are not, oldest first."""
+
+    certain: bytearray = field(default_factory=bytearray)
+    changes: list[Event] = field(default_factory=list)
+
+    def sync(self, began: int) -> None:
+        """A sync that began then has returned: what was written before is certain."""
+        for change in self.changes:
+            if change.ended < began:
+                _apply(self.certain, change)
+        self.changes = [change for change in self.changes if change.ended >= began]
+
+    def sizes(self) -> list[int]:
+        """The sizes it had since the last sync, the certain one first."""
+        sizes = [len(self.certain)]
+        for change in self.changes:
+            sizes.append(_size_after(sizes[-1], change))
+        return sizes
+
+    def touched(self, sector: int) -> dict[int, list[int]]:
+        """Sectors that may hold something else, with the places of their changes."""
+        found: dict[int, list[int]] = {}
+        size = len(self.certain)
+        for place, change in enumerate(self.changes):
+            start, end = _span(size, change)
+            for number in range(start // sector, -(-end // sector)):
+                found.setdefault(number, []).append(place)
+            size = _size_after(size, change)
+        return found
+
+    def image(self, sector: int, choose: Choice, size: int, fill: bytes) -> bytes:
+        """What the disk holds: of every sector the version that `choose` says, cut or grown to
+        `size`; `fill` (as long as the greatest size) lies where nothing was written.
+        """
+        held = bytearray(fill[: max(self.sizes())])
+        held[: len(self.certain)] = self.certain
+        versions = _Versions(self)
+        for number, places in self.touched(sector).items():
+            happened = choose(places)
+            if happened:
+                start = number * sector
+                piece = versions.at(start, start + sector, places[:happened])
+                held[start : start + len(piece)] = piece
+        return bytes(held[:size]) + bytes(max(0, size - len(held)))
+
+
+@dataclass(frozen=True)
+class _Versions:
+    """Single sectors after some of their changes."""
+
+    file: TracedFile
+
+    def at(self, start: int, end: int, places: list[int]) -> bytes:
+        """A whole sector: where a file ends within it, zeros follow."""
+        piece = bytearray(self.file.certain[start:end])
+        piece += bytes(end - start - len(piece))
+        for place in places:
+            change = self.file.changes[place]
+            if change.what == "truncate":
+                cut = min(max(0, change.size - start), end - start)
+                piece[cut:] = bytes(end - start - cut)
+                continue
+            low = max(start, change.offset)
+            high = min(end, change.offset + len(change.data))
+            if low < high:
+                piece[low - start : high - start] = change.data[
+                    low - change.offset : high - change.offset
+                ]
+        return bytes(piece)
+
+
+def _apply(content: bytearray, change: Event) -> None:
+    if change.what == "truncate":
+        del content[change.size :]
+        content.extend(bytes(change.size - len(content)))
+        return
+    content.extend(bytes(max(0, change.offset - len(content))))
+    content[change.offset : change.offset + len(change.data)] = change.data
+
+
+def _size_after(size: int, change: Event) -> int:
+    if change.what == "truncate":
+        return change.size
+    return max(size, change.offset + len(change.data))
+
+
+def _span(size: int, change: Event) -> tuple[int, int]:
+    """The bytes that a change touches in a file of that size."""
+    if change.what == "truncate":
+        return min(size, change.size), max(size, change.size)
+    # What lies between the end and a write behind it becomes zeros.
+    return min(size, change.offset), change.offset + len(change.data)

@@ -1,0 +1,130 @@
+"""Headsets that only stream, each with a ledger of what it sent and what it was promised."""
+
+import asyncio
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any
+
+import httpx2
+import numpy as np
+
+from app.client.telemetry import TelemetryClient
+from app.wire import StreamName, encode_batch
+from app.wire.messages import MaterialisedReport
+from tests.benchmarks.headsets import FRAMES_PER_BATCH, RATE_HZ, movement
+from tests.rehearsal.ledger import LedgerJournal
+from tests.rehearsal.performed import STUDY
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+BATCHES_PER_REPORT = 15
+MOST_WAITING = 400
+"""A headset that is not bound to real time sends no further ahead than this, in messages."""
+
+
+@dataclass(frozen=True)
+class StreamingHeadset:
+    """A headset paired with a session that has not begun."""
+
+    session_id: str
+    token: str
+    ledger: LedgerJournal = field(default_factory=LedgerJournal)
+
+
+@contextmanager
+def signed_in(server: LiveServer) -> Iterator[httpx2.Client]:
+    """An operator's client."""
+    with server.client() as client:
+        credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+        client.post("/api/login", json=credentials).raise_for_status()
+        yield client
+
+
+def pair_headsets(server: LiveServer, count: int) -> list[StreamingHeadset]:
+    """So many new sessions, each with its headset."""
+    with signed_in(server) as client:
+        return [_paired(client) for _ in range(count)]
+
+
+def _paired(client: httpx2.Client) -> StreamingHeadset:
+    session = _post(client, f"/api/studies/{STUDY}/sessions", {"kind": "simulated"})
+    shown = _post(client, f"/api/sessions/{session['id']}/pairings", {"device": "headset"})
+    token = _post(client, "/api/devices/pair", {"code": shown["code"]})["token"]
+    return StreamingHeadset(session["id"], token)
+
+
+def _post(client: httpx2.Client, path: str, body: dict[str, str]) -> dict[str, Any]:
+    response = client.post(path, json=body)
+    response.raise_for_status()
+    answered: dict[str, Any] = response.json()
+    return answered
+
+
+async def stream(
+    server: LiveServer,
+    headsets: Sequence[StreamingHeadset],
+    more: Callable[[], bool],
+    *,
+    real_time: bool = True,
+) -> None:
+    """All headsets side by side while `more()`; returns when everything is acknowledged.
+
+    In real time each makes 90 frames a second however slow the server is, as a body does; else as
+    many as the server takes.
+    """
+    async with asyncio.TaskGroup() as group:
+        for seed, headset in enumerate(headsets):
+            group.create_task(_stream_one(server, headset, seed, more, real_time=real_time))
+
+
+async def _stream_one(
+    server: LiveServer,
+    headset: StreamingHeadset,
+    seed: int,
+    more: Callable[[], bool],
+    *,
+    real_time: bool,
+) -> None:
+    url = f"{server.url.replace('http', 'ws', 1)}/api/vr/stream"
+    began_s = time.monotonic()
+
+    def now_s() -> float:
+        return time.monotonic() - began_s
+
+    values = movement(seed)
+    async with TelemetryClient(
+        url, headset.token, f"fault {seed}", now_s, journal=headset.ledger
+    ) as client:
+        batch = 0
+        while more():
+            seq = batch * FRAMES_PER_BATCH
+            for name in StreamName:
+                message = _batch(name, client.epoch, seq, values)
+                await client.send_batch(name, seq + FRAMES_PER_BATCH, message)
+            if batch % BATCHES_PER_REPORT == 0:
+                # Refused, since the session has not begun; stored and acknowledged like any other.
+                await client.report(MaterialisedReport(t_s=seq / RATE_HZ))
+            batch += 1
+            if real_time:
+                await asyncio.sleep(max(0.0, batch * FRAMES_PER_BATCH / RATE_HZ - now_s()))
+            else:
+                await client.at_most_waiting(MOST_WAITING)
+        await client.drained()
+
+
+def _batch(
+    name: StreamName, epoch: int, seq: int, values: "np.typing.NDArray[np.float32]"
+) -> bytes:
+    times_s = (seq + np.arange(FRAMES_PER_BATCH)) / RATE_HZ
+    return encode_batch(
+        name,
+        epoch=epoch,
+        phase_id=0,
+        seq_first=seq,
+        times_s=times_s,
+        flags=np.zeros(FRAMES_PER_BATCH, np.uint8),
+        values=values[seq % 900 : seq % 900 + FRAMES_PER_BATCH],
+        active_s=0.0,
+        closed_at_s=float(times_s[-1]),
+    )

@@ -1,0 +1,178 @@
+"""The emulated disk and the tracer below it, on files small enough to follow by hand."""
+
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.faults.power.disk import MOODS, Disk, replay, timeline
+from tests.faults.power.promises import promises_of
+from tests.faults.tracing.events import NEVER, Event, read_events
+from tests.faults.tracing.running import RECORD, REPOSITORY, traced, why_not
+
+FOLDER, FILE = "/d", "/d/a"
+PROGRAM = """
+import os, socket, sys, threading
+os.chdir(sys.argv[1])
+def work(name):
+    file = os.open(name, os.O_RDWR | os.O_CREAT)
+    os.write(file, b"first")
+    os.pwrite(file, b"second" * 2000, 3)
+    os.writev(file, [b"x", b"", b"yz"])
+    os.fsync(file)
+    os.ftruncate(file, 9000)
+    os.pwrite(file, b"late", 20000)
+    os.close(file)
+threads = [threading.Thread(target=work, args=(f"file{n}",)) for n in range(3)]
+[thread.start() for thread in threads]
+[thread.join() for thread in threads]
+if os.fork() == 0:
+    work("child")
+    os._exit(0)
+os.wait()
+os.rename("file0", "renamed")
+os.unlink("file1")
+one, other = socket.socketpair()
+one.send(b"told")
+other.sendmsg([b"to", b"ld"])
+os.write(one.fileno(), b"again")
+"""
+
+
+def event(what: str, stamp: int, data: bytes = b"", *, offset: int = 0, path: str = FILE) -> Event:
+    """A call that returns before the next one begins."""
+    return Event(what, what, path, 2 * stamp, 2 * stamp + 1, 0, 0, offset=offset, data=data)
+
+
+def disk_after(events: Sequence[Event], until: int = NEVER - 1) -> Disk:
+    """The disk once all calls up to a stamp have begun or returned."""
+    disk = Disk(FOLDER)
+    replay(disk, (moment for moment in timeline(events) if moment[0] <= until))
+    return disk
+
+
+@pytest.fixture
+def started() -> list[Event]:
+    """A file that is there for certain, with three sectors of ones."""
+    return [
+        event("create", 1),
+        event("write", 2, b"1" * 1536),
+        event("sync", 3),
+        event("sync", 4, path=FOLDER),
+    ]
+
+
+def test_what_a_sync_covers_is_there_in_every_mood(started: list[Event]) -> None:
+    """Name, size and content; without the folder's sync the name may be missing."""
+    rng = np.random.default_rng(1)
+    for mood in MOODS:
+        assert disk_after(started).after_power_loss(rng, mood) == {"a": b"1" * 1536}
+    unnamed = disk_after(started[:3])
+    assert unnamed.after_power_loss(rng, "nothing") == {}
+    assert unnamed.after_power_loss(rng, "everything") == {"a": b"1" * 1536}
+
+
+def test_every_sector_holds_a_version_it_had_and_all_mixtures_come_up(started: list[Event]) -> None:
+    """Two writes over three sectors: each is as it was, or after the first, or after both."""
+    disk = disk_after(
+        [*started, event("write", 5, b"2" * 1536), event("write", 6, b"3" * 600, offset=300)]
+    )
+    rng = np.random.default_rng(1)
+    of_sector: list[set[bytes]] = [
+        {b"1" * 512, b"2" * 512, b"2" * 300 + b"3" * 212},
+        {b"1" * 512, b"2" * 512, b"3" * 388 + b"2" * 124},
+        {b"1" * 512, b"2" * 512},
+    ]
+    seen: set[tuple[bytes, ...]] = set()
+    for _ in range(1000):
+        content = disk.after_power_loss(rng, "scattered")["a"]
+        seen.add(tuple(content[at : at + 512] for at in (0, 512, 1024)))
+    assert len(seen) == 3 * 3 * 2
+    for mixture in seen:
+        assert all(piece in possible for piece, possible in zip(mixture, of_sector, strict=True))
+
+
+def test_a_sync_covers_only_what_had_returned_before_it_began(started: list[Event]) -> None:
+    """A write of another thread that was under way may be lost."""
+    overlapping = replace(event("write", 5, b"2" * 512), ended=13)
+    disk = disk_after([*started, overlapping, event("sync", 6)])
+    assert disk.certain()["a"] == b"1" * 1536
+    again = disk_after([*started, overlapping, event("sync", 6), event("sync", 7)])
+    assert again.certain()["a"] == b"2" * 512 + b"1" * 1024
+
+
+def test_a_file_has_a_size_it_had(started: list[Event]) -> None:
+    """Cut and written again further on; what was never written is zeros or noise."""
+    cut = replace(event("truncate", 5), size=512)
+    disk = disk_after([*started, cut, event("write", 6, b"2" * 512, offset=1024)])
+    rng = np.random.default_rng(1)
+    sizes = {len(disk.after_power_loss(rng, "scattered")["a"]) for _ in range(200)}
+    assert sizes == {512, 1536}
+    latest = disk.after_power_loss(rng, "everything")["a"]
+    assert latest == b"1" * 512 + bytes(512) + b"2" * 512
+
+
+def test_a_removed_file_may_come_back_until_its_folder_is_synced(started: list[Event]) -> None:
+    """As SQLite's log does when the server was stopped."""
+    gone = [*started, event("unlink", 5)]
+    rng = np.random.default_rng(1)
+    found = [disk_after(gone).after_power_loss(rng, "scattered") for _ in range(50)]
+    assert {} in found
+    assert {"a": b"1" * 1536} in found
+    assert disk_after([*gone, event("sync", 6, path=FOLDER)]).certain() == {}
+
+
+def test_the_tracer_sees_every_change_of_every_thread_and_process(tmp_path: Path) -> None:
+    """Replayed in full, a record of threads and a child gives the files they left."""
+    folder = tmp_path / "data"
+    folder.mkdir()
+    skip_without_tracing(tmp_path)
+    command = traced(tmp_path / RECORD, folder, [sys.executable, "-c", PROGRAM, str(folder)])
+    subprocess.run(command, check=True, cwd=REPOSITORY, timeout=60)
+    events = read_events(tmp_path / RECORD)
+    disk = Disk(str(folder.resolve()))
+    replay(disk, timeline(events))
+    left = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert set(left) == {"renamed", "file2", "child"}
+    assert disk.after_power_loss(np.random.default_rng(1), "everything") == left
+    assert [one.data for one in events if one.what == "send"][-3:] == [b"told", b"told", b"again"]
+    assert [one.ended for one in events if one.ended == NEVER] == []
+
+
+def test_an_exit_code_comes_through_the_tracer(tmp_path: Path) -> None:
+    """A command that fails fails, one that is killed too."""
+    skip_without_tracing(tmp_path)
+    for script, code in (("exit 3", 3), ("kill -9 $$", 128 + 9)):
+        command = traced(tmp_path / RECORD, tmp_path, ["sh", "-c", script])
+        assert subprocess.run(command, check=False, cwd=REPOSITORY, timeout=60).returncode == code
+
+
+def test_promises_are_read_from_the_bytes_however_they_are_cut() -> None:
+    """The same acknowledgement in one send, or byte by byte: made when its last byte leaves."""
+    head = b"HTTP/1.1 101 Switching Protocols\r\nupgrade: websocket\r\n\r\n"
+    welcome = b'{"type": "welcome", "session_id": "s", "positions": []}'
+    ack = b'{"type":"ack","positions":[{"stream":"target","epoch":1,"next_seq":%06d}]}' % 12
+    ack = ack.replace(b"000012", b"12    ") + b" " * 100
+    text = bytes([0x81, len(welcome)]) + welcome + b"\x89\x01p"
+    long = bytes([0x81, 126]) + len(ack).to_bytes(2, "big") + ack
+    told = head + text + long
+    for size in (1, 7, len(told)):
+        sends = [
+            event("send", 1 + at, told[at : at + size], path="socket:[1]")
+            for at in range(0, len(told), size)
+        ]
+        (first, second) = promises_of(sends)
+        assert first.session_id == "s"
+        assert (second.is_ack, dict(second.positions)) == (True, {("s", "target", 1): 12})
+        assert second.began == sends[-1].began
+
+
+def skip_without_tracing(folder: Path) -> None:
+    """The kernel may not allow it."""
+    reason = why_not(folder)
+    if reason is not None:
+        pytest.skip(reason)

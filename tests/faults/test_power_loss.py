@@ -1,0 +1,145 @@
+"""Power fails at any moment: what was acknowledged is there, and the database is sound.
+
+Faults 2 and 3 of the matrix, and the proof that an acknowledgement leaves only after the flush that
+makes it true. What the emulated disk does and does not do stands in `tests.faults.power`.
+"""
+
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.faults.power import experiment
+from tests.faults.power.disk import MOODS
+from tests.faults.power.experiment import AckProof, Crash, Recording
+from tests.faults.tracing.running import why_not
+
+EMULATED = (
+    "emulated: a disk that keeps what an fsync covered; of later writes any sector (512 or 4096 "
+    "bytes) in any\norder, torn; sizes, names and unwritten sectors (zeros, noise) as they come; "
+    "no -shm, or noise in it\nnot emulated: a disk that lies about fsync or damages sectors nobody "
+    "wrote to"
+)
+
+
+@pytest.fixture(scope="module")
+def can_trace(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Skips where the kernel does not let a process trace its child."""
+    reason = why_not(tmp_path_factory.mktemp("tracing"))
+    if reason is not None:
+        pytest.skip(reason)
+
+
+@pytest.fixture(scope="module")
+def recording(can_trace: None, tmp_path_factory: pytest.TempPathFactory) -> Recording:
+    """A few seconds of three headsets, from the first start of a server to its end."""
+    return experiment.record_streaming(tmp_path_factory.mktemp("power") / "run", 3, 4.0)
+
+
+def test_no_ack_leaves_before_the_flush_that_makes_it_true(
+    recording: Recording, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Whatever an acknowledgement says is on disk by a completed fsync when its send begins."""
+    proof = experiment.prove_acks(recording)
+    with capsys.disabled():
+        sys.stdout.write(ack_figures(proof))
+    assert proof.acks > 50
+    assert proof.early == 0
+
+
+def test_no_power_loss_takes_what_was_acknowledged(
+    recording: Recording, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Sixty moments, each with a disk in another mood."""
+    crashes = crash(recording, 60, seed=1)
+    with capsys.disabled():
+        sys.stdout.write(crash_figures(crashes))
+    check(crashes)
+
+
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+def test_a_thousand_power_losses_take_nothing(
+    can_trace: None, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A longer run with several checkpoints, cut off at a thousand moments."""
+    recording = experiment.record_streaming(tmp_path / "run", 4, 25.0)
+    proof = experiment.prove_acks(recording)
+    crashes = crash(recording, 1000, seed=2)
+    with capsys.disabled():
+        sys.stdout.write(ack_figures(proof) + crash_figures(crashes))
+    assert proof.early == 0
+    check(crashes)
+
+
+def test_the_oracle_sees_acks_that_come_before_the_flush(recording: Recording) -> None:
+    """The same record with every acknowledgement moved before its flush loses data."""
+    careless = recording.with_earlier_acks()
+    assert experiment.prove_acks(careless).early > 50
+    crashes = crash(careless, 60, seed=1)
+    assert sum(one.verdict.lost for one in crashes) > 0
+
+
+@pytest.mark.parametrize("level", ["NORMAL", pytest.param("OFF", marks=pytest.mark.long)])
+def test_the_oracle_sees_a_database_that_does_not_flush(
+    can_trace: None, tmp_path: Path, level: str
+) -> None:
+    """The real server with `synchronous` below FULL acknowledges what a power loss takes."""
+    command = [sys.executable, "-m", "tests.faults.weakened", level]
+    recording = experiment.record_streaming(tmp_path / "run", 2, 2.5, command)
+    assert experiment.prove_acks(recording).early > 20
+    crashes = crash(recording, 60, seed=1)
+    assert sum(one.verdict.lost for one in crashes) > 0
+
+
+def crash(recording: Recording, count: int, seed: int) -> list[Crash]:
+    """Let power fail so often, in every place and mood."""
+    rng = np.random.default_rng(seed)
+    return experiment.crash_at(recording, experiment.draw_crash_points(recording, count, rng), rng)
+
+
+def check(crashes: Sequence[Crash]) -> None:
+    """Nothing lost, altered, twice or torn, and the test did look at every place and mood."""
+    for one in crashes:
+        verdict = one.verdict
+        assert verdict.corrupt == "", one
+        assert (verdict.lost, verdict.altered, verdict.duplicated, verdict.holes) == (0, 0, 0, 0), (
+            one
+        )
+    assert {one.point.mood for one in crashes} == set(MOODS)
+    assert sum(one.promised > 0 for one in crashes) > len(crashes) / 3
+
+
+def ack_figures(proof: AckProof) -> str:
+    """The proof in one line."""
+    half, most = np.percentile(proof.waits_ms, [50, 99])
+    return (
+        f"\nacks {proof.acks}, flushes {proof.syncs}, acks before their flush {proof.early}; "
+        f"from flush to ack p50 {half:.2f} ms, p99 {most:.2f} ms\n"
+    )
+
+
+def crash_figures(crashes: Sequence[Crash]) -> str:
+    """The crashes as a table by place."""
+    lines = [
+        "",
+        f"{'power fails':<18}{'points':>7}{'acked':>10}{'lost':>6}{'twice':>6}{'corrupt':>8}",
+    ]
+    places = Counter(one.point.where for one in crashes)
+    for where in [*sorted(places), "all"]:
+        those = [one for one in crashes if where in (one.point.where, "all")]
+        verdicts = [one.verdict for one in those]
+        counts = (
+            len(those),
+            sum(one.promised for one in those),
+            sum(verdict.lost for verdict in verdicts),
+            sum(verdict.duplicated for verdict in verdicts),
+            sum(bool(verdict.corrupt) for verdict in verdicts),
+        )
+        widths = (7, 10, 6, 6, 8)
+        cells = (f"{n:>{width}}" for n, width in zip(counts, widths, strict=True))
+        lines.append(f"{where:<18}" + "".join(cells))
+    return "\n".join([*lines, EMULATED, ""])

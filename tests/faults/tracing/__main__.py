@@ -1,0 +1,10 @@
+"""`python -m tests.faults.tracing RECORD FOLDER -- COMMAND ...`; exit code 77 where refused."""
+
+import sys
+from pathlib import Path
+
+from tests.faults.tracing.tracer import trace
+
+if __name__ == "__main__":
+    record, folder, _, *command = sys.argv[1:]
+    sys.exit(trace(Path(record), Path(folder), command))

@@ -1,0 +1,30 @@
+"""The server with a careless database: `python -m tests.faults.weakened NORMAL serve ...`.
+
+Tests of durability run against it to show that they notice.
+"""
+
+import sqlite3
+import sys
+
+from sqlalchemy.engine.interfaces import DBAPIConnection
+from sqlalchemy.pool import ConnectionPoolEntry
+
+from app import database
+from app.cli import main
+
+
+def weaken(level: str) -> None:
+    """Set `synchronous` of every connection to come."""
+    careful = database._prepare_sqlite
+
+    def prepare(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
+        careful(dbapi_connection, _record)
+        assert isinstance(dbapi_connection, sqlite3.Connection)
+        dbapi_connection.execute(f"PRAGMA synchronous={level}")
+
+    database._prepare_sqlite = prepare
+
+
+if __name__ == "__main__":
+    weaken(sys.argv.pop(1))
+    main()
