@@ -1,0 +1,110 @@
+"""Coarse search: at which shifts do the joints of two bodies turn alike?
+
+The angular velocities of all joints (vectors in the parent's frame) are correlated over the grid
+for every lag L at once, over the times t at which the clock runs and both bodies are known:
+
+    C(L) = sum a(t) . b(t - L) / sqrt( sum |a(t)|^2  sum |b(t - L)|^2 ).
+
+Velocities do not care for constant differences between the two bodies, as a sagging arm has.
+
+Source: Padfield (2012), "Masked object registration in the Fourier domain", IEEE Trans. Image
+Processing 21:2706, here with one dimension and no mean taken off.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.science.latency.smoothing import BoolArray, Curves, smoothed
+from app.science.latency.stretches import GRID_S, Stretch
+from app.science.rotations import FloatArray, conjugate, multiply
+
+COARSE_BANDWIDTH_S = 0.05
+# Squared rad/s, summed over frames: rounding is below it, movement far above.
+_LEAST_ENERGY = 1e-6
+# A lag at which little of the movement overlaps would say much with little behind it.
+_LEAST_SHARE = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Correlation:
+    """Correlation (k,) at each lag (k,), in steps of the grid; and the seconds of movement."""
+
+    lags_s: FloatArray
+    values: FloatArray
+    movement_s: float
+
+    def peaks(self, within: float, at_most: int) -> list[int]:
+        """Indices of the local maxima no more than `within` below the highest, best first.
+
+        None at all if the highest value lies at an end: its peak, and the answer, are outside.
+        """
+        c = self.values
+        if int(np.argmax(c)) in (0, len(c) - 1):
+            return []
+        inner = np.flatnonzero((c[1:-1] >= c[:-2]) & (c[1:-1] > c[2:])) + 1
+        near = inner[c[inner] >= c.max() - within]
+        best: list[int] = near[np.argsort(-c[near], kind="stable")].tolist()
+        return best[:at_most]
+
+
+def correlate(
+    parts: Sequence[Stretch], lowest_s: float, highest_s: float, moving_rad_s: float
+) -> Correlation:
+    """Correlate all stretches together, and count the active time in which the target moves.
+
+    A target moves while its fastest joint turns faster than `moving_rad_s`.
+    """
+    lags = np.arange(round(lowest_s / GRID_S), round(highest_s / GRID_S) + 1)
+    before, after = max(int(lags[-1]), 0), max(-int(lags[0]), 0)
+    sums = np.zeros((3, len(lags)))
+    movement_s = 0.0
+    for part in parts:
+        count = len(part.grid_s)
+        history_s = part.grid_s[0] + GRID_S * np.arange(-before, count + after)
+        actual, known = _turning(smoothed(part.actual, part.grid_s, COARSE_BANDWIDTH_S))
+        target, target_known = _turning(smoothed(part.target, history_s, COARSE_BANDWIDTH_S))
+        present = np.linalg.norm(target[before : before + count], axis=-1).max(axis=1)
+        movement_s += GRID_S * int(((present > moving_rad_s) & part.active).sum())
+        known = known & part.active[:, np.newaxis]
+        actual *= known[..., np.newaxis]
+        sums += _masked_sums(actual, known, target, target_known)[:, before - lags]
+    # Rounding of the transforms may leave an energy of nothing just below zero.
+    energy = np.sqrt(np.maximum(sums[1], 0.0) * np.maximum(sums[2], 0.0))
+    enough = energy > max(_LEAST_ENERGY, _LEAST_SHARE * float(energy.max()))
+    values = np.zeros(energy.shape)
+    np.divide(sums[0], energy, out=values, where=enough)
+    return Correlation(lags.astype(np.float64) * GRID_S, values, movement_s)
+
+
+def _turning(curves: Curves) -> tuple[FloatArray, BoolArray]:
+    """Angular velocities (k, joints, 3) in the parent's frame, and where they are known."""
+    rate = 2.0 * multiply(curves.rates, conjugate(curves.values))[..., 1:]
+    return rate, np.broadcast_to(curves.known, rate.shape[:2])
+
+
+def _masked_sums(
+    a: FloatArray, a_known: BoolArray, b: FloatArray, b_known: BoolArray
+) -> FloatArray:
+    """The three sums of C over t with a at t and b at t + m, (3, at least len(b)), for each m."""
+    from scipy import fft  # slow to load, and rarely needed
+
+    size = fft.next_fast_len(len(a) + len(b), real=True)
+
+    def spectrum(values: FloatArray | BoolArray) -> npt.NDArray[np.complex128]:
+        columns = np.asarray(values, dtype=np.float64).reshape(len(values), -1)
+        return np.asarray(fft.rfft(columns, n=size, axis=0), dtype=np.complex128)
+
+    pairs: tuple[tuple[FloatArray | BoolArray, FloatArray | BoolArray], ...] = (
+        (a, b),
+        (np.sum(a * a, axis=-1), b_known),
+        (a_known, np.sum(b * b, axis=-1)),
+    )
+    return np.stack(
+        [
+            fft.irfft(np.sum(np.conj(spectrum(left)) * spectrum(right), axis=1), n=size)
+            for left, right in pairs
+        ]
+    )
