@@ -1,0 +1,166 @@
+/**
+ * The binary telemetry batch: a 64-byte header and little-endian arrays.
+ *
+ * `docs/protocol.md` has the layout, `tests/vectors/wire` the bytes that this and the server's
+ * implementation agree on. All arrays lie at multiples of 8 bytes, so both sides read them in place.
+ * Samples pass through as bits: a NaN keeps its payload. (Typed arrays have the order of the machine;
+ * every machine that runs a browser is little-endian.)
+ */
+import { crc32 } from "./crc32";
+
+export const HEADER_BYTES = 64;
+export const BODY_JOINTS = 22;
+export const VALUES_PER_FRAME = 3 + 4 * BODY_JOINTS;
+export const MAX_FRAMES = 1024;
+/** Frame flag: the phase's clock ran when this frame was shown. */
+export const ACTIVE = 1;
+
+const MAX_TIME_S = 1e9;
+const MAX_U31 = 2 ** 31 - 1;
+const MAGIC = 0x31424d52; // "RMB1"
+const CODES = { target: 1, actual: 2 } as const;
+
+/** `target` is what the tracking asks for, `actual` what the remote avatar does. */
+export type StreamName = keyof typeof CODES;
+export const STREAM_NAMES: readonly StreamName[] = ["target", "actual"];
+
+/** Frames of one stream in one phase, as the headset hands them over. */
+export interface Frames {
+  /** The phase they belong to; 0 outside phases. */
+  readonly phaseId: number;
+  /** Client monotonic time of each frame, s (n). */
+  readonly timesS: Float64Array;
+  /** `ACTIVE` or 0 (n). */
+  readonly flags: Uint8Array;
+  /** Root position x, y, z (m, world), then 22 local rotations w, x, y, z (n x 91). */
+  readonly values: Float32Array;
+  /** Active time of the phase at the last frame, s. */
+  readonly activeS: number;
+  /** Client monotonic time at which the batch was closed, s. */
+  readonly closedAtS: number;
+}
+
+export interface Batch extends Frames {
+  readonly stream: StreamName;
+  /** The run of the client. */
+  readonly epoch: number;
+  /** Number of the first frame within its stream and epoch. */
+  readonly seqFirst: number;
+}
+
+/** What was given or received is not a batch; the message names the field, its value, the rule. */
+export class MalformedBatch extends Error {
+  override readonly name = "MalformedBatch";
+}
+
+/** Bytes of the message that carries so many frames. */
+export function batchBytes(frames: number): number {
+  return valuesAt(frames) + 4 * VALUES_PER_FRAME * frames;
+}
+
+/** The message for a batch; MalformedBatch if the server could not use it. */
+export function encodeBatch(batch: Batch): Uint8Array<ArrayBuffer> {
+  requireUsable(batch);
+  const count = batch.timesS.length;
+  const message = new Uint8Array(batchBytes(count));
+  message.set(bytesOf(batch.timesS), HEADER_BYTES);
+  message.set(batch.flags, HEADER_BYTES + 8 * count);
+  message.set(bytesOf(batch.values), valuesAt(count));
+  const header = new DataView(message.buffer);
+  header.setUint32(0, MAGIC, true);
+  header.setUint16(4, HEADER_BYTES, true);
+  header.setUint8(6, CODES[batch.stream]);
+  header.setUint32(8, batch.epoch, true);
+  header.setUint32(12, batch.phaseId, true);
+  header.setBigUint64(16, BigInt(batch.seqFirst), true);
+  header.setUint16(24, count, true);
+  header.setUint16(26, VALUES_PER_FRAME, true);
+  header.setUint32(28, crc32(message.subarray(HEADER_BYTES)), true);
+  header.setFloat64(32, batch.activeS, true);
+  header.setFloat64(40, batch.closedAtS, true);
+  return message;
+}
+
+/** What must hold before a batch is made: once journaled, a bad one would be refused for ever. */
+export function requireUsable(batch: Batch): void {
+  const { timesS, flags, values } = batch;
+  const count = timesS.length;
+  if (flags.length !== count || values.length !== count * VALUES_PER_FRAME) {
+    throw new MalformedBatch(
+      `${count} times, ${flags.length} flags, ${values.length} values; expected n, n, 91 n`,
+    );
+  }
+  requireRange("frame count", count, 1, MAX_FRAMES);
+  requireRange("epoch", batch.epoch, 0, 2 ** 32 - 1);
+  requireRange("phase_id", batch.phaseId, 0, MAX_U31);
+  requireRange("seq", batch.seqFirst, 0, Number.MAX_SAFE_INTEGER - count);
+  requireTimes(batch.activeS, batch.closedAtS);
+}
+
+/** The batch in `message`, its arrays in place; MalformedBatch also when the checksum is wrong. */
+export function decodeBatch(message: Uint8Array<ArrayBuffer>): Batch {
+  // Float64Array reads in place only from multiples of 8.
+  const bytes = message.byteOffset % 8 === 0 ? message : message.slice();
+  if (bytes.length < HEADER_BYTES) {
+    throw new MalformedBatch(
+      `message of ${bytes.length} bytes; a batch has ${HEADER_BYTES} and more`,
+    );
+  }
+  const header = new DataView(bytes.buffer, bytes.byteOffset, HEADER_BYTES);
+  const { stream, count } = readShape(header, bytes.length);
+  const crc = crc32(bytes.subarray(HEADER_BYTES));
+  const expected = header.getUint32(28, true);
+  if (crc !== expected) throw new MalformedBatch(`checksum ${crc}; the header says ${expected}`);
+  const at = (offset: number) => bytes.byteOffset + offset;
+  return {
+    stream,
+    epoch: header.getUint32(8, true),
+    phaseId: header.getUint32(12, true),
+    seqFirst: Number(header.getBigUint64(16, true)),
+    activeS: header.getFloat64(32, true),
+    closedAtS: header.getFloat64(40, true),
+    timesS: new Float64Array(bytes.buffer, at(HEADER_BYTES), count),
+    flags: new Uint8Array(bytes.buffer, at(HEADER_BYTES + 8 * count), count),
+    values: new Float32Array(bytes.buffer, at(valuesAt(count)), count * VALUES_PER_FRAME),
+  };
+}
+
+function readShape(header: DataView, length: number): { stream: StreamName; count: number } {
+  if (header.getUint32(0, true) !== MAGIC) throw new MalformedBatch("magic is not RMB1");
+  requireRange("header length", header.getUint16(4, true), HEADER_BYTES, HEADER_BYTES);
+  const code = header.getUint8(6);
+  const stream = STREAM_NAMES.find((name) => CODES[name] === code);
+  if (stream === undefined) throw new MalformedBatch(`stream code ${code}; valid are 1 and 2`);
+  const count = header.getUint16(24, true);
+  requireRange("frame count", count, 1, MAX_FRAMES);
+  requireRange("values per frame", header.getUint16(26, true), VALUES_PER_FRAME, VALUES_PER_FRAME);
+  requireRange("phase_id", header.getUint32(12, true), 0, MAX_U31);
+  requireRange("seq", Number(header.getBigUint64(16, true)), 0, Number.MAX_SAFE_INTEGER);
+  requireTimes(header.getFloat64(32, true), header.getFloat64(40, true));
+  requireRange(`bytes of ${count} frames`, length, batchBytes(count), batchBytes(count));
+  return { stream, count };
+}
+
+function requireTimes(activeS: number, closedAtS: number): void {
+  const times = [
+    ["active_s", activeS],
+    ["closed_at_s", closedAtS],
+  ] as const;
+  for (const [name, timeS] of times) {
+    // Written so that NaN is caught too.
+    if (!(timeS >= 0 && timeS <= MAX_TIME_S)) {
+      throw new MalformedBatch(`${name} ${timeS}; expected 0 to ${MAX_TIME_S} s`);
+    }
+  }
+}
+
+function requireRange(what: string, value: number, least: number, most: number): void {
+  if (!Number.isInteger(value) || value < least || value > most) {
+    throw new MalformedBatch(`${what} ${value}; valid are whole numbers from ${least} to ${most}`);
+  }
+}
+
+const valuesAt = (count: number): number => HEADER_BYTES + 8 * count + 8 * Math.ceil(count / 8);
+
+const bytesOf = (array: Float64Array | Float32Array): Uint8Array =>
+  new Uint8Array(array.buffer, array.byteOffset, array.byteLength);

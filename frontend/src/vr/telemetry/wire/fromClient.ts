@@ -1,0 +1,124 @@
+/**
+ * The JSON messages that a headset sends beside its binary batches.
+ *
+ * A message that the server refuses closes the connection, and from the journal it would come again
+ * and again: so each is checked by these schemas before it goes anywhere.
+ */
+import * as v from "valibot";
+import {
+  CompletionNumber,
+  Count,
+  Epoch,
+  MalformedMessage,
+  Name20,
+  Name40,
+  Name120,
+  narrowed,
+  PROTOCOL_VERSION,
+  Seconds,
+  Seq,
+} from "./basis";
+
+const Hello = v.strictObject({
+  type: v.literal("hello"),
+  protocol: v.literal(PROTOCOL_VERSION),
+  client: Name120,
+  epoch: v.nullable(Epoch),
+});
+
+/** What the headset did to the clock of a phase, at its own monotonic time. */
+const PhaseReport = v.strictObject({
+  kind: v.literal("phase"),
+  phase_id: Count,
+  what: v.picklist([
+    "started",
+    "paused",
+    "resumed",
+    "walk_back_started",
+    "walk_back_ended",
+    "time_up",
+    "ended",
+  ]),
+  t_s: Seconds,
+  active_s: Seconds,
+  cause: Name40,
+});
+
+/** The participant pressed the grips and the avatar appeared. */
+const MaterialisedReport = v.strictObject({ kind: v.literal("materialised"), t_s: Seconds });
+
+/** A finished contact of one body part with one surface, inside one active interval. */
+const ContactReport = v.strictObject({
+  kind: v.literal("contact"),
+  phase_id: Count,
+  surface: Name40,
+  surface_kind: v.picklist(["panel", "side", "target", "start"]),
+  box: v.nullable(Count),
+  side: v.nullable(Name20),
+  body_part: Name40,
+  begin_s: Seconds,
+  end_s: Seconds,
+  begin_active_s: Seconds,
+  end_active_s: Seconds,
+  effect: Name20,
+});
+
+const CompletionReport = v.strictObject({
+  kind: v.literal("completion"),
+  phase_id: Count,
+  number: CompletionNumber,
+  t_s: Seconds,
+  active_s: Seconds,
+  duration_s: Seconds,
+  order: v.pipe(v.array(Count), v.maxLength(16)),
+  out_of_order_touches: Count,
+});
+
+const Body = v.variant("kind", [PhaseReport, MaterialisedReport, ContactReport, CompletionReport]);
+export type ReportBody = v.InferOutput<typeof Body>;
+
+const Report = v.strictObject({ type: v.literal("report"), epoch: Epoch, seq: Seq, body: Body });
+const Probe = v.strictObject({ type: v.literal("probe"), client_sent_s: Seconds });
+const Produced = v.strictObject({
+  type: v.literal("produced"),
+  epoch: Epoch,
+  streams: v.record(v.picklist(["target", "actual", "reports"]), Seq),
+});
+
+/** How far the client itself has come in each stream: its next seqs. */
+export type Counts = v.InferOutput<typeof Produced>["streams"];
+
+const Said = v.variant("type", [Hello, Report, Probe, Produced]);
+type Said = v.InferOutput<typeof Said>;
+
+/** The text of a message; MalformedMessage if the server would refuse it. */
+export function textOf(message: Said): string {
+  return JSON.stringify(narrowed(Said, message));
+}
+
+/** What one exchange read: the server's clock as the digits that came, which outgrow a double. */
+export interface Reading {
+  readonly serverReceivedNs: string;
+  readonly serverSentNs: string;
+  readonly clientReceivedS: number;
+}
+
+/** The text of a reading; `null` for one that did not come in time. */
+export function probedText(clientSentS: number, reading: Reading | null): string {
+  const times = {
+    server_received_ns: digits(reading?.serverReceivedNs),
+    server_sent_ns: digits(reading?.serverSentNs),
+    client_received_s: number(reading?.clientReceivedS),
+  };
+  const fields = Object.entries(times).map(([name, value]) => `"${name}":${value}`);
+  return `{"type":"probed","client_sent_s":${number(clientSentS)},${fields.join(",")}}`;
+}
+
+function digits(text: string | undefined): string {
+  if (text === undefined) return "null";
+  if (!/^\d{1,19}$/.test(text)) throw new MalformedMessage(`${text} are no nanoseconds`);
+  return text;
+}
+
+const number = (timeS: number | undefined): string =>
+  timeS === undefined ? "null" : JSON.stringify(narrowed(Seconds, timeS));

@@ -1,0 +1,150 @@
+/**
+ * The JSON messages of the server, narrowed from text.
+ *
+ * Fields that this client does not know are left out, and so are messages of a type that it does not
+ * know: a newer server may say more. A message of a known type that lacks something is an error.
+ */
+import * as v from "valibot";
+import { MalformedMessage, narrowed } from "./basis";
+
+const whole = v.pipe(v.number(), v.integer());
+
+/** All of `seq < next_seq` of a stream is on disk. */
+const StreamPosition = v.object({ stream: v.string(), epoch: whole, next_seq: whole });
+export type StreamPosition = v.InferOutput<typeof StreamPosition>;
+
+/** The phase to run; the headset converges to it. Latency is known here and nowhere else. */
+const PhaseOrder = v.object({
+  phase_id: whole,
+  kind: v.string(),
+  limb: v.nullable(v.string()),
+  status: v.string(),
+  latency_ms: v.number(),
+  preparation_s: v.number(),
+  duration_s: v.number(),
+  freeze_s: v.number(),
+  active_s: v.number(),
+  completions: whole,
+  pausing: v.boolean(),
+  resuming: v.boolean(),
+});
+export type PhaseOrder = v.InferOutput<typeof PhaseOrder>;
+
+/** Where the session stands, as the headset needs it. */
+const HeadsetState = v.object({
+  type: v.literal("state"),
+  version: whole,
+  status: v.string(),
+  step_index: v.nullable(whole),
+  step_kind: v.nullable(v.string()),
+  materialised: v.boolean(),
+  recording: v.boolean(),
+  phase: v.nullable(PhaseOrder),
+  participant: v.object({
+    handedness: v.nullable(v.string()),
+    footedness: v.nullable(v.string()),
+    stature_m: v.nullable(v.number()),
+  }),
+});
+export type HeadsetState = v.InferOutput<typeof HeadsetState>;
+
+/** Answers a hello: the client's epoch, where each stream stands, the study's tasks and texts. */
+const Welcome = v.object({
+  type: v.literal("welcome"),
+  protocol: whole,
+  session_id: v.string(),
+  epoch: whole,
+  time_scale: v.number(),
+  language: v.string(),
+  avatar: v.string(),
+  on_disconnect: v.string(),
+  undelayed_parts: v.array(v.string()),
+  tasks: v.record(v.string(), v.unknown()),
+  texts: v.record(v.string(), v.unknown()),
+  positions: v.array(StreamPosition),
+  state: HeadsetState,
+});
+export type Welcome = v.InferOutput<typeof Welcome>;
+
+const Ack = v.object({ type: v.literal("ack"), positions: v.array(StreamPosition) });
+
+/** A seq was skipped: send again from `next_seq`. */
+const Resend = v.object({ type: v.literal("resend"), ...StreamPosition.entries });
+
+/** Samples were stored as they came, and are flagged. */
+const Flag = v.object({
+  type: v.literal("flag"),
+  code: v.picklist(["non_finite", "non_unit"]),
+  stream: v.string(),
+  epoch: whole,
+  seq: whole,
+  frames: whole,
+  message: v.string(),
+});
+export type Flag = v.InferOutput<typeof Flag>;
+
+/** A report was stored and does not count, because it did not fit the session's state. */
+const RefusedReport = v.object({
+  type: v.literal("refused"),
+  epoch: whole,
+  seq: whole,
+  message: v.string(),
+  remedy: v.string(),
+});
+export type RefusedReport = v.InferOutput<typeof RefusedReport>;
+
+/** Why the server closes the connection. */
+const Failure = v.object({
+  type: v.literal("error"),
+  code: v.string(),
+  message: v.string(),
+  remedy: v.string(),
+});
+
+/** The server's clock around a probe; its nanoseconds as the digits that came. */
+const Nanoseconds = v.pipe(v.string(), v.regex(/^\d{1,19}$/));
+const ProbeAnswer = v.object({
+  type: v.literal("probe"),
+  client_sent_s: v.number(),
+  server_received_ns: Nanoseconds,
+  server_sent_ns: Nanoseconds,
+});
+export type ProbeAnswer = v.InferOutput<typeof ProbeAnswer>;
+
+const SCHEMAS = {
+  welcome: Welcome,
+  state: HeadsetState,
+  ack: Ack,
+  resend: Resend,
+  flag: Flag,
+  refused: RefusedReport,
+  error: Failure,
+  probe: ProbeAnswer,
+} as const;
+
+type Schemas = typeof SCHEMAS;
+export type ServerMessage = v.InferOutput<Schemas[keyof Schemas]>;
+
+/** The message in `text`; null if its type is unknown; MalformedMessage if it lacks something. */
+export function serverMessage(text: string): ServerMessage | null {
+  const value = parsed(withDigitsKept(text));
+  const type = narrowed(v.object({ type: v.string() }), value).type;
+  if (!isKnown(type)) return null;
+  return narrowed(SCHEMAS[type], value);
+}
+
+function parsed(text: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch {
+    throw new MalformedMessage(`not JSON: ${text.slice(0, 80)}`);
+  }
+}
+
+const isKnown = (type: string): type is keyof Schemas => Object.hasOwn(SCHEMAS, type);
+
+/** Nanoseconds since a machine's start outgrow a double after 104 days: read as text. */
+function withDigitsKept(text: string): string {
+  if (!text.includes('"server_received_ns"')) return text;
+  return text.replace(/("server_(?:received|sent)_ns"\s*:\s*)(\d+)/g, '$1"$2"');
+}
