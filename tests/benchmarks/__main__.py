@@ -1,4 +1,7 @@
-"""`./run bench NAME [--json]` runs a benchmark of this folder and prints its figures."""
+"""`./run bench NAME [--json]` runs a benchmark of this folder and prints its figures.
+
+Those with a load take its duration (`--seconds`, `--minutes`).
+"""
 
 import argparse
 import importlib
@@ -18,9 +21,15 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("name", choices=NAMES, help="which benchmark")
     parser.add_argument("--json", action="store_true", help="print the figures as JSON")
     parser.add_argument("--only", action="append", help="only these parts; may be repeated")
+    duration = parser.add_mutually_exclusive_group()
+    duration.add_argument("--seconds", type=float, help="how long a load lasts, where there is one")
+    duration.add_argument("--minutes", type=float, help="the same in minutes")
     asked = parser.parse_args(arguments)
     benchmark = importlib.import_module(f"tests.benchmarks.{asked.name}")
-    report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS))
+    given = {}
+    if asked.seconds or asked.minutes:
+        given["duration_s"] = asked.seconds or 60.0 * asked.minutes
+    report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS), **given)
     print(json.dumps(report.as_json(), indent=2) if asked.json else as_table(report))
     return 0
 

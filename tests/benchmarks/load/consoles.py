@@ -1,0 +1,123 @@
+"""Consoles in a process of their own: `python -m tests.benchmarks.load.consoles`.
+
+Each follows the live news of a session and asks for its view every two seconds. Same conversation
+with the parent as the generator; the plan ends by itself after its duration.
+"""
+
+import asyncio
+import json
+import sys
+import time
+from array import array
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import uvloop
+from httpx2 import AsyncClient, Timeout
+
+VIEW_EVERY_S = 2.0
+
+
+@dataclass(frozen=True)
+class ConsolePlan:
+    """Which sessions have an open console: numbers and ids. `token`: an operator's."""
+
+    url: str
+    cookies: dict[str, str]
+    sessions: tuple[tuple[int, str], ...]
+    duration_s: float
+    news: str
+
+    def as_json(self) -> str:
+        """One line."""
+        return json.dumps(asdict(self))
+
+    @classmethod
+    def from_json(cls, text: str) -> "ConsolePlan":
+        """The inverse of `as_json`."""
+        read: dict[str, Any] = json.loads(text)
+        sessions = tuple((int(number), str(key)) for number, key in read["sessions"])
+        return cls(**{**read, "sessions": sessions})
+
+
+@dataclass
+class Seen:
+    """What a console saw: rows (session number, headset's clock s, arrived at s), and waits (s)."""
+
+    live: "array[float]"
+    views: "array[float]"
+
+
+async def run(plan: ConsolePlan) -> dict[str, Any]:
+    """Open the consoles, watch for the duration, save the news."""
+    seen = Seen(array("d"), array("d"))
+    timeout = Timeout(30.0, read=60.0, pool=None)
+    async with AsyncClient(base_url=plan.url, cookies=plan.cookies, timeout=timeout) as client:
+        opened = [asyncio.Event() for _ in plan.sessions]
+        tasks = [
+            asyncio.create_task(_follow(client, number, key, is_open, seen))
+            for (number, key), is_open in zip(plan.sessions, opened, strict=True)
+        ]
+        await asyncio.gather(*(is_open.wait() for is_open in opened))
+        print("connected\nready", flush=True)
+        begin_s = float(await asyncio.to_thread(sys.stdin.readline))
+        tasks += [
+            asyncio.create_task(_view(client, at, key, begin_s, seen))
+            for at, (_, key) in enumerate(plan.sessions)
+        ]
+        done, _ = await asyncio.wait(
+            tasks,
+            timeout=begin_s + plan.duration_s - time.monotonic(),
+            return_when=asyncio.FIRST_EXCEPTION,
+        )
+        for task in done:
+            task.result()
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+    np.save(Path(plan.news), np.asarray(seen.live).reshape(-1, 3))
+    return {"views_s": seen.views.tolist()}
+
+
+async def _follow(
+    client: AsyncClient, number: int, session_id: str, is_open: asyncio.Event, seen: Seen
+) -> None:
+    """Read the live news as a page does."""
+    async with client.stream("GET", f"/api/sessions/{session_id}/live") as response:
+        response.raise_for_status()
+        kind = ""
+        async for line in response.aiter_lines():
+            arrived_s = time.monotonic()
+            if line.startswith("event: "):
+                kind = line[7:]
+            elif line.startswith("data: "):
+                is_open.set()
+                if kind == "telemetry":
+                    client_t_s = json.loads(line[6:])["client_t_s"]
+                    seen.live.extend((number, client_t_s, arrived_s))
+    raise ConnectionError(f"the live news of {session_id} ended")
+
+
+async def _view(client: AsyncClient, at: int, session_id: str, begin_s: float, seen: Seen) -> None:
+    """Ask for the session as a page does when it opens."""
+    due_s = begin_s + at * 0.618034 % 1.0 * VIEW_EVERY_S
+    while True:
+        await asyncio.sleep(max(0.0, due_s - time.monotonic()))
+        asked_s = time.monotonic()
+        response = await client.get(f"/api/sessions/{session_id}")
+        response.raise_for_status()
+        seen.views.append(time.monotonic() - asked_s)
+        due_s += VIEW_EVERY_S
+
+
+def main() -> None:
+    """Run the plan."""
+    plan = ConsolePlan.from_json(sys.stdin.readline())
+    with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
+        print(json.dumps(runner.run(run(plan))), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,79 @@
+"""The study of the load, and sessions that need nothing but their headsets."""
+
+import uuid
+from dataclasses import dataclass
+from typing import Any
+
+import httpx2
+
+from app.resources import study_configs_dir
+from tests.benchmarks.load.generator import Seat
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+STUDY = "load"
+# Longer than any run; nothing else than moving freely.
+PROCEDURE = """procedure:
+  before:
+    - {step: materialise, text: t_pose}
+    - {step: free_roam, duration_s: 86400, latency_ms: 125, text: free_roam}
+"""
+
+
+@dataclass(frozen=True)
+class Lab:
+    """Sessions that wait for their headsets' frames."""
+
+    seats: tuple[Seat, ...]
+    cookies: dict[str, str]
+
+
+def make_lab(server: LiveServer, count: int, first: int = 0) -> Lab:
+    """Make `count` sessions, numbered from `first`: begun, materialised, their headset paired."""
+    with server.client() as client:
+        credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+        client.post("/api/login", json=credentials).raise_for_status()
+        if first == 0:
+            client.post("/api/studies", json={"yaml": study_text()}).raise_for_status()
+        seats = tuple(_seat(client, first + at) for at in range(count))
+        return Lab(seats, dict(client.cookies))
+
+
+def call_phases(server: LiveServer, lab: Lab) -> None:
+    """Begin the phase of every session; their headsets must be connected."""
+    with server.client() as client:
+        client.cookies.update(lab.cookies)
+        for seat in lab.seats:
+            _command(client, f"/api/sessions/{seat.session_id}", "begin_phase")
+
+
+def study_text() -> str:
+    """The shipped study with another beginning."""
+    text = (study_configs_dir() / "reembodiment-latency.yaml").read_text(encoding="utf-8")
+    start, end = text.index("procedure:\n"), text.index("  block:\n")
+    text = text[:start] + PROCEDURE + text[end:]
+    return text.replace("key: reembodiment-latency", f"key: {STUDY}", 1)
+
+
+def _seat(client: httpx2.Client, number: int) -> Seat:
+    view = _post(client, f"/api/studies/{STUDY}/sessions", {"kind": "simulated"})
+    at = f"/api/sessions/{view['id']}"
+    shown = _post(client, f"{at}/pairings", {"device": "headset"})
+    token = str(_post(client, "/api/devices/pair", {"code": shown["code"]})["token"])
+    for command in ("start", "materialise"):
+        view = _command(client, at, command)
+    return Seat(number, str(view["id"]), token)
+
+
+def _command(client: httpx2.Client, at: str, kind: str) -> dict[str, Any]:
+    """Send a command, decided on the newest view."""
+    view = client.get(at).json()
+    body = {"command_id": str(uuid.uuid4()), "expected_version": view["version"], "type": kind}
+    return _post(client, f"{at}/commands", body)
+
+
+def _post(client: httpx2.Client, path: str, body: dict[str, Any]) -> dict[str, Any]:
+    response = client.post(path, json=body)
+    if response.is_error:
+        raise RuntimeError(f"POST {path} {body}: {response.status_code} {response.text[:500]}")
+    answered: dict[str, Any] = response.json()
+    return answered

@@ -1,0 +1,138 @@
+"""The database against the generator's own counters and digests."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from heapq import merge
+from typing import Any, TypeVar
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.database import Database, open_database
+from app.features.telemetry.encoding import Frames, decode_frames
+from app.models import ClientReport, TelemetryBatch, TelemetryChunk
+from app.wire import StreamName, decode_batch
+from app.wire.messages import REPORT_STREAM
+from tests.benchmarks.load.record import Digest
+
+Span = tuple[int, int]
+Piece = TelemetryChunk | TelemetryBatch
+Row = TypeVar("Row", TelemetryChunk, TelemetryBatch)
+
+
+@dataclass
+class Verdict:
+    """Frames and reports: handed over, acknowledged, stored; and what is wrong with them.
+
+    `lost` were acknowledged and are not stored, `duplicated` are stored more than once, `surplus`
+    were never handed over. `digested`, `differing`: streams that were compared bit by bit.
+    """
+
+    handed: int = 0
+    acked: int = 0
+    stored: int = 0
+    lost: int = 0
+    duplicated: int = 0
+    surplus: int = 0
+    digested: int = 0
+    differing: int = 0
+    batches_left: int = 0
+    chunk_bytes: int = 0
+    chunk_frames: int = 0
+
+
+def verify(url: str, sessions: list[Mapping[str, Any]]) -> Verdict:
+    """Compare every stream's rows with what was acknowledged, and the digested ones bit by bit."""
+    verdict = Verdict()
+    database = open_database(url)
+    try:
+        _measure(database, verdict)
+        for told in sessions:
+            for stream in (*StreamName, REPORT_STREAM):
+                _count(database, told, str(stream), verdict)
+            for stream, digest in told["digests"].items():
+                verdict.digested += 1
+                verdict.differing += _digest(database, told, stream) != digest
+    finally:
+        database.close()
+    return verdict
+
+
+def _measure(database: Database, verdict: Verdict) -> None:
+    with database.reading() as db:
+        size = func.sum(func.length(TelemetryChunk.data))
+        found = db.execute(select(size, func.sum(TelemetryChunk.frame_count))).one()
+        verdict.chunk_bytes, verdict.chunk_frames = found[0] or 0, found[1] or 0
+        verdict.batches_left = db.scalar(select(func.count()).select_from(TelemetryBatch)) or 0
+
+
+def _count(database: Database, told: Mapping[str, Any], stream: str, verdict: Verdict) -> None:
+    with database.reading() as db:
+        spans = sorted(_spans(db, told["session_id"], stream, told["epoch"]))
+    end = missing = 0
+    for first, after in spans:
+        verdict.duplicated += max(0, min(end, after) - first)
+        missing += max(0, min(first, told["acked"][stream]) - end)
+        verdict.stored += after - first
+        end = max(end, after)
+    verdict.handed += told["handed"][stream]
+    verdict.acked += told["acked"][stream]
+    verdict.lost += missing + max(0, told["acked"][stream] - end)
+    verdict.surplus += max(0, end - told["handed"][stream])
+
+
+def _spans(db: Session, session_id: str, stream: str, epoch: int) -> Iterator[Span]:
+    """Every stored row of a stream as (first seq, one past the last)."""
+    if stream == REPORT_STREAM:
+        query = select(ClientReport.seq).where(
+            ClientReport.session_id == session_id, ClientReport.epoch == epoch
+        )
+        yield from ((seq, seq + 1) for seq in db.scalars(query))
+        return
+    for table in (TelemetryChunk, TelemetryBatch):
+        rows = select(table.seq_first, table.frame_count).where(
+            table.session_id == session_id, table.stream == stream, table.epoch == epoch
+        )
+        yield from ((first, first + count) for first, count in db.execute(rows))
+
+
+def _digest(database: Database, told: Mapping[str, Any], stream: str) -> str:
+    """What is stored of a stream, in order of seq; not by the product's own reader."""
+    digest = Digest()
+    with database.reading() as db:
+        rows: Iterator[Piece] = merge(
+            _rows(db, TelemetryChunk, told, stream),
+            _rows(db, TelemetryBatch, told, stream),
+            key=lambda row: row.seq_first,
+        )
+        for row in rows:
+            if isinstance(row, TelemetryBatch):
+                batch = decode_batch(row.message)
+                digest.take(batch.times_s, batch.flags, batch.values)
+            else:
+                frames = _decoded(row)
+                digest.take(frames.times_s, frames.flags, frames.values)
+    return digest.text
+
+
+def _rows(db: Session, table: type[Row], told: Mapping[str, Any], stream: str) -> Iterator[Row]:
+    query = (
+        select(table)
+        .where(
+            table.session_id == told["session_id"],
+            table.stream == stream,
+            table.epoch == told["epoch"],
+        )
+        .order_by(table.seq_first)
+    )
+    return iter(db.scalars(query.execution_options(yield_per=64)))
+
+
+def _decoded(chunk: TelemetryChunk) -> Frames:
+    return decode_frames(
+        chunk.data,
+        encoding=chunk.encoding,
+        seq_first=chunk.seq_first,
+        frame_count=chunk.frame_count,
+        values_per_frame=chunk.values_per_frame,
+    )
