@@ -1,0 +1,123 @@
+"""What holds for every recording, whatever is wrong with it."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.science.stream_quality import (
+    Examination,
+    Memory,
+    QualityError,
+    StreamQuality,
+    assess,
+    examine,
+    together,
+)
+from tests.science.simulation.people import RATE_HZ
+from tests.science.stream_quality.recordings import Recording, generated
+
+USUAL_S = 1.0 / RATE_HZ
+
+
+def judged(recording: Recording, before: Memory | None = None) -> Examination:
+    """Every frame judged, against 90 frames a second."""
+    return examine(
+        recording.times_s,
+        recording.rotations,
+        recording.positions_m,
+        usual_s=USUAL_S,
+        before=before or Memory(),
+    )
+
+
+def quality(recording: Recording) -> StreamQuality:
+    """The faults counted."""
+    return assess(recording.times_s, recording.rotations, recording.positions_m)
+
+
+def spoilt(seed: int) -> Recording:
+    """A recording with a little of everything."""
+    rng = np.random.default_rng(seed)
+    bad = generated().copy()
+    for _ in range(3):
+        bad.rotations[rng.integers(len(bad)), rng.integers(22), rng.integers(4)] = np.nan
+        bad.rotations[rng.integers(len(bad)), rng.integers(22)] *= 1.5
+        bad.times_s[rng.integers(1, len(bad))] -= 1.0
+        bad.rotations[rng.integers(len(bad)), 9] = (0.0, 1.0, 0.0, 0.0)
+        bad.positions_m[rng.integers(len(bad))] += 3.0
+        start = int(rng.integers(300, len(bad) - 400))
+        bad.rotations[start : start + 300, 5] = bad.rotations[start, 5]
+    bad.times_s[rng.integers(len(bad))] = np.inf
+    first = int(rng.integers(100, 2000))
+    return bad.without(np.arange(first, first + 40))
+
+
+@given(seed=st.integers(0, 40), cuts=st.lists(st.integers(1, 2400), max_size=6, unique=True))
+@settings(max_examples=60, deadline=None)
+def test_it_does_not_matter_where_a_recording_is_cut(seed: int, cuts: list[int]) -> None:
+    """Span after span, with what is remembered, gives the same marks as all at once."""
+    whole = spoilt(seed)
+    expected = judged(whole)
+    parts, before = [], Memory()
+    for begin, end in zip([0, *sorted(cuts)], [*sorted(cuts), len(whole)], strict=True):
+        parts.append(judged(whole.part(slice(begin, end)), before))
+        before = parts[-1].after
+    for name in ("non_finite", "non_unit", "turned", "shifted", "frozen"):
+        pieces = np.concatenate([getattr(part, name) for part in parts])
+        assert np.array_equal(pieces, getattr(expected, name)), name
+    for name in ("gap", "backwards"):
+        pieces = np.concatenate([getattr(part.pacing, name) for part in parts])
+        assert np.array_equal(pieces, getattr(expected.pacing, name)), name
+
+
+def test_a_recording_is_not_touched() -> None:
+    """Judging changes no bit."""
+    bad = spoilt(3)
+    before = (bad.times_s.tobytes(), bad.rotations.tobytes(), bad.positions_m.tobytes())
+    judged(bad)
+    assert (bad.times_s.tobytes(), bad.rotations.tobytes(), bad.positions_m.tobytes()) == before
+
+
+def test_the_other_sign_of_a_quaternion_is_the_same_rotation() -> None:
+    """A stream that changes sign at any frame turns no joint."""
+    flipped = generated().copy()
+    flipped.rotations[::7] *= -1.0
+    assert quality(flipped).jumps == 0
+
+
+def test_precision_of_the_numbers_does_not_matter() -> None:
+    """Judged in double precision a recording has the same faults."""
+    bad = spoilt(4)
+    wide = assess(bad.times_s, bad.rotations.astype(float), bad.positions_m.astype(float))
+    assert wide == quality(bad)
+
+
+def test_faults_of_runs_add_up() -> None:
+    """Two runs together have the faults of both; a gap between them is not known."""
+    one, other = quality(spoilt(5)), quality(spoilt(6))
+    both = together([one, other])
+    assert both.frames == one.frames + other.frames
+    assert both.gaps == one.gaps + other.gaps
+    assert both.longest_gap_s == max(one.longest_gap_s, other.longest_gap_s)
+    assert both.frozen_s == pytest.approx(np.add(one.frozen_s, other.frozen_s))
+    assert together([]).frames == 0
+
+
+def test_no_frames_have_no_faults() -> None:
+    """And no frame rate."""
+    empty = quality(generated().part(slice(0)))
+    assert (empty.frames, empty.frame_rate_hz, empty.span_s) == (0, None, 0.0)
+    after = judged(generated().part(slice(0))).after
+    assert (after.time_s, after.pose, after.watched_s) == (None, None, 0.0)
+
+
+@pytest.mark.parametrize("shape", [(5, 21, 4), (4, 22, 4), (5, 22, 3)])
+def test_arrays_that_do_not_belong_together_are_refused(shape: tuple[int, ...]) -> None:
+    """The refusal names the shapes."""
+    with pytest.raises(QualityError, match="do not fit"):
+        examine(np.zeros(5), np.zeros(shape), np.zeros((5, 3)))
+    with pytest.raises(QualityError, match="do not fit"):
+        examine(np.zeros(5), np.zeros((5, 22, 4)), np.zeros((4, 3)))
+    with pytest.raises(QualityError, match="does not fit"):
+        assess(np.zeros(5), np.zeros((5, 22, 4)), np.zeros((5, 3)), counted=np.ones(4, np.bool_))
