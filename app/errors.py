@@ -7,6 +7,7 @@ ReembodyError                     something was refused; carries value, valid an
 ├── NotAllowed            403     signed in, but this is not theirs to do
 ├── NotFound              404     nothing by that name (or not for this reader)
 ├── Conflict              409     the request clashes with what is already recorded
+│   ├── KeptConflict      409     the same, and what was refused is kept in the record
 │   ├── StaleVersion      409     somebody else acted first; look again, then decide
 │   └── NotNow            409     the session is in a step where this cannot be done
 ├── Gone                  410     a pairing code was used or has expired
@@ -96,6 +97,13 @@ class Conflict(ReembodyError):
 
     code = "conflict"
     status = 409
+
+
+class KeptConflict(Conflict):
+    """The request clashes with the record, and the record keeps what was refused.
+
+    The transaction that raises it is committed, so that nobody's words are lost.
+    """
 
 
 class StaleVersion(Conflict):

@@ -10,7 +10,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 from sqlalchemy.orm import Session
 
-from app.errors import NotSignedIn
+from app.errors import KeptConflict, NotSignedIn
 from app.features.accounts.service import account_of_token
 from app.features.context import AppContext
 from app.features.devices.service import device_of_token
@@ -50,8 +50,14 @@ def _reading(context: Context) -> Iterator[Session]:
 
 
 async def _writing(context: Context) -> AsyncIterator[Session]:
+    refusal: KeptConflict | None = None
     async with context.database.writing_async() as db:
-        yield db
+        try:
+            yield db
+        except KeptConflict as error:
+            refusal = error
+    if refusal is not None:
+        raise refusal
 
 
 Reading = Annotated[Session, Depends(_reading, scope="function")]

@@ -10,8 +10,9 @@ import numpy as np
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.errors import Conflict, InvalidInput, NotNow
+from app.errors import InvalidInput, NotNow
 from app.features.context import AppContext
+from app.features.questionnaires.refused import keep_refused, request_hash
 from app.features.questionnaires.schemas import (
     Administration,
     AnswerValue,
@@ -71,19 +72,16 @@ def submit(
 ) -> tuple[Submission, bool]:
     """Store a form and move the session on; the submission and whether it was stored before.
 
-    `session` must be locked. Raises InvalidInput with every answer that does not fit, Conflict when
-    the key was used for other content, NotNow when this form is not due.
+    `session` must be locked. Raises InvalidInput with every answer that does not fit, NotNow when
+    this form is not due, KeptConflict when other answers are stored already; these are then kept
+    beside them.
     """
-    request_hash = _request_hash(request)
+    hash_ = request_hash(request)
     known = _stored(db, session, request)
     if known is not None:
-        if known.idempotency_key == request.idempotency_key and known.request_hash == request_hash:
+        if known.idempotency_key == request.idempotency_key and known.request_hash == hash_:
             return known, True
-        raise Conflict(
-            "other answers to this form are stored already",
-            value=request.administration,
-            remedy="The first answers stand; the experimenter can open the form again.",
-        )
+        keep_refused(db, context, session, request, stands=known, actor=actor)
     due = current_administration(db, session)
     if due is None or due.key != request.administration:
         raise NotNow(
@@ -108,7 +106,7 @@ def submit(
         instrument_version_id=row.id,
         instrument=instrument.key,
         idempotency_key=request.idempotency_key,
-        request_hash=request_hash,
+        request_hash=hash_,
         salt=salt,
         mode=mode,
         entered_by=actor,
@@ -261,12 +259,6 @@ def _score_rows(
         ScoreValue(submission_id=submission.id, score=key, value=value)
         for key, value in score_answers(instrument, answers).items()
     ]
-
-
-def _request_hash(request: SubmissionRequest) -> str:
-    """What makes two requests the same: the form and its answers, not when they were sent."""
-    covered = canonical([request.administration, request.answers, request.shown_order])
-    return hashlib.sha256(covered.encode()).hexdigest()
 
 
 def _item_seed(session: StudySession, step: Step, state: SessionState) -> int:

@@ -6,8 +6,10 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
+from app.features.sessions.contents import content_body, contents_of
+from app.features.sessions.journal import events_of, verify_chain
 from app.features.studies.service import instrument_of, newest_instruments
-from app.models import Submission
+from app.models import StudySession, Submission
 from app.science.instruments import item_order
 from tests.features.lab import Lab, error, key, ok
 from tests.features.questionnaires.forms import (
@@ -90,14 +92,24 @@ def test_other_answers_to_a_stored_form_are_refused(
     tablet: TestClient,
     new_key: bool,  # noqa: FBT001 - pytest passes it by name
 ) -> None:
-    """Under the same key or another one: 409, and the first answers stand."""
+    """Under the same key or another one: 409, the first answers stand, both are in the record."""
     body = filled(due(tablet))
     ok(send(tablet, body))
     other = {**body, "answers": {**ANSWERS, "q1": 7}}
     if new_key:
         other["idempotency_key"] = key()
-    error(send(tablet, other), 409, "conflict")
+    for _ in range(3):
+        error(send(tablet, other), 409, "conflict")
     assert stored(lab, session_id)[0]["answers"]["q1"] == 2
+    (event,) = [one for one in lab.events(session_id) if one["type"] == "form_refused"]
+    with lab.database.reading() as db:
+        (kept,) = contents_of(db, session_id, "refused_form")
+        refused = content_body(kept)
+        session = db.get_one(StudySession, session_id)
+        assert verify_chain(events_of(db, session_id), version=session.version).ok
+    assert isinstance(refused, dict)
+    assert refused["answers"]["q1"] == 7
+    assert kept.id == event["data"]["content_id"]
 
 
 def test_the_operator_may_leave_answers_out(lab: Lab, session_id: str) -> None:

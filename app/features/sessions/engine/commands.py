@@ -102,6 +102,14 @@ class AddNote(Command):
 
 
 @dataclass(frozen=True, kw_only=True)
+class KeepRefusedForm(Command):
+    """Other answers came for a form that is stored; `submission_id` is the one that stands."""
+
+    submission_id: str
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
 class Report(Command):
     """What the headset did to a phase's clock, at its own time.
 

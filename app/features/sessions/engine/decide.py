@@ -27,6 +27,8 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
     """
     if isinstance(command, c.AddNote):
         return [e.NoteAdded(**_ref(command.content))]
+    if isinstance(command, c.KeepRefusedForm):
+        return [e.FormRefused(submission_id=command.submission_id, **_ref(command.content))]
     if isinstance(command, c.Start):
         return _start(state)
     if state.status is not SessionStatus.ACTIVE or state.current is None:

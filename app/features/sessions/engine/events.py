@@ -197,6 +197,16 @@ class NoteAdded(Event):
 
 
 @dataclass(frozen=True, kw_only=True)
+class FormRefused(Event):
+    """Other answers came for a form that is stored: that one stands, these are kept beside."""
+
+    type = "form_refused"
+    submission_id: str
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class SessionEnded(Event):
     """The session is over: completed, aborted or withdrawn."""
 
@@ -227,6 +237,7 @@ EVENT_TYPES: dict[str, type[Event]] = {
         PhaseEnded,
         PhaseVoided,
         NoteAdded,
+        FormRefused,
         SessionEnded,
     )
 }
