@@ -149,7 +149,7 @@ def test_a_spoilt_capture_is_not_taken_for_a_sound_one(
 
 def _episodes(there: NDArray[np.bool_], found: NDArray[np.bool_]) -> Found:
     """Stretches that were put in and found, and stretches that were found where none is."""
-    hits = [found[stretch].any() for stretch in _stretches(there)]
+    hits = [bool(found[stretch].any()) for stretch in _stretches(there)]
     false = [not there[stretch].any() for stretch in _stretches(found)]
     return Found(len(hits), sum(hits), sum(false))
 
