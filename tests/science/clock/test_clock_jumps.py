@@ -1,0 +1,126 @@
+"""Where the course breaks: single wrong probes, jumps of either clock, silences."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.science.clock import ClockProbes, fit_clock
+from tests.science.clock.simulated import STEPS_AT, SYMMETRIC, UTC_S, simulate
+
+PLAIN = replace(SYMMETRIC[0], duration_s=600.0)
+STEP_AT_S = STEPS_AT * PLAIN.duration_s
+
+
+def _wrong(place: int, count: int) -> ClockProbes:
+    """Probes of ten minutes, `count` of them answered by a server that was 3 s ahead."""
+    probes = simulate(PLAIN, np.random.default_rng(1)).probes
+    for readings in (probes.server_received_s, probes.server_sent_s):
+        readings[place : place + count] += 3.0
+    return probes
+
+
+@pytest.mark.parametrize("place", [0, 1, 150, 299, 300, 301, 302, 598, 599])
+def test_one_impossible_probe_is_left_out_and_cuts_nothing(place: int) -> None:
+    """Wherever it is, also first, last and beside the seam of two windows."""
+    probes = _wrong(place, 1)
+    mapping = fit_clock(probes)
+    assert sum(segment.left_out for segment in mapping.segments) == 1
+    assert [segment.stepped for segment in mapping.segments] == ["", ""]
+    others = np.arange(len(probes)) != place
+    times_s = probes.client_sent_s
+    expected, _ = fit_clock(probes.taken(others)).to_server(times_s)
+    assert mapping.to_server(times_s)[0] == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_negative_round_trip_is_left_out() -> None:
+    """Back before it went: counted, and without influence."""
+    probes = simulate(PLAIN, np.random.default_rng(2)).probes
+    expected, _ = fit_clock(probes.taken(np.arange(len(probes)) != 77)).to_server(
+        probes.client_sent_s
+    )
+    probes.client_received_s[77] -= 0.5
+    mapping = fit_clock(probes)
+    assert mapping.to_server(probes.client_sent_s)[0] == pytest.approx(expected, abs=1e-9)
+    assert [segment.left_out for segment in mapping.segments] == [1, 0]
+
+
+def test_two_probes_that_agree_are_a_jump() -> None:
+    """What is said twice is believed: there and back again."""
+    mapping = fit_clock(_wrong(200, 2))
+    assert [round(segment.step_s) for segment in mapping.segments if segment.stepped] == [3, -3]
+
+
+@pytest.mark.parametrize(
+    ("client_step_s", "server_step_s", "whose"),
+    [(0.5, 0.0, "client"), (-30.0, 0.0, "client"), (0.0, 0.5, "server"), (0.0, -30.0, "server")],
+)
+def test_a_jump_is_told_with_its_size_and_its_clock(
+    client_step_s: float, server_step_s: float, whose: str
+) -> None:
+    """Two of three clocks are believed: the client's, the server's, the server's wall clock."""
+    stepping = replace(PLAIN, client_step_s=client_step_s, server_step_s=server_step_s)
+    mapping = fit_clock(simulate(stepping, np.random.default_rng(3)).probes)
+    (stepped,) = [segment for segment in mapping.segments if segment.stepped]
+    assert stepped.stepped == whose
+    assert stepped.step_s == pytest.approx(server_step_s - client_step_s, abs=0.005)
+
+
+def test_without_a_wall_clock_only_a_server_that_goes_back_is_caught() -> None:
+    """A jump ahead is the same to two clocks as a client that stood still."""
+    for server_step_s, whose in ((30.0, "client"), (-30.0, "server")):
+        stepping = replace(PLAIN, server_step_s=server_step_s)
+        probes = simulate(stepping, np.random.default_rng(4)).probes
+        mapping = fit_clock(ClockProbes(*probes.arrays[:4]))
+        assert [segment.stepped for segment in mapping.segments if segment.stepped] == [whose]
+
+
+def test_a_wall_clock_that_is_set_bends_nothing() -> None:
+    """Only `wall_s` of the segments tells of it."""
+    probes = simulate(PLAIN, np.random.default_rng(5)).probes
+    plain = fit_clock(probes)
+    assert probes.server_utc_s is not None
+    set_back = np.where(probes.server_utc_s > UTC_S + STEP_AT_S, -30.0, 0.0)
+    stepped = fit_clock(replace(probes, server_utc_s=probes.server_utc_s + set_back))
+    times_s = probes.client_sent_s
+    for one, other in zip(plain.to_server(times_s), stepped.to_server(times_s), strict=True):
+        assert np.array_equal(one, other)
+    first, last = stepped.segments[0].wall_s, stepped.segments[-1].wall_s
+    assert last - first == pytest.approx(-30.0, abs=0.1)
+
+
+def test_around_a_jump_the_bound_covers_both_sides() -> None:
+    """Between the last probe before it and the first behind it either may be true."""
+    stepping = replace(PLAIN, client_step_s=0.5)
+    simulated = simulate(stepping, np.random.default_rng(6), events=200_000)
+    server_s, uncertainty_s = fit_clock(simulated.probes).to_server(simulated.event_client_s)
+    assert (np.abs(server_s - simulated.event_server_s) <= uncertainty_s).all()
+    assert 0.4 < uncertainty_s.max() < 1.0
+
+
+def test_a_time_that_was_shown_twice_is_taken_for_the_first() -> None:
+    """The client's clock was set back by 30 s: the bound covers the second as well."""
+    stepping = replace(PLAIN, client_step_s=-30.0)
+    simulated = simulate(stepping, np.random.default_rng(7), events=20_000)
+    server_s, uncertainty_s = fit_clock(simulated.probes).to_server(simulated.event_client_s)
+    error_s = np.abs(server_s - simulated.event_server_s)
+    assert (error_s <= uncertainty_s).all()
+    assert np.mean(error_s > 0.005) == pytest.approx(30.0 / 600.0, abs=0.005)
+    assert np.mean(uncertainty_s > 29.0) == pytest.approx(60.0 / 600.0, abs=0.005)
+
+
+def test_a_silence_is_bridged_with_a_bound_that_grows_towards_its_middle() -> None:
+    """Ten minutes without an answer: nobody knows what the clocks did, but they kept the limit."""
+    quiet = replace(PLAIN, duration_s=1200.0)
+    probes = simulate(quiet, np.random.default_rng(8)).probes
+    heard = (np.arange(len(probes)) < 300) | (np.arange(len(probes)) >= 900)
+    mapping = fit_clock(probes.taken(heard))
+    begin_s, end_s = probes.client_sent_s[300], probes.client_sent_s[899]
+    times_s = np.linspace(begin_s, end_s, 7)
+    server_s, uncertainty_s = mapping.to_server(times_s)
+    assert uncertainty_s[2:5].min() > 0.1
+    assert uncertainty_s[[0, -1]].max() < 0.005
+    assert uncertainty_s.max() < 1.1 * 300 * 600e-6
+    assert not any(segment.stepped for segment in mapping.segments)
+    expected, _ = fit_clock(probes).to_server(times_s)
+    assert server_s == pytest.approx(expected, abs=0.001)
