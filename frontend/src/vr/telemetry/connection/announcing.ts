@@ -1,0 +1,51 @@
+/**
+ * Telling the server how far the client itself has come, so that it knows what it does not have.
+ *
+ * Runs of an earlier life of the page are told where something of them may be missing on the server.
+ */
+
+import { keyOf, type Run } from "../journal/entries";
+import type { Journal } from "../journal/journal";
+import type { Limits } from "../limits";
+import { type Counts, textOf } from "../wire/fromClient";
+
+export class Announcer {
+  readonly #send: (text: string) => void;
+  readonly #journal: Journal;
+  readonly #ticking: ReturnType<typeof setInterval>;
+  readonly #told = new Map<string, number>();
+
+  constructor(send: (text: string) => void, journal: Journal, limits: Limits) {
+    this.#send = send;
+    this.#journal = journal;
+    this.tell();
+    this.#ticking = setInterval(() => this.tell(), limits.producedEveryS * 1000);
+  }
+
+  /** Tell of what has changed since the last time; at first of everything. */
+  tell(): void {
+    for (const run of this.#journal.runs) {
+      const streams = this.#news(run);
+      if (Object.keys(streams).length === 0) continue;
+      this.#send(textOf({ type: "produced", epoch: run.epoch, streams }));
+    }
+  }
+
+  stop(): void {
+    clearInterval(this.#ticking);
+  }
+
+  #news({ epoch, produced }: Run): Counts {
+    const streams: Counts = {};
+    for (const stream of STREAMS) {
+      const count = produced[stream] ?? 0;
+      const key = keyOf({ stream, epoch });
+      if (count === (this.#told.get(key) ?? 0)) continue;
+      streams[stream] = count;
+      this.#told.set(key, count);
+    }
+    return streams;
+  }
+}
+
+const STREAMS = ["target", "actual", "reports"] as const;

@@ -1,0 +1,205 @@
+/**
+ * Keeps a headset connected: dials, greets, listens, and dials again, until it is closed or refused.
+ *
+ * Breaks are no errors. Only what the server says when it refuses is final: an `error` message, or a
+ * close code that another attempt would meet again.
+ */
+import type { Failure } from "../failure";
+import { PROTOCOL_VERSION } from "../wire/basis";
+import { textOf } from "../wire/fromClient";
+import {
+  type Flag,
+  type HeadsetState,
+  type RefusedReport,
+  type ServerMessage,
+  serverMessage,
+  type Welcome,
+} from "../wire/fromServer";
+import { type Address, Channel, type Ending, type MakeSocket } from "./channel";
+import { Conversation, type Parts } from "./conversation";
+
+/** What the server said of something that it stored: samples it flagged, a report that did not fit. */
+export type Notice = Flag | RefusedReport;
+
+export interface Hooks {
+  /** Before anything is sent; a failure ends it. */
+  readonly onWelcome: (welcome: Welcome) => Promise<Failure | null>;
+  readonly onState: (state: HeadsetState) => void;
+  readonly onNotice: (notice: Notice) => void;
+  /** Connected, disconnected, or failed for good. */
+  readonly onChange: () => void;
+}
+
+export interface ConnectionParts extends Omit<Parts, "onFailure"> {
+  readonly address: Address;
+  /** What the client calls itself. */
+  readonly name: string;
+  readonly makeSocket: MakeSocket;
+  readonly hooks: Hooks;
+}
+
+export class Connection {
+  failure: Failure | null = null;
+  /** The number the server gave to this run; null before the first welcome. */
+  epoch: number | null = null;
+  readonly #parts: ConnectionParts;
+  #channel: Channel | null = null;
+  #conversation: Conversation | null = null;
+  #isClosed = false;
+  #endPause: () => void = () => undefined;
+
+  constructor(parts: ConnectionParts) {
+    this.#parts = parts;
+  }
+
+  get isConnected(): boolean {
+    return this.#conversation !== null;
+  }
+
+  /** Until it is closed or has failed. */
+  async run(): Promise<void> {
+    const { retryS } = this.#parts.limits;
+    let attempt = 0;
+    while (this.#goesOn) {
+      // A connection that got as far as the welcome begins the waiting anew.
+      attempt = (await this.#connectOnce()) ? 0 : attempt;
+      if (this.#goesOn) await this.#pause(retryS[Math.min(attempt, retryS.length - 1)] ?? 1);
+      attempt++;
+    }
+  }
+
+  /** Say how far this run has come, and hang up. What is not acknowledged stays in the journal. */
+  close(): void {
+    this.#isClosed = true;
+    this.#conversation?.announcer.tell();
+    this.#channel?.close(1000);
+    this.#endPause();
+  }
+
+  get #goesOn(): boolean {
+    return !this.#isClosed && this.failure === null;
+  }
+
+  /** One connection from beginning to end; whether it was welcomed. */
+  async #connectOnce(): Promise<boolean> {
+    const { address, limits, makeSocket } = this.#parts;
+    let channel: Channel;
+    try {
+      channel = new Channel(
+        address,
+        limits,
+        makeSocket,
+        () => channel.send(this.#hello),
+        (text) => this.#take(channel, text),
+      );
+    } catch (error) {
+      this.#fail({ code: "address", message: String(error), remedy: "Check address and token." });
+      return false;
+    }
+    this.#channel = channel;
+    const ending = await channel.ended;
+    const conversation = this.#conversation;
+    this.#conversation = null;
+    await conversation?.stop();
+    this.failure ??= finalFailure(ending);
+    this.#parts.hooks.onChange();
+    return conversation !== null;
+  }
+
+  get #hello(): string {
+    const { name } = this.#parts;
+    return textOf({ type: "hello", protocol: PROTOCOL_VERSION, client: name, epoch: this.epoch });
+  }
+
+  #take(channel: Channel, text: string): void {
+    // First of all: it is part of a reading.
+    const receivedS = this.#parts.clock();
+    let message: ServerMessage | null;
+    try {
+      message = serverMessage(text);
+    } catch (error) {
+      this.#fail({
+        code: "not_understood",
+        message: `the server said something that this page does not understand: ${error}`,
+        remedy: "Reload this page; page and server must be of the same version.",
+      });
+      return;
+    }
+    if (message?.type === "welcome") void this.#welcomed(channel, message);
+    else if (message !== null) this.#follow(message, receivedS);
+  }
+
+  #follow(message: Exclude<ServerMessage, Welcome>, receivedS: number): void {
+    const { hooks, journal } = this.#parts;
+    switch (message.type) {
+      case "ack":
+        journal.acknowledge(message.positions);
+        break;
+      case "state":
+        hooks.onState(message);
+        break;
+      case "resend":
+        this.#conversation?.resend(message);
+        break;
+      case "probe":
+        this.#conversation?.prober.take(message, receivedS);
+        break;
+      case "error":
+        this.#fail(message);
+        break;
+      default:
+        hooks.onNotice(message);
+    }
+  }
+
+  async #welcomed(channel: Channel, welcome: Welcome): Promise<void> {
+    const refusal = await this.#parts.hooks.onWelcome(welcome).catch(browserFailed);
+    if (refusal !== null) this.#fail(refusal);
+    if (!channel.isOpen || this.#conversation !== null) return;
+    this.epoch ??= welcome.epoch;
+    this.#parts.journal.acknowledge(welcome.positions);
+    this.#conversation = new Conversation(channel, {
+      ...this.#parts,
+      onFailure: (failure) => this.#fail(failure),
+    });
+    this.#parts.hooks.onState(welcome.state);
+    this.#parts.hooks.onChange();
+  }
+
+  #fail({ code, message, remedy }: Failure): void {
+    this.failure ??= { code, message, remedy };
+    // The server closes after an `error`; whoever fails here hangs up first.
+    this.#channel?.close(4000, code);
+    this.#parts.hooks.onChange();
+  }
+
+  async #pause(seconds: number): Promise<void> {
+    await new Promise<void>((resolve) => {
+      const timer = setTimeout(resolve, seconds * 1000);
+      this.#endPause = () => {
+        clearTimeout(timer);
+        resolve();
+      };
+    });
+  }
+}
+
+const browserFailed = (error: unknown): Failure => ({
+  code: "browser",
+  message: `the browser could not prepare its journal: ${error}`,
+  remedy: "Reload this page.",
+});
+
+/** Codes that the next attempt would meet again, and what to do about them. */
+const FINAL: Readonly<Record<number, string>> = {
+  1009: "A message is larger than the server takes. Send fewer frames in a batch.",
+  4400: "Reload this page; page and server must be of the same version.",
+  4401: "Pair this headset again.",
+  4403: "Open this page on the address of the server.",
+};
+
+function finalFailure({ code, reason }: Ending): Failure | null {
+  const remedy = FINAL[code];
+  if (remedy === undefined) return null;
+  return { code: `closed_${code}`, message: reason || `the server closed with ${code}`, remedy };
+}

@@ -1,0 +1,87 @@
+/** What a client does on a connection that was welcomed: send the journal, probe, announce. */
+import type { Failure } from "../failure";
+import type { Journal } from "../journal/journal";
+import type { Limits } from "../limits";
+import type { StreamPosition } from "../wire/fromServer";
+import { Announcer } from "./announcing";
+import type { Channel } from "./channel";
+import { Prober } from "./probing";
+
+export interface Parts {
+  readonly journal: Journal;
+  readonly limits: Limits;
+  /** The client's monotonic clock, s. */
+  readonly clock: () => number;
+  readonly onFailure: (failure: Failure) => void;
+}
+
+export class Conversation {
+  readonly prober: Prober;
+  readonly announcer: Announcer;
+  readonly #channel: Channel;
+  readonly #parts: Parts;
+  readonly #sending: Promise<void>;
+  #hole: { readonly position: StreamPosition; attempts: number; atS: number } | null = null;
+
+  constructor(channel: Channel, parts: Parts) {
+    const send = (text: string) => channel.send(text);
+    this.#channel = channel;
+    this.#parts = parts;
+    parts.journal.reader.rewind();
+    this.announcer = new Announcer(send, parts.journal, parts.limits);
+    this.prober = new Prober(send, parts.clock, parts.limits);
+    this.#sending = this.#sendJournal();
+  }
+
+  /**
+   * The server expected an earlier seq: go back. Everything that is under way behind the hole is
+   * answered in the same way, and one answer is enough.
+   */
+  resend(position: StreamPosition): void {
+    const { clock, journal, limits, onFailure } = this.#parts;
+    const isSame =
+      this.#hole?.position.stream === position.stream &&
+      this.#hole.position.epoch === position.epoch &&
+      this.#hole.position.next_seq === position.next_seq;
+    if (this.#hole === null || !isSame) this.#hole = { position, attempts: 0, atS: -Infinity };
+    if (clock() - this.#hole.atS < limits.resendPauseS) return;
+    this.#hole.atS = clock();
+    this.#hole.attempts++;
+    if (this.#hole.attempts > limits.resendAttempts) onFailure(lostOnTheServer(position));
+    else journal.reader.rewind();
+  }
+
+  /** Ends everything; the channel has ended before. */
+  async stop(): Promise<void> {
+    this.prober.stop();
+    this.announcer.stop();
+    this.#parts.journal.reader.wake();
+    await this.#sending;
+  }
+
+  /** The only sender of journaled messages: so they go out in order, and none is left out. */
+  async #sendJournal(): Promise<void> {
+    const { reader } = this.#parts.journal;
+    try {
+      while (this.#channel.isOpen) {
+        const entry = await reader.next();
+        if (entry !== null) {
+          await this.#channel.room();
+          this.#channel.send(entry.message);
+        } else if (this.#channel.isOpen) await reader.news();
+      }
+    } catch (error) {
+      this.#parts.onFailure({
+        code: "journal_lost",
+        message: error instanceof Error ? error.message : String(error),
+        remedy: "Reload this page: it goes on as a new run. Note what was lost.",
+      });
+    }
+  }
+}
+
+const lostOnTheServer = ({ stream, epoch, next_seq }: StreamPosition): Failure => ({
+  code: "lost_on_the_server",
+  message: `the server asks for ${stream} of run ${epoch} from ${next_seq} on, which it had confirmed`,
+  remedy: "Was an older copy of its data restored? Reload this page: it goes on as a new run.",
+});

@@ -1,0 +1,246 @@
+/** The telemetry client, in the thread that opens it. */
+import { Admission } from "./admission";
+import {
+  type Level,
+  Listeners,
+  type Status,
+  type TelemetryClient,
+  type TelemetryOptions,
+  type Unsubscribe,
+} from "./client";
+import type { MakeSocket } from "./connection/channel";
+import { Connection, type Notice } from "./connection/connection";
+import { CLOSED, type Failure, TelemetryError } from "./failure";
+import type { Entry } from "./journal/entries";
+import type { Journal } from "./journal/journal";
+import type { Limits } from "./limits";
+import { Waiters } from "./waiters";
+import { PROTOCOL_VERSION, REPORT_STREAM } from "./wire/basis";
+import { encodeBatch, type Frames, MalformedBatch, type StreamName } from "./wire/batch";
+import { type ReportBody, textOf } from "./wire/fromClient";
+import type { HeadsetState, Welcome } from "./wire/fromServer";
+
+/** What the client stands on; tests put their own in. */
+export interface Ground {
+  readonly journal: Journal;
+  readonly limits: Limits;
+  /** The client's monotonic clock, s. */
+  readonly clock: () => number;
+  /** Ms since 1970, without steps: how old a message is. */
+  readonly wallClockMs: () => number;
+  readonly makeSocket: MakeSocket;
+  readonly onStatus: (status: Status) => void;
+  /** After everything else has ended. */
+  readonly onClosed: () => Promise<void>;
+}
+
+export class DirectClient implements TelemetryClient {
+  readonly #ground: Ground;
+  readonly #journal: Journal;
+  readonly #connection: Connection;
+  readonly #admission: Admission;
+  readonly #states = new Listeners<HeadsetState>();
+  readonly #statuses = new Listeners<Status>();
+  readonly #notices = new Listeners<Notice>();
+  readonly #ticking: ReturnType<typeof setInterval>;
+  readonly #running: Promise<void>;
+  readonly #waiters = new Waiters();
+  #produced: Record<string, number> = {};
+  #welcome: Welcome | null = null;
+  #state: HeadsetState | null = null;
+  #closing: Promise<void> | null = null;
+  #told = "";
+
+  constructor(options: TelemetryOptions, ground: Ground) {
+    this.#ground = ground;
+    this.#journal = ground.journal;
+    this.#admission = new Admission(ground.journal);
+    this.#connection = new Connection({
+      ...ground,
+      address: options,
+      name: options.name,
+      hooks: {
+        onWelcome: (welcome) => this.#welcomed(welcome),
+        onState: (state) => {
+          this.#state = state;
+          this.#states.tell(state);
+        },
+        onNotice: (notice) => this.#notices.tell(notice),
+        onChange: () => this.#changed(),
+      },
+    });
+    this.#statuses.add(ground.onStatus);
+    this.#journal.onChange = () => this.#changed();
+    this.#ticking = setInterval(() => this.#tick(), ground.limits.flushEveryS * 1000);
+    this.#running = this.#connection.run();
+  }
+
+  /** Until the first welcome; rejects if the server refuses. */
+  async opened(): Promise<this> {
+    await this.#until(() => this.#connection.epoch !== null);
+    return this;
+  }
+
+  get epoch(): number {
+    return this.welcome.epoch;
+  }
+
+  get welcome(): Welcome {
+    if (this.#welcome === null) throw new Error("the client is not connected yet");
+    return this.#welcome;
+  }
+
+  get state(): HeadsetState {
+    return this.#state ?? this.welcome.state;
+  }
+
+  get settled(): boolean {
+    const made = this.#produced[REPORT_STREAM] ?? 0;
+    const epoch = this.#connection.epoch ?? 0;
+    return (
+      this.#journal.isSettled(REPORT_STREAM) && this.#journal.nextSeq(REPORT_STREAM, epoch) >= made
+    );
+  }
+
+  get status(): Status {
+    const { oldestMs } = this.#journal;
+    const oldestS = oldestMs === null ? 0 : (this.#ground.wallClockMs() - oldestMs) / 1000;
+    return {
+      connected: this.#connection.isConnected,
+      level: this.#level(oldestS),
+      journaledMessages: this.#journal.messages,
+      journaledBytes: this.#journal.bytes,
+      oldestUnackedS: Math.max(0, oldestS),
+      waitingCalls: this.#admission.waiting,
+      reportsMade: this.#produced[REPORT_STREAM] ?? 0,
+      settled: this.settled,
+      problem: this.#journal.problem,
+      failure: this.#connection.failure,
+    };
+  }
+
+  async sendFrames(stream: StreamName, frames: Frames): Promise<void> {
+    this.#requireOpen();
+    const { framesPerBatch } = this.#ground.limits;
+    const count = frames.timesS.length;
+    if (count > framesPerBatch) {
+      throw new MalformedBatch(`${count} frames at once; a batch takes at most ${framesPerBatch}`);
+    }
+    const seqFirst = this.#produced[stream] ?? 0;
+    const message = encodeBatch({ ...frames, stream, epoch: this.epoch, seqFirst });
+    await this.#produce(stream, seqFirst + count, message);
+  }
+
+  async report(body: ReportBody): Promise<void> {
+    this.#requireOpen();
+    const seq = this.#produced[REPORT_STREAM] ?? 0;
+    const message = textOf({ type: "report", epoch: this.epoch, seq, body });
+    await this.#produce(REPORT_STREAM, seq + 1, message);
+  }
+
+  async drained(): Promise<void> {
+    await this.#until(() => this.#journal.messages === 0 && this.#admission.waiting === 0);
+  }
+
+  async flush(): Promise<void> {
+    await this.#journal.flush();
+  }
+
+  async close(): Promise<void> {
+    this.#closing ??= this.#close();
+    await this.#closing;
+  }
+
+  onState(listener: (state: HeadsetState) => void): Unsubscribe {
+    return this.#states.add(listener);
+  }
+
+  onStatus(listener: (status: Status) => void): Unsubscribe {
+    return this.#statuses.add(listener);
+  }
+
+  onNotice(listener: (notice: Notice) => void): Unsubscribe {
+    return this.#notices.add(listener);
+  }
+
+  async #close(): Promise<void> {
+    clearInterval(this.#ticking);
+    this.#connection.close();
+    this.#changed();
+    await this.#running;
+    await this.#journal.flush();
+    this.#journal.close();
+    await this.#ground.onClosed();
+  }
+
+  get #failure(): Failure | null {
+    return this.#connection.failure ?? (this.#closing !== null ? CLOSED : null);
+  }
+
+  async #welcomed(welcome: Welcome): Promise<Failure | null> {
+    if (welcome.protocol !== PROTOCOL_VERSION) return otherProtocol(welcome.protocol);
+    if (!(await this.#journal.claim(welcome.session_id))) {
+      return foreignJournal(this.#journal.sessionId ?? "", welcome.session_id);
+    }
+    this.#welcome = welcome;
+    return null;
+  }
+
+  async #produce(stream: string, seqEnd: number, message: Entry["message"]): Promise<void> {
+    this.#produced = { ...this.#produced, [stream]: seqEnd };
+    this.#journal.note({ epoch: this.epoch, produced: this.#produced });
+    const madeAtMs = this.#ground.wallClockMs();
+    const entered = this.#admission.enter({ stream, epoch: this.epoch, seqEnd, message, madeAtMs });
+    this.#changed();
+    await entered;
+  }
+
+  #level(oldestS: number): Level {
+    if (this.#journal.isFull) return "full";
+    return oldestS > this.#ground.limits.behindAfterS ? "behind" : "clear";
+  }
+
+  #requireOpen(): void {
+    if (this.#failure !== null) throw new TelemetryError(this.#failure);
+  }
+
+  async #until(isDone: () => boolean): Promise<void> {
+    this.#requireOpen();
+    await this.#waiters.until(isDone);
+  }
+
+  #tick(): void {
+    void this.#journal.tidy();
+    this.#tellStatus(this.status);
+  }
+
+  #changed(): void {
+    const failure = this.#failure;
+    this.#admission.admit();
+    if (failure !== null) this.#admission.refuseAll(failure);
+    this.#waiters.look(failure);
+    const status = this.status;
+    if (this.#told !== turningPoint(status)) this.#tellStatus(status);
+  }
+
+  #tellStatus(status: Status): void {
+    this.#told = turningPoint(status);
+    this.#statuses.tell(status);
+  }
+}
+
+/** What is told at once; the rest of a status changes all the time and waits for the next tick. */
+const turningPoint = ({ connected, level, settled, reportsMade, failure }: Status): string =>
+  `${connected} ${level} ${settled} ${reportsMade} ${failure?.code}`;
+
+const otherProtocol = (version: number): Failure => ({
+  code: "other_protocol",
+  message: `the server speaks version ${version} of the protocol, this page ${PROTOCOL_VERSION}`,
+  remedy: "Reload this page.",
+});
+
+const foreignJournal = (held: string, wanted: string): Failure => ({
+  code: "foreign_journal",
+  message: `the journal holds what session ${held} has not delivered, and cannot take session ${wanted}`,
+  remedy: "Pair this headset with that session once more, or use another storageKey for this one.",
+});

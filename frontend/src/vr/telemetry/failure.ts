@@ -1,0 +1,24 @@
+/** Why nothing more can be sent: in the server's words wherever it said something. */
+export interface Failure {
+  /** For programs: the server's code, or one of this client's own. */
+  readonly code: string;
+  readonly message: string;
+  readonly remedy: string;
+}
+
+/** Thrown to whoever still wants to send, and to whoever waits. The journal keeps what it has. */
+export class TelemetryError extends Error {
+  override readonly name = "TelemetryError";
+  readonly failure: Failure;
+
+  constructor(failure: Failure) {
+    super(failure.remedy === "" ? failure.message : `${failure.message}. ${failure.remedy}`);
+    this.failure = failure;
+  }
+}
+
+export const CLOSED: Failure = {
+  code: "closed",
+  message: "the telemetry client was closed",
+  remedy: "",
+};

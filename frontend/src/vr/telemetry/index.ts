@@ -1,0 +1,11 @@
+/** The telemetry client of the headset's page: `docs/protocol.md` in TypeScript. */
+export type { Level, Status, TelemetryClient, TelemetryOptions } from "./client";
+export type { Notice } from "./connection/connection";
+export { type Failure, TelemetryError } from "./failure";
+export { deleteJournal, type LeftJournal, leftJournals } from "./journal/indexedDb";
+export { DEFAULT_LIMITS, type Limits } from "./limits";
+export { openTelemetry, type Surroundings } from "./open";
+export { flushWhenLeft, openTelemetryInWorker } from "./page";
+export { ACTIVE, type Frames, type StreamName, VALUES_PER_FRAME } from "./wire/batch";
+export type { ReportBody } from "./wire/fromClient";
+export type { HeadsetState, PhaseOrder, Welcome } from "./wire/fromServer";

@@ -1,0 +1,76 @@
+/** Opening a telemetry client in this thread: a page, or a worker. */
+import type { Status, TelemetryClient, TelemetryOptions } from "./client";
+import { DirectClient } from "./directClient";
+import { TelemetryError } from "./failure";
+import { deleteJournal, IndexedDbBlocks } from "./journal/indexedDb";
+import { Journal } from "./journal/journal";
+import { takeLock } from "./journal/lock";
+import { storageRoom } from "./journal/room";
+import { DEFAULT_LIMITS } from "./limits";
+
+/** What cannot be sent to a worker. */
+export interface Surroundings {
+  /** The client's monotonic clock, s; `performance.now()` unless another is given. */
+  readonly clock?: () => number;
+  /** Hears how it goes from the first attempt to connect on. */
+  readonly onStatus?: (status: Status) => void;
+  /** Ends the waiting for the server. */
+  readonly signal?: AbortSignal;
+}
+
+/**
+ * Open the journal and connect; returns once the server has answered, however long that takes.
+ *
+ * What an earlier life of the page left in the journal is sent first, under its own epoch: it holds
+ * reports without which the session's state does not make sense. Rejects with TelemetryError when the
+ * server refuses, or when another page uses the journal.
+ */
+export async function openTelemetry(
+  options: TelemetryOptions,
+  around: Surroundings = {},
+): Promise<TelemetryClient> {
+  const client = await started(options, around);
+  const giveUp = () => void client.close();
+  around.signal?.addEventListener("abort", giveUp, { once: true });
+  try {
+    return await client.opened();
+  } catch (error) {
+    await client.close();
+    throw error;
+  } finally {
+    around.signal?.removeEventListener("abort", giveUp);
+  }
+}
+
+async function started(options: TelemetryOptions, around: Surroundings): Promise<DirectClient> {
+  const { storageKey, durability = "relaxed" } = options;
+  const limits = { ...DEFAULT_LIMITS, ...options.limits };
+  const letGo = await takeLock(`reembody-telemetry/${storageKey}`, limits.lockTimeoutS);
+  if (letGo === null) throw inUse(storageKey);
+  try {
+    const store = await IndexedDbBlocks.open(storageKey, durability);
+    const journal = await Journal.open({ store, limits, room: storageRoom });
+    return new DirectClient(options, {
+      journal,
+      limits,
+      clock: around.clock ?? (() => performance.now() / 1000),
+      wallClockMs: () => performance.timeOrigin + performance.now(),
+      makeSocket: (url, protocols) => new WebSocket(url, protocols),
+      onStatus: around.onStatus ?? (() => undefined),
+      onClosed: async () => {
+        if (journal.messages === 0) await deleteJournal(storageKey);
+        letGo();
+      },
+    });
+  } catch (error) {
+    letGo();
+    throw error;
+  }
+}
+
+const inUse = (storageKey: string): TelemetryError =>
+  new TelemetryError({
+    code: "journal_in_use",
+    message: `another page has the journal ${storageKey} open`,
+    remedy: "Close the other page; two headsets in one browser need two storageKeys.",
+  });

@@ -1,0 +1,44 @@
+/** What the page and its worker say to each other. */
+import type { Status, TelemetryOptions } from "./client";
+import type { Notice } from "./connection/connection";
+import type { Failure } from "./failure";
+import type { Frames, StreamName } from "./wire/batch";
+import type { ReportBody } from "./wire/fromClient";
+import type { HeadsetState, Welcome } from "./wire/fromServer";
+
+/** What is asked of the client; each call is answered under its id. */
+export type Call =
+  | { readonly what: "sendFrames"; readonly stream: StreamName; readonly frames: Frames }
+  | { readonly what: "report"; readonly body: ReportBody }
+  | { readonly what: "drained" | "flush" | "close" };
+
+export type ToWorker =
+  | {
+      readonly kind: "open";
+      readonly options: TelemetryOptions;
+      /** `performance.timeOrigin` of the page, whose clock the client's times are of. */
+      readonly timeOriginMs: number;
+    }
+  | { readonly kind: "giveUp" }
+  | { readonly kind: "call"; readonly id: number; readonly call: Call };
+
+/** An error crosses as its words, and as the failure where it has one. */
+export interface Wrong {
+  readonly name: string;
+  readonly message: string;
+  readonly failure: Failure | null;
+}
+
+export type FromWorker =
+  | { readonly kind: "opened"; readonly welcome: Welcome; readonly state: HeadsetState }
+  | { readonly kind: "refused"; readonly wrong: Wrong }
+  | { readonly kind: "done"; readonly id: number; readonly wrong: Wrong | null }
+  | { readonly kind: "state"; readonly state: HeadsetState; readonly welcome: Welcome }
+  | { readonly kind: "status"; readonly status: Status }
+  | { readonly kind: "notice"; readonly notice: Notice };
+
+/** One end: a worker seen from the page, the worker's own scope, or a MessagePort. */
+export interface Port<Out, In> {
+  postMessage(message: Out, transfer: Transferable[]): void;
+  addEventListener(type: "message", listener: (event: MessageEvent<In>) => void): void;
+}

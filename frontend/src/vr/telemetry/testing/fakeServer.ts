@@ -1,0 +1,136 @@
+/** A server of the protocol for tests: stores what fits, acknowledges, asks for what is missing. */
+
+import { decodeBatch } from "../wire/batch";
+import type { Welcome } from "../wire/fromServer";
+import { FakeSocket } from "./fakeSocket";
+
+interface Said {
+  readonly type: string;
+  readonly epoch: number;
+  readonly seq: number;
+  readonly [field: string]: unknown;
+}
+
+export class FakeServer {
+  /** Messages of clients other than batches, in the order of arrival. */
+  readonly heard: Said[] = [];
+  /** Stored seqs as `stream/epoch/seq`, in the order of arrival. */
+  readonly stored: string[] = [];
+  readonly sockets: FakeSocket[] = [];
+  readonly positions = new Map<string, number>();
+  sessionId = "session";
+  /** Nobody gets through while it is false. */
+  isUp = true;
+  acknowledges = true;
+  answersProbes = true;
+  lastEpoch = 0;
+  /** Fields of the next welcomes that are to differ. */
+  welcomeWith: Partial<Welcome> = {};
+  /** What the next hello is refused with. */
+  refusal: { code: number; error: object } | null = null;
+
+  readonly makeSocket = (_url: string, protocols: string[]): WebSocket => {
+    const socket = new FakeSocket(protocols, (data) => this.#take(socket, data));
+    this.sockets.push(socket);
+    queueMicrotask(() => (this.isUp ? socket.opens() : socket.breaks()));
+    return socket as unknown as WebSocket;
+  };
+
+  get socket(): FakeSocket {
+    const newest = this.sockets.at(-1);
+    if (newest === undefined) throw new Error("nobody has connected");
+    return newest;
+  }
+
+  say(message: object): void {
+    this.socket.hears(JSON.stringify(message));
+  }
+
+  breaks(): void {
+    this.socket.breaks();
+  }
+
+  acknowledge(): void {
+    this.say({ type: "ack", positions: this.#positions });
+  }
+
+  of(type: string): readonly Said[] {
+    return this.heard.filter((message) => message.type === type);
+  }
+
+  get #positions(): Welcome["positions"] {
+    return [...this.positions].map(([key, next_seq]) => {
+      const [stream = "", epoch = ""] = key.split("/");
+      return { stream, epoch: Number(epoch), next_seq };
+    });
+  }
+
+  #take(socket: FakeSocket, data: string | Uint8Array<ArrayBuffer>): void {
+    if (typeof data !== "string") {
+      const { stream, epoch, seqFirst, timesS } = decodeBatch(data);
+      this.#store(stream, epoch, seqFirst, timesS.length);
+      return;
+    }
+    const message = JSON.parse(data) as Said;
+    this.heard.push(message);
+    if (message.type === "hello") this.#greet(socket, message);
+    else if (message.type === "report") this.#store("reports", message.epoch, message.seq, 1);
+    else if (message.type === "probe" && this.answersProbes) {
+      this.say({ ...message, server_received_ns: 1, server_sent_ns: 2 });
+    }
+  }
+
+  #greet(socket: FakeSocket, hello: Said): void {
+    if (this.refusal !== null) {
+      this.say(this.refusal.error);
+      socket.breaks(this.refusal.code);
+      return;
+    }
+    if (hello.epoch === null) this.lastEpoch++;
+    this.say({ ...welcome, ...this.#welcome(hello.epoch ?? this.lastEpoch), ...this.welcomeWith });
+  }
+
+  #welcome(epoch: number): Partial<Welcome> {
+    return { epoch, session_id: this.sessionId, positions: this.#positions };
+  }
+
+  #store(stream: string, epoch: number, seqFirst: number, count: number): void {
+    const key = `${stream}/${epoch}`;
+    const next = this.positions.get(key) ?? 0;
+    if (seqFirst > next) {
+      this.say({ type: "resend", stream, epoch, next_seq: next });
+      return;
+    }
+    for (let seq = next; seq < seqFirst + count; seq++) this.stored.push(`${key}/${seq}`);
+    this.positions.set(key, Math.max(next, seqFirst + count));
+    if (this.acknowledges) this.acknowledge();
+  }
+}
+
+const welcome: Welcome = {
+  type: "welcome",
+  protocol: 1,
+  session_id: "session",
+  epoch: 1,
+  time_scale: 1,
+  language: "en",
+  avatar: "delayed_copy",
+  on_disconnect: "pause",
+  undelayed_parts: ["Hips"],
+  tasks: {},
+  texts: {},
+  positions: [],
+  state: {
+    type: "state",
+    version: 1,
+    status: "planned",
+    step_index: null,
+    step_kind: null,
+    materialised: false,
+    recording: false,
+    phase: null,
+    participant: { handedness: null, footedness: null, stature_m: null },
+  },
+};
+
+export const stateOf = (version: number): Welcome["state"] => ({ ...welcome.state, version });

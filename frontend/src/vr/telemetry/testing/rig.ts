@@ -1,0 +1,51 @@
+/** A client on a fake server and a fake disk; the disk outlives the client, as in a browser. */
+import { DirectClient } from "../directClient";
+import { Journal } from "../journal/journal";
+import { DEFAULT_LIMITS, type Limits } from "../limits";
+import type { FakeServer } from "./fakeServer";
+import { MemoryBlocks } from "./memoryBlocks";
+
+/** Everything that is waited for in seconds, in milliseconds. */
+const QUICK: Partial<Limits> = {
+  flushEveryS: 0.005,
+  retryS: [0.001, 0.002, 0.005],
+  openTimeoutS: 1,
+  silenceS: 5,
+  probeEveryS: 5,
+  producedEveryS: 0.01,
+  bufferPollS: 0.001,
+  resendPauseS: 0.01,
+};
+
+export async function startedClient(
+  server: FakeServer,
+  disk = new MemoryBlocks(),
+  changed: Partial<Limits> = {},
+): Promise<DirectClient> {
+  const limits = { ...DEFAULT_LIMITS, ...QUICK, ...changed };
+  const room = async () => Number.POSITIVE_INFINITY;
+  const journal = await Journal.open({ store: disk, limits, room });
+  return new DirectClient(
+    { url: "ws://test/api/vr/stream", token: "TOKEN", name: "test", storageKey: "test" },
+    {
+      journal,
+      limits,
+      clock: () => performance.now() / 1000,
+      wallClockMs: () => performance.timeOrigin + performance.now(),
+      makeSocket: server.makeSocket,
+      onStatus: () => undefined,
+      onClosed: async () => undefined,
+    },
+  );
+}
+
+export async function openedClient(
+  ...how: Parameters<typeof startedClient>
+): Promise<DirectClient> {
+  return (await startedClient(...how)).opened();
+}
+
+/** Until it holds; a test that waits in vain runs into its own time limit. */
+export async function eventually(holds: () => boolean): Promise<void> {
+  while (!holds()) await new Promise((resolve) => setTimeout(resolve, 1));
+}

@@ -1,0 +1,207 @@
+/** The page's side of a client in a worker. */
+import {
+  Listeners,
+  type Status,
+  type TelemetryClient,
+  type TelemetryOptions,
+  type Unsubscribe,
+} from "./client";
+import type { Notice } from "./connection/connection";
+import { CLOSED, type Failure, TelemetryError } from "./failure";
+import type { Call, FromWorker, Port, ToWorker, Wrong } from "./port";
+import type { Frames, StreamName } from "./wire/batch";
+import type { ReportBody } from "./wire/fromClient";
+import type { HeadsetState, Welcome } from "./wire/fromServer";
+
+interface Pending {
+  readonly resolve: () => void;
+  readonly reject: (error: Error) => void;
+}
+
+export class WorkerClient implements TelemetryClient {
+  readonly #port: Port<ToWorker, FromWorker>;
+  readonly #states = new Listeners<HeadsetState>();
+  readonly #statuses = new Listeners<Status>();
+  readonly #notices = new Listeners<Notice>();
+  readonly #pending = new Map<number, Pending>();
+  readonly #opening: Pending;
+  readonly #opened: Promise<void>;
+  #nextId = 0;
+  #reportsMade = 0;
+  #welcome: Welcome | null = null;
+  #state: HeadsetState | null = null;
+  #status = NOTHING_YET;
+  #over: Failure | null = null;
+
+  /** `timeOriginMs`: of the page, whose clock the client's times are of. */
+  constructor(port: Port<ToWorker, FromWorker>, options: TelemetryOptions, timeOriginMs: number) {
+    let opening: Pending = { resolve: () => undefined, reject: () => undefined };
+    this.#opened = new Promise((resolve, reject) => {
+      opening = { resolve, reject };
+    });
+    this.#opening = opening;
+    this.#port = port;
+    port.addEventListener("message", ({ data }) => this.#heard(data));
+    port.postMessage({ kind: "open", options, timeOriginMs }, []);
+  }
+
+  async opened(): Promise<this> {
+    await this.#opened;
+    return this;
+  }
+
+  /** Ends the waiting for the server. */
+  giveUp(): void {
+    this.#port.postMessage({ kind: "giveUp" }, []);
+  }
+
+  /** The worker itself has failed; what it had journaled is on disk. */
+  fail(failure: Failure): void {
+    this.#over = failure;
+    const error = new TelemetryError(failure);
+    this.#opening.reject(error);
+    for (const { reject } of this.#pending.values()) reject(error);
+    this.#pending.clear();
+    this.#tellStatus({ ...this.#status, connected: false, failure });
+  }
+
+  get epoch(): number {
+    return this.welcome.epoch;
+  }
+
+  get welcome(): Welcome {
+    if (this.#welcome === null) throw new Error("the client is not connected yet");
+    return this.#welcome;
+  }
+
+  get state(): HeadsetState {
+    return this.#state ?? this.welcome.state;
+  }
+
+  get status(): Status {
+    return this.#status;
+  }
+
+  /** The worker may not have heard of the newest reports yet. */
+  get settled(): boolean {
+    return this.#status.settled && this.#status.reportsMade >= this.#reportsMade;
+  }
+
+  async sendFrames(stream: StreamName, frames: Frames): Promise<void> {
+    // The arrays are the caller's, who fills them again: copies go over, and need not be copied there.
+    const timesS = frames.timesS.slice();
+    const flags = frames.flags.slice();
+    const values = frames.values.slice();
+    const copy = { ...frames, timesS, flags, values };
+    const arrays = [timesS.buffer, flags.buffer, values.buffer];
+    await this.#call({ what: "sendFrames", stream, frames: copy }, arrays);
+  }
+
+  async report(body: ReportBody): Promise<void> {
+    this.#reportsMade++;
+    try {
+      await this.#call({ what: "report", body });
+    } catch (error) {
+      // One that was refused before it was made never becomes settled.
+      this.#reportsMade--;
+      throw error;
+    }
+  }
+
+  async drained(): Promise<void> {
+    await this.#call({ what: "drained" });
+  }
+
+  async flush(): Promise<void> {
+    await this.#call({ what: "flush" });
+  }
+
+  async close(): Promise<void> {
+    if (this.#over !== null) return;
+    if (this.#welcome === null) {
+      this.giveUp();
+      return;
+    }
+    const closed = this.#call({ what: "close" });
+    this.#over = CLOSED;
+    await closed;
+  }
+
+  onState(listener: (state: HeadsetState) => void): Unsubscribe {
+    return this.#states.add(listener);
+  }
+
+  onStatus(listener: (status: Status) => void): Unsubscribe {
+    return this.#statuses.add(listener);
+  }
+
+  onNotice(listener: (notice: Notice) => void): Unsubscribe {
+    return this.#notices.add(listener);
+  }
+
+  async #call(call: Call, transfer: Transferable[] = []): Promise<void> {
+    if (this.#over !== null) throw new TelemetryError(this.#over);
+    const id = this.#nextId++;
+    await new Promise<void>((resolve, reject) => {
+      this.#pending.set(id, { resolve, reject });
+      this.#port.postMessage({ kind: "call", id, call }, transfer);
+    });
+  }
+
+  #heard(message: FromWorker): void {
+    switch (message.kind) {
+      case "opened":
+        this.#welcome = message.welcome;
+        this.#state = message.state;
+        this.#opening.resolve();
+        break;
+      case "refused":
+        this.#over = message.wrong.failure ?? CLOSED;
+        this.#opening.reject(errorOf(message.wrong));
+        break;
+      case "done":
+        this.#answered(message.id, message.wrong);
+        break;
+      case "state":
+        this.#welcome = message.welcome;
+        this.#state = message.state;
+        this.#states.tell(message.state);
+        break;
+      case "status":
+        this.#tellStatus(message.status);
+        break;
+      case "notice":
+        this.#notices.tell(message.notice);
+    }
+  }
+
+  #answered(id: number, wrong: Wrong | null): void {
+    const call = this.#pending.get(id);
+    this.#pending.delete(id);
+    if (wrong === null) call?.resolve();
+    else call?.reject(errorOf(wrong));
+  }
+
+  #tellStatus(status: Status): void {
+    this.#status = status;
+    this.#statuses.tell(status);
+  }
+}
+
+const NOTHING_YET: Status = {
+  connected: false,
+  level: "clear",
+  journaledMessages: 0,
+  journaledBytes: 0,
+  oldestUnackedS: 0,
+  waitingCalls: 0,
+  reportsMade: 0,
+  settled: false,
+  problem: null,
+  failure: null,
+};
+
+function errorOf({ name, message, failure }: Wrong): Error {
+  if (failure !== null) return new TelemetryError(failure);
+  return Object.assign(new Error(message), { name });
+}
