@@ -44,6 +44,14 @@ class Headset:
             if message["type"] == kind and matching(message):
                 return message
 
+    def hear_any(self, kinds: tuple[str, ...]) -> Json:
+        """The next message of one of these kinds."""
+        while True:
+            message: Json = json.loads(self.socket.recv(timeout=10.0))
+            self.heard.append(message)
+            if message["type"] in kinds:
+                return message
+
     def acknowledged(self, stream: str, next_seq: int) -> Json:
         """Wait until all of `seq < next_seq` of a stream is acknowledged."""
 

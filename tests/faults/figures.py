@@ -1,0 +1,59 @@
+"""The figures of the fault tests: told by each test, printed together at the end of a run.
+
+`note(20, "burst", "acknowledged and lost", 0)` adds a line to the table; the first number is the
+row of the fault matrix in docs/faults.md. `./run test tests/faults` prints the table; with
+`REEMBODY_FAULT_FIGURES=FILE` it is also written as JSON.
+"""
+
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from tests.support.shared_run import locked, run_folder
+
+FILE_VARIABLE = "REEMBODY_FAULT_FIGURES"
+
+
+@dataclass(frozen=True)
+class Told:
+    """One figure of one fault."""
+
+    row: int
+    fault: str
+    figure: str
+    value: str
+
+
+def note(row: int, fault: str, figure: str, value: object) -> None:
+    """Add a figure to the run's table."""
+    told = Told(row, fault, figure, f"{value:.3g}" if isinstance(value, float) else str(value))
+    file = run_folder() / "fault-figures.jsonl"
+    with locked(file.with_suffix(".lock")), file.open("a") as lines:
+        lines.write(json.dumps(asdict(told)) + "\n")
+
+
+def noted() -> list[Told]:
+    """Everything that was told in this run, by row."""
+    file = run_folder() / "fault-figures.jsonl"
+    if not file.exists():
+        return []
+    told = [Told(**json.loads(line)) for line in file.read_text().splitlines()]
+    return sorted(told, key=lambda one: one.row)
+
+
+def as_table(told: Sequence[Told]) -> list[str]:
+    """Lines for the terminal."""
+    widths = [max(len(getattr(one, name)) for one in told) for name in ("fault", "figure")]
+    return [
+        f"{one.row:>3}  {one.fault:<{widths[0]}}  {one.figure:<{widths[1]}}  {one.value}"
+        for one in told
+    ]
+
+
+def save(told: Sequence[Told]) -> None:
+    """Write them where the variable says, if it says so."""
+    if os.environ.get(FILE_VARIABLE):
+        rows = [asdict(one) for one in told]
+        Path(os.environ[FILE_VARIABLE]).write_text(json.dumps(rows, indent=2))

@@ -1,0 +1,81 @@
+"""Batches arrive twice, out of order and overlapping; the record is the same as if they had not."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from app.features.receipts.service import receipt_of
+from tests.faults.figures import note
+from tests.features.headset.site import Headset, Site, open_site
+from tests.features.lab import Json
+from tests.features.movement_builders import moving_values
+from tests.support.server import LiveServer
+from tests.wire.samples import message
+
+FRAMES, SESSIONS = 300, 6
+VALUES = moving_values(FRAMES, 5)
+
+
+def batch(first: int, end: int) -> bytes:
+    """Frames first to end - 1."""
+    return message(VALUES[first:end], seq_first=first)
+
+
+def deliver(headset: Headset, batches: Sequence[tuple[int, int]]) -> None:
+    """Send these, answer every request to send again, until all is stored."""
+    for first, end in batches:
+        headset.say(batch(first, end))
+    asked = 0
+    while True:
+        heard = headset.hear_any(("ack", "resend"))
+        stored = _stored(heard)
+        if stored == FRAMES:
+            return
+        if heard["type"] == "resend" or stored >= asked:
+            asked = stored
+            for first in range(stored, FRAMES, 50):
+                headset.say(batch(first, min(first + 50, FRAMES)))
+
+
+def _stored(heard: Json) -> int:
+    positions = heard.get("positions") or [heard]
+    return max(int(one["next_seq"]) for one in positions if one["stream"] == "target")
+
+
+def shuffled(rng: np.random.Generator) -> list[tuple[int, int]]:
+    """Cut anywhere, some twice, some overlapping, in any order."""
+    cuts = sorted({0, FRAMES, *rng.integers(1, FRAMES, 20).tolist()})
+    pieces = list(pairwise(cuts))
+    again = [pieces[at] for at in rng.integers(0, len(pieces), 10)]
+    overlapping = [(max(0, first - 5), end) for first, end in pieces[::3]]
+    everything = pieces + again + overlapping
+    return [everything[at] for at in rng.permutation(len(everything))]
+
+
+@pytest.mark.timeout(120)
+def test_any_order_gives_the_same_record(live_server: LiveServer) -> None:
+    """Digests of the stored streams are equal, whatever order, overlap and repetition."""
+    rng = np.random.default_rng(18)
+    in_order = [(first, min(first + 50, FRAMES)) for first in range(0, FRAMES, 50)]
+    digests, missing = [], 0
+    with open_site(live_server) as site:
+        for sent in (in_order, *(shuffled(rng) for _ in range(SESSIONS))):
+            session_id = site.join()
+            with site.headset(site.token(session_id)) as headset:
+                deliver(headset, sent)
+            digest, lost = _target(site, session_id)
+            digests.append(digest)
+            missing += lost
+    note(18, "out of order, twice, overlapping", "records that differ", len(set(digests)) - 1)
+    note(18, "out of order, twice, overlapping", "frames missing", missing)
+    assert len(set(digests)) == 1
+    assert missing == 0
+
+
+def _target(site: Site, session_id: str) -> tuple[str, int]:
+    with site.database.reading() as db:
+        streams = receipt_of(db, session_id).streams
+    (found,) = [one for one in streams if one.stream == "target"]
+    return found.sha256, found.missing
