@@ -1,18 +1,25 @@
-"""Chunks in compressed columns, bit for bit what came.
+"""Chunks as compressed columns, bit for bit what came.
 
-"f32-columns-zstd/1": zstd over the concatenation of `times_s` f64[n], `flags` u8[n] and `values`
-transposed to f32[w][n] with the four bytes of every float split into planes. Columns of one joint
-change little from frame to frame, and their high bytes hardly at all, so planes compress well.
+A chunk names its encoding, and every encoding that was ever written can be read: `encodings` has a
+module for each. New chunks are written in `ENCODING`, described in docs/telemetry-encoding.md.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import zstandard
 from numpy.typing import NDArray
 
-ENCODING = "f32-columns-zstd/1"
-LEVEL = 3
+from app.features.telemetry.encodings import f32_columns, f32_predicted
+from app.features.telemetry.encodings.columns import Columns, DamagedChunkError
+
+__all__ = ["ENCODING", "DamagedChunkError", "Frames", "decode_frames", "encode_frames"]
+
+ENCODING = f32_predicted.NAME
+_DECODERS: dict[str, Callable[[bytes, int, int], Columns]] = {
+    f32_predicted.NAME: f32_predicted.decode,
+    f32_columns.NAME: f32_columns.decode,
+}
 
 
 @dataclass(frozen=True)
@@ -46,32 +53,27 @@ class Frames:
 def encode_frames(
     times_s: NDArray[np.float64], flags: NDArray[np.uint8], values: NDArray[np.float32]
 ) -> bytes:
-    """Compress columns; the inverse of `decode_frames`."""
-    columns = np.ascontiguousarray(values.T, "<f4")
-    planes = columns.view(np.uint8).reshape(-1, 4).T
-    raw = b"".join(
-        (
-            np.ascontiguousarray(times_s, "<f8").tobytes(),
-            np.ascontiguousarray(flags, "u1").tobytes(),
-            np.ascontiguousarray(planes).tobytes(),
-        )
-    )
-    return zstandard.ZstdCompressor(level=LEVEL).compress(raw)
+    """Compress the columns of at least one frame; the inverse of `decode_frames`."""
+    return f32_predicted.encode(Columns(times_s, flags, values))
 
 
 def decode_frames(
     data: bytes, *, encoding: str, seq_first: int, frame_count: int, values_per_frame: int
 ) -> Frames:
-    """The frames of a chunk; raises ValueError for an encoding this version does not know."""
-    if encoding != ENCODING:
-        raise ValueError(f"unknown encoding {encoding!r}; this version reads {ENCODING!r}")
-    n, w = frame_count, values_per_frame
-    raw = zstandard.ZstdDecompressor().decompress(data, max_output_size=9 * n + 4 * n * w)
-    planes = np.frombuffer(raw, np.uint8, 4 * n * w, 9 * n).reshape(4, n * w)
-    columns = np.ascontiguousarray(planes.T).view("<f4").reshape(w, n)
+    """The frames of a chunk.
+
+    Raises:
+        DamagedChunkError: the bytes are not what was written, or of another chunk.
+        ValueError: an encoding this version does not know.
+    """
+    decode = _DECODERS.get(encoding)
+    if decode is None:
+        known = ", ".join(repr(name) for name in _DECODERS)
+        raise ValueError(f"unknown encoding {encoding!r}; this version reads {known}")
+    columns = decode(data, frame_count, values_per_frame)
     return Frames(
-        seq=np.arange(seq_first, seq_first + n),
-        times_s=np.frombuffer(raw, "<f8", n, 0),
-        flags=np.frombuffer(raw, np.uint8, n, 8 * n),
-        values=np.ascontiguousarray(columns.T),
+        seq=np.arange(seq_first, seq_first + frame_count),
+        times_s=columns.times_s,
+        flags=columns.flags,
+        values=columns.values,
     )

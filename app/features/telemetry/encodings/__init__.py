@@ -1,0 +1,1 @@
+"""How the columns of a chunk are written as bytes: one module an encoding, named by `NAME`."""
