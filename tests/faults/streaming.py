@@ -100,7 +100,7 @@ async def _stream_one(
         while more():
             seq = batch * FRAMES_PER_BATCH
             for name in StreamName:
-                message = _batch(name, client.epoch, seq, values)
+                message = batch_of(name, client.epoch, seq, values)
                 await client.send_batch(name, seq + FRAMES_PER_BATCH, message)
             if batch % BATCHES_PER_REPORT == 0:
                 # Refused, since the session has not begun; stored and acknowledged like any other.
@@ -113,9 +113,10 @@ async def _stream_one(
         await client.drained()
 
 
-def _batch(
+def batch_of(
     name: StreamName, epoch: int, seq: int, values: "np.typing.NDArray[np.float32]"
 ) -> bytes:
+    """A batch of `values` (900 and more, 91) beginning at `seq`."""
     times_s = (seq + np.arange(FRAMES_PER_BATCH)) / RATE_HZ
     return encode_batch(
         name,

@@ -18,6 +18,7 @@ from app.wire.messages import SUBPROTOCOL, Failure
 
 log = logging.getLogger(__name__)
 CLOSE_NOT_PAIRED = 4401
+MOST_REASON_BYTES = 123
 
 
 async def serve_headset(socket: WebSocket, context: AppContext, writer: TelemetryWriter) -> None:
@@ -63,6 +64,11 @@ async def _close(socket: WebSocket, code: int, error: ReembodyError) -> None:
     failure = Failure(code=error.code, message=error.message, remedy=error.remedy)
     try:
         await socket.send_text(failure.model_dump_json())
-        await socket.close(code, reason=error.message[:120])
+        await socket.close(code, reason=_reason(error.message))
     except (RuntimeError, WebSocketDisconnect):
         log.debug("the headset was gone before it could be told")
+
+
+def _reason(message: str) -> str:
+    """As much of a message as a close frame holds."""
+    return message.encode()[:MOST_REASON_BYTES].decode(errors="ignore")
