@@ -8,6 +8,7 @@ from sqlalchemy import text
 
 from app import __version__
 from app.features.accounts.endpoints import router as accounts
+from app.features.alarms.endpoints import router as alarms
 from app.features.analysis.endpoints import router as analysis
 from app.features.context import AppContext
 from app.features.dependencies import Context
@@ -34,7 +35,7 @@ def build_router() -> APIRouter:
     """The routes under /api."""
     router = APIRouter(prefix="/api")
     parts = (
-        *(accounts, studies, participants, sessions, devices, tablet),
+        *(accounts, studies, participants, sessions, devices, tablet, alarms),
         *(analysis, exports, receipts),
     )
     for part in parts:

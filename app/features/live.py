@@ -19,9 +19,10 @@ from sqlalchemy.orm import Session
 
 @dataclass(eq=False)
 class Subscription:
-    """One reader's newest unread news, by topic."""
+    """One reader's newest unread news, by topic; what is not of its `topics` never reaches it."""
 
     loop: asyncio.AbstractEventLoop
+    topics: frozenset[str]
     _news: dict[str, Any] = field(default_factory=dict)
     _arrived: asyncio.Event = field(default_factory=asyncio.Event)
 
@@ -55,6 +56,7 @@ class Hub:
 
     _subscribers: dict[str, set[Subscription]] = field(default_factory=dict)
     _headsets: dict[str, int] = field(default_factory=dict)
+    _heard_s: dict[str, float] = field(default_factory=dict)
     _seen: dict[str, datetime] = field(default_factory=dict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -69,9 +71,9 @@ class Hub:
             return self._seen.get(device_id)
 
     @contextmanager
-    def subscribe(self, session_id: str) -> Iterator[Subscription]:
-        """Listen to a session from within a running event loop."""
-        subscription = Subscription(asyncio.get_running_loop())
+    def subscribe(self, session_id: str, *more: str) -> Iterator[Subscription]:
+        """Listen to a session's changes, and to `more` topics, from within a running event loop."""
+        subscription = Subscription(asyncio.get_running_loop(), frozenset(("session", *more)))
         with self._lock:
             self._subscribers.setdefault(session_id, set()).add(subscription)
         try:
@@ -88,7 +90,14 @@ class Hub:
         with self._lock:
             readers = tuple(self._subscribers.get(session_id, ()))
         for reader in readers:
-            reader.offer(topic, value)
+            if topic in reader.topics:
+                reader.offer(topic, value)
+
+    def has_listeners(self, session_id: str, topic: str) -> bool:
+        """Whether news of a topic would reach anybody: else they need not be made."""
+        with self._lock:
+            readers = self._subscribers.get(session_id, ())
+            return any(topic in reader.topics for reader in readers)
 
     def publish_after_commit(self, db: Session, session_id: str) -> None:
         """Publish "session changed" once this transaction is on disk, and only then."""
@@ -107,6 +116,15 @@ class Hub:
                 self._headsets[session_id] = left
             else:
                 self._headsets.pop(session_id, None)
+                self._heard_s.pop(session_id, None)
+
+    def note_frames(self, session_id: str, now_s: float) -> None:
+        """Frames have come on one of the session's sockets, at this monotonic time."""
+        self._heard_s[session_id] = now_s
+
+    def frames_heard_s(self, session_id: str) -> float:
+        """When frames came last, on whichever socket; minus infinity before the first."""
+        return self._heard_s.get(session_id, float("-inf"))
 
     def headset_connected(self, session_id: str) -> bool:
         """Whether a headset's socket is open now."""

@@ -21,6 +21,11 @@ ALSO = {
         "outcome",  # and hears what became of them
         "live",  # the figures that do not wait for the commit
     },
+    "alarms": {
+        "alarm",  # the writer stores changes of alarms
+        "limits",  # the headset's socket is watched
+        "watch",
+    },
     "analysis": {
         "tables",  # an export is the tables
         "codebook",  # and their columns

@@ -1,4 +1,4 @@
-"""One headset's open socket: a reader, a talker, a follower; everything is stored by the writer.
+"""One headset's open socket: a reader, a talker, a follower, a watch; the writer stores it all.
 
 Reading stops while too many messages wait for the disk: the client then feels TCP's backpressure
 and its journal grows visibly instead of anything being dropped.
@@ -10,16 +10,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput
 from app.features.context import AppContext
 from app.features.devices.service import device_of_token
+from app.features.headset.lookout import Lookout
+from app.features.headset.parsing import parse_message
 from app.features.headset.service import headset_state, welcome
 from app.features.live import Subscription
 from app.features.sessions.service import session_by_id
-from app.features.telemetry.live import LiveTelemetry
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.writer import (
     Arrival,
@@ -31,10 +31,8 @@ from app.features.telemetry.writer import (
 )
 from app.wire import decode_batch, flag_frames
 from app.wire.messages import (
-    CLIENT_MESSAGE,
     PROTOCOL_VERSION,
     Ack,
-    ClientMessages,
     Failure,
     HeadsetState,
     Hello,
@@ -64,7 +62,7 @@ class HeadsetConnection:
     session_id: str
     token: str
     epoch: int = 0
-    live: LiveTelemetry = field(default_factory=LiveTelemetry)
+    lookout: Lookout = field(init=False)
     _loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
     _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
     _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
@@ -89,6 +87,7 @@ class HeadsetConnection:
                 asyncio.create_task(self._read()),
                 asyncio.create_task(self._talk()),
                 asyncio.create_task(self._follow(subscription)),
+                asyncio.create_task(self.lookout.run(lambda: not self._in_flight.locked())),
             ]
             try:
                 done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -102,8 +101,10 @@ class HeadsetConnection:
 
     def _leave(self) -> None:
         self.context.hub.headset_left(self.session_id)
-        if not self.context.hub.headset_connected(self.session_id):
+        connected = self.context.hub.headset_connected(self.session_id)
+        if not connected:
             self._submit(LossContent("headset_lost"))
+        self.lookout.leave(connected=connected)
         self.context.hub.publish(self.session_id, "session")
 
     async def _greet(self) -> None:
@@ -122,6 +123,7 @@ class HeadsetConnection:
             )
         answer = await asyncio.to_thread(self._welcome, hello.epoch)
         self.epoch = answer.epoch
+        self.lookout = Lookout(self.context, self.session_id, self._submit, answer)
         await self._send(answer)
 
     def _welcome(self, epoch: int | None) -> Welcome:
@@ -146,9 +148,7 @@ class HeadsetConnection:
         flags = flag_frames(batch.times_s, batch.values)
         await self._store(BatchContent(batch.header, message, flags))
         # The live view does not wait for the commit.
-        news = self.live.update(batch, flags)
-        if news is not None:
-            self.context.hub.publish(self.session_id, "telemetry", news)
+        self.lookout.batch(batch, flags)
 
     async def _take_text(self, text: str) -> None:
         received_ns = self.context.clock.monotonic_ns()
@@ -156,7 +156,7 @@ class HeadsetConnection:
         match message:
             case Report():
                 self._require_epoch(message.epoch)
-                self.live.count(message)
+                self.lookout.report(message)
                 await self._store(message)
             case Probe():
                 await self._send(
@@ -167,9 +167,11 @@ class HeadsetConnection:
                     )
                 )
             case Probed():
+                self.lookout.probed(message)
                 await self._store(ProbeContent(self.epoch, message))
             case Produced():
                 self._require_epoch(message.epoch)
+                self.lookout.produced(message)
                 await self._store(message)
             case Hello():
                 raise InvalidInput("hello came twice", remedy="Open a new connection.")
@@ -187,6 +189,7 @@ class HeadsetConnection:
         for _ in range(min(outcome.messages, self._unanswered)):
             self._in_flight.release()
         self._unanswered = max(0, self._unanswered - outcome.messages)
+        self.lookout.delivered(outcome, waiting=self._unanswered > 0)
         if outcome.positions:
             self._outbox.put_nowait(Ack(positions=tuple(outcome.positions.values())))
         for notice in outcome.notices:
@@ -207,7 +210,9 @@ class HeadsetConnection:
             if not news:
                 await asyncio.to_thread(self._require_pairing)
             if "session" in news:
-                await self._send(await asyncio.to_thread(self._state))
+                state = await asyncio.to_thread(self._state)
+                self.lookout.follow(state)
+                await self._send(state)
 
     def _state(self) -> HeadsetState:
         with self.context.database.reading() as db:
@@ -236,16 +241,3 @@ class HeadsetConnection:
             self._loop.call_soon_threadsafe(function, told)
         except RuntimeError:  # the loop has closed: nobody is left to tell
             return
-
-
-def parse_message(text: str) -> ClientMessages:
-    """The client's message; raises InvalidInput with the first thing that does not fit."""
-    try:
-        return CLIENT_MESSAGE.validate_json(text)
-    except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False)[0]
-        raise InvalidInput(
-            f"message not understood: {first['msg']} at {'.'.join(map(str, first['loc']))}",
-            value=text[:200],
-            remedy="See docs/protocol.md for the messages.",
-        ) from error

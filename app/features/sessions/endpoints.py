@@ -152,7 +152,7 @@ async def get_live(
     _: SignedIn, session_id: KnownSession, context: Context
 ) -> AsyncIterator[ServerSentEvent]:
     """News of a session: `session` on every change, `telemetry` a few times a second."""
-    with context.hub.subscribe(session_id) as subscription:
+    with context.hub.subscribe(session_id, "telemetry") as subscription:
         yield await _session_event(context, session_id)
         while True:
             news = await subscription.next(HEARTBEAT_S)

@@ -8,6 +8,7 @@ from datetime import datetime
 
 from sqlalchemy.orm import Session
 
+from app.features.alarms.service import clear_all
 from app.features.participants.service import close_attempt
 from app.features.sessions.engine import Event
 from app.features.sessions.engine import events as e
@@ -28,6 +29,7 @@ def project(
         case e.SessionEnded(status=status):
             session.ended_at = now
             close_attempt(db, session, str(status), now)
+            clear_all(db, [session.id], "the session has ended", now)
         case e.PhasePrepared():
             db.add(_phase_row(session, plan[event.step], event, now))
             db.flush()

@@ -2,6 +2,7 @@
 
 from sqlalchemy import select
 
+from app.features.alarms.service import clear_all, sessions_with_open_alarms
 from app.features.context import AppContext
 from app.features.sessions.engine.commands import HeadsetLost
 from app.features.sessions.service import apply_command, session_by_id, state_of
@@ -13,8 +14,10 @@ from app.models import StudySession, StudyVersion
 def stop_running_clocks(context: AppContext) -> int:
     """Pause every phase whose clock ran, at the last active time on disk; how many there were.
 
-    A study with `on_disconnect: continue` is left alone: its headset goes on by its journal.
+    A study with `on_disconnect: continue` is left alone: its headset goes on by its journal. Alarms
+    that were open are cleared; what is still wrong will be raised again.
     """
+    _clear_alarms(context)
     with context.database.reading() as db:
         active = list(db.scalars(select(StudySession.id).where(StudySession.status == "active")))
     paused = 0
@@ -29,3 +32,11 @@ def stop_running_clocks(context: AppContext) -> int:
             command = HeadsetLost(active_s=active_s, cause="server_restarted")
             paused += len(apply_command(db, context, session, command, actor="system").events)
     return paused
+
+
+def _clear_alarms(context: AppContext) -> None:
+    """Nobody has looked since the server died, so nobody knows whether they still hold."""
+    now = context.clock.utc_now()
+    with context.database.writing() as db:
+        sessions = sessions_with_open_alarms(db)
+        clear_all(db, sessions, "the server had stopped in between", now)

@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.features.alarms.schemas import AlarmView
 from app.features.questionnaires.schemas import StoredScores
 from app.protocol.plan import StepKind
 
@@ -161,7 +162,10 @@ class SessionSummary(BaseModel):
 
 
 class SessionView(SessionSummary):
-    """Everything a cockpit shows. `sequence` and latencies are null for a blinded operator."""
+    """Everything a cockpit shows. `sequence` and latencies are null for a blinded operator.
+
+    `alarms`: those that are open, the oldest first.
+    """
 
     study_key: str
     study_title: str
@@ -174,6 +178,7 @@ class SessionView(SessionSummary):
     current: CurrentView | None
     allowed: list[AllowedType]
     devices: list[DeviceView]
+    alarms: list[AlarmView]
     phases: list[PhaseView]
     notes: list[NoteView]
     scores: list[StoredScores]

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.alarms.service import open_alarms
 from app.features.context import AppContext
 from app.features.devices.service import devices_of_session
 from app.features.participants.service import slot_of
@@ -52,6 +53,7 @@ def session_view(db: Session, context: AppContext, session: StudySession) -> Ses
         current=_current(plan, state),
         allowed=allowed_commands(plan, state),
         devices=_devices(db, context, session),
+        alarms=open_alarms(db, session.id),
         phases=phase_views(db, session, blinded=blinded),
         notes=_notes(db, session),
         scores=stored_scores(db, session),

@@ -12,6 +12,8 @@ from typing import Any, cast
 from sqlalchemy import Table, insert
 from sqlalchemy.orm import Session
 
+from app.features.alarms.alarm import Change
+from app.features.alarms.service import store_change
 from app.features.context import AppContext
 from app.features.sessions.engine.commands import HeadsetLost
 from app.features.sessions.service import (
@@ -121,6 +123,11 @@ class Intake:
         active_s = certain_active_s(self.db, session_id, state.phase.phase_id)
         lost = HeadsetLost(active_s=active_s, cause=cause)
         apply_command(self.db, self.context, session, lost, actor="system")
+
+    def store_alarm(self, session_id: str, change: Change) -> None:
+        """Put an alarm on the record, and let the pages draw themselves anew."""
+        if store_change(self.db, session_id, change):
+            self.context.hub.publish_after_commit(self.db, session_id)
 
 
 def _without_first(message: bytes, count: int) -> bytes:

@@ -1,6 +1,5 @@
 """What the console shows of the movement right now, from the newest messages, before any commit."""
 
-import time
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -16,7 +15,10 @@ PERIOD_S = 0.2
 
 @dataclass
 class LiveTelemetry:
-    """Folds the messages of one connection into a few figures, at most five times a second."""
+    """Folds the messages of one connection into a few figures, at most five times a second.
+
+    Counting costs next to nothing and always goes on; figures are made only for somebody who looks.
+    """
 
     _newest: dict[StreamName, Batch] = field(default_factory=dict)
     _told_at_s: float = 0.0
@@ -42,8 +44,8 @@ class LiveTelemetry:
             self._side_contacts += 1
         self._red_until_s[side] = max(self._red_until_s.get(side, -1.0), contact.end_active_s)
 
-    def update(self, batch: Batch, flags: FrameFlags) -> dict[str, Any] | None:
-        """The figures, when it is time to tell them again."""
+    def take(self, batch: Batch, flags: FrameFlags) -> None:
+        """Take note of frames."""
         header = batch.header
         if header.phase_id != self._phase_id:
             self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
@@ -52,7 +54,9 @@ class LiveTelemetry:
         self._flagged += int(flags.bad.sum())
         if header.stream is StreamName.TARGET:
             self._frames += header.frame_count
-        now_s = time.monotonic()
+
+    def figures(self, now_s: float) -> dict[str, Any] | None:
+        """The figures, when it is time to tell them again."""
         if now_s - self._told_at_s < PERIOD_S or StreamName.ACTUAL not in self._newest:
             return None
         self._told_at_s = now_s

@@ -14,6 +14,7 @@ from typing import Protocol
 
 from sqlalchemy.exc import OperationalError
 
+from app.features.alarms.alarm import Change
 from app.features.context import AppContext
 from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
@@ -68,7 +69,14 @@ class LossContent:
     cause: str
 
 
-Content = BatchContent | Report | ProbeContent | Produced | LossContent
+@dataclass(frozen=True)
+class AlarmContent:
+    """An alarm was raised or cleared. Nobody waits for it."""
+
+    change: Change
+
+
+Content = BatchContent | Report | ProbeContent | Produced | LossContent | AlarmContent
 
 
 @dataclass
@@ -152,7 +160,7 @@ class TelemetryWriter:
             for arrival in arrivals:
                 _, outcome = outcomes.setdefault(id(arrival.sender), (arrival.sender, Outcome()))
                 _store_one(intake, arrival, outcome)
-                outcome.messages += not isinstance(arrival.content, LossContent)
+                outcome.messages += not isinstance(arrival.content, LossContent | AlarmContent)
                 ended += [(arrival.session_id, phase) for phase in outcome.phases_ended]
                 outcome.phases_ended.clear()
             intake.flush()
@@ -175,3 +183,5 @@ def _store_one(intake: Intake, arrival: Arrival, outcome: Outcome) -> None:
             intake.store_produced(session_id, produced)
         case LossContent(cause):
             intake.store_loss(session_id, cause)
+        case AlarmContent(change):
+            intake.store_alarm(session_id, change)

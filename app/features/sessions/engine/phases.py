@@ -22,7 +22,7 @@ from app.protocol.plan import Step
 FRAME_TOLERANCE_S = 0.05
 """A phase may end this much off its duration: a few frames of the slowest headset."""
 
-ASSUMED_CAUSES = ("headset_lost", "server_restarted")
+ASSUMED_CAUSES = ("headset_lost", "headset_silent", "server_restarted")
 """Causes of pauses that the server assumed; the headset's own reports may tell otherwise."""
 
 _EXPECTED: dict[str, tuple[PhaseStatus, ...]] = {

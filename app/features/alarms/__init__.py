@@ -1,0 +1,1 @@
+"""What the operator has to know now: raised, cleared, and kept."""

@@ -1,0 +1,115 @@
+"""An alarm, and the book that opens and closes them without flicker."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from typing import Literal
+
+Severity = Literal["info", "warning", "critical"]
+State = Literal["raised", "cleared"]
+
+SEVERITIES: dict[str, Severity] = {
+    "silent": "critical",
+    "disconnected": "critical",
+    "backlog": "warning",
+    "bad_values": "warning",
+    "frozen": "warning",
+    "low_frame_rate": "warning",
+    "gap": "warning",
+    "jump": "warning",
+    "clock_unknown": "warning",
+    "clock_uncertain": "info",
+}
+"""Every alarm there is. Critical: data are being lost now, or a phase stands."""
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Now, on the server: `monotonic_s` for durations, `utc` for the record."""
+
+    monotonic_s: float
+    utc: datetime
+
+
+@dataclass(frozen=True)
+class Condition:
+    """Something is wrong at this moment. `stream` None: not with one stream alone.
+
+    `value` with its `unit` says how much; `client_t_s` when it was, on the client's clock; `joints`
+    which joints are meant.
+    """
+
+    code: str
+    message: str
+    stream: str | None = None
+    value: float | None = None
+    unit: str | None = None
+    client_t_s: float | None = None
+    joints: tuple[str, ...] = ()
+
+    @property
+    def severity(self) -> Severity:
+        """How urgent it is."""
+        return SEVERITIES[self.code]
+
+    @property
+    def key(self) -> tuple[str, str | None]:
+        """An alarm is open once for each code and stream."""
+        return self.code, self.stream
+
+
+@dataclass(frozen=True)
+class Change:
+    """An alarm was raised or cleared; `condition` as it was at that moment."""
+
+    state: State
+    condition: Condition
+    at: datetime
+
+
+@dataclass(frozen=True)
+class Alarm:
+    """An alarm that is open: its newest condition, and since when."""
+
+    condition: Condition
+    since: datetime
+    seen_s: float
+
+
+@dataclass
+class AlarmBook:
+    """The open alarms of one headset.
+
+    An alarm is raised by the first condition and cleared once there was none for `clear_after_s`:
+    so that what comes and goes does not make the page flicker.
+    """
+
+    clear_after_s: float
+    _open: dict[tuple[str, str | None], Alarm] = field(default_factory=dict)
+
+    @property
+    def open(self) -> tuple[Alarm, ...]:
+        """What is wrong now, the oldest first."""
+        return tuple(self._open.values())
+
+    def report(self, condition: Condition, now: Moment) -> Iterator[Change]:
+        """Take note of a condition; gives the change if it raises an alarm."""
+        known = self._open.get(condition.key)
+        if known is None:
+            self._open[condition.key] = Alarm(condition, now.utc, now.monotonic_s)
+            yield Change("raised", condition, now.utc)
+        else:
+            self._open[condition.key] = replace(known, condition=condition, seen_s=now.monotonic_s)
+
+    def settle(self, now: Moment) -> Iterator[Change]:
+        """Clear what has not been reported for a while."""
+        for alarm in self.open:
+            if now.monotonic_s - alarm.seen_s >= self.clear_after_s:
+                del self._open[alarm.condition.key]
+                yield Change("cleared", alarm.condition, now.utc)
+
+    def close(self, message: str, now: Moment) -> Iterator[Change]:
+        """Clear everything, and say why."""
+        for alarm in self.open:
+            del self._open[alarm.condition.key]
+            yield Change("cleared", replace(alarm.condition, message=message), now.utc)
