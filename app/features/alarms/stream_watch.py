@@ -1,7 +1,7 @@
 """The quality of one stream of one run of the client, live: a second of frames at a time."""
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -108,9 +108,9 @@ class StreamWatch:
             self.limits.low_rate_client_s
         ):
             self._pace.popleft()
-        self._medians_s.append(float(np.median(forward_s)))
+        self._medians_s.append(_middle(np.sort(forward_s)))
         if len(self._medians_s) >= RATES_TO_LEARN:
-            lasting_s = float(np.median(self._medians_s))
+            lasting_s = _middle(sorted(self._medians_s))
             self.usual_s = lasting_s if self.usual_s is None else min(self.usual_s, lasting_s)
 
     def _conditions(self, times_s: NDArray[np.float64], found: Examination) -> Iterator[Condition]:
@@ -206,6 +206,11 @@ class StreamWatch:
         timed = times_s[np.isfinite(times_s)]
         client_t_s = float(timed[0]) if len(timed) else None
         return Condition(code, message, self.stream, value, unit, client_t_s, joints)
+
+
+def _middle(ordered: Sequence[float] | NDArray[np.float64]) -> float:
+    """The upper median, which is one of the values, and quicker than NumPy's for so few."""
+    return float(ordered[len(ordered) // 2])
 
 
 def _names(joints: NDArray[np.bool_]) -> tuple[str, ...]:

@@ -24,11 +24,11 @@ def jumps(
     closer together than usual are a stutter of the clock rather than of the body, so an interval
     counts as `usual_s` at least.
     """
-    passed_s = np.fmax(np.diff(times_s), usual_s)
+    passed_s = np.fmax(times_s[1:] - times_s[:-1], usual_s)
     cosine = np.einsum("njk,njk->nj", rotations[1:], rotations[:-1])
     # Beyond half a turn every rotation is within reach.
     half_turn = np.minimum(0.5 * limits.turn_rad_per_s * passed_s, 0.5 * np.pi)
     turned = np.abs(cosine) < np.cos(half_turn)[:, np.newaxis]
-    step_m = np.diff(positions_m, axis=0)
+    step_m = positions_m[1:] - positions_m[:-1]
     moved_m = np.sqrt(np.einsum("nk,nk->n", step_m, step_m))
     return turned, moved_m > limits.root_m_per_s * passed_s

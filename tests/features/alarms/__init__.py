@@ -1,0 +1,1 @@
+"""The watch over the headset, and its alarms on the record."""
