@@ -1,13 +1,27 @@
 """What happened in each phase so far, for the cockpit."""
 
 from collections.abc import Sequence
+from typing import TypedDict
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.features.sessions.schemas import PhaseView
-from app.models import Completion, Contact, Phase, StudySession
+from app.models import Completion, Contact, Phase, PhaseLatency, StudySession
 from app.science.tasks import side_unit, union
+
+_MS_DIGITS = 3
+
+
+class _Latency(TypedDict):
+    """The fields of a phase's view about its achieved latency."""
+
+    achieved_latency_ms: float | None
+    achieved_low_ms: float | None
+    achieved_high_ms: float | None
+    latency_off: bool | None
+    latency_reason: str | None
+    movement_s: float | None
 
 
 def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[PhaseView]:
@@ -20,6 +34,10 @@ def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[Ph
         ).all()
     )
     sides = _side_contacts(db, session)
+    latencies = {
+        row.phase_id: row
+        for row in db.scalars(select(PhaseLatency).where(PhaseLatency.session_id == session.id))
+    }
     phases = db.scalars(
         select(Phase).where(Phase.session_id == session.id).order_by(Phase.phase_id)
     )
@@ -36,11 +54,29 @@ def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[Ph
             completions=completions.get(phase.phase_id, 0),
             side_contacts=sides.get(phase.phase_id, (0, 0.0))[0],
             side_contact_s=sides.get(phase.phase_id, (0, 0.0))[1],
+            **_latency(latencies.get(phase.phase_id), blinded=blinded),
             started_at=phase.started_at,
             ended_at=phase.ended_at,
         )
         for phase in phases
     ]
+
+
+def _latency(row: PhaseLatency | None, *, blinded: bool) -> _Latency:
+    """What was measured; a blinded operator is not told numbers, nor reasons that name lags."""
+    told = None if blinded else row
+    return _Latency(
+        achieved_latency_ms=_ms(told.achieved_s if told else None),
+        achieved_low_ms=_ms(told.low_s if told else None),
+        achieved_high_ms=_ms(told.high_s if told else None),
+        latency_off=row.flagged if row and row.achieved_s is not None else None,
+        latency_reason=told.reason if told else None,
+        movement_s=row.movement_s if row else None,
+    )
+
+
+def _ms(time_s: float | None) -> float | None:
+    return None if time_s is None else round(1000.0 * time_s, _MS_DIGITS)
 
 
 def _side_contacts(db: Session, session: StudySession) -> dict[int, tuple[int, float]]:

@@ -120,6 +120,11 @@ class PhaseView(BaseModel):
     """A phase that was prepared, with what happened in it so far.
 
     `side_contacts` counts how often a side turned red, `side_contact_s` sums how long (active s).
+
+    The achieved latency is measured once the phase is over: `movement_s` is null until then. It
+    comes with its 95 % interval; where nothing can be said it is null and `latency_reason` says
+    why. `latency_off`: by more than 10 ms and more than one frame. A blinded operator is only told
+    whether it is off.
     """
 
     phase_id: int
@@ -133,6 +138,12 @@ class PhaseView(BaseModel):
     completions: int
     side_contacts: int
     side_contact_s: float
+    achieved_latency_ms: float | None
+    achieved_low_ms: float | None
+    achieved_high_ms: float | None
+    latency_off: bool | None
+    latency_reason: str | None
+    movement_s: float | None
     started_at: datetime | None
     ended_at: datetime | None
 

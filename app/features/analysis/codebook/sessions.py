@@ -51,6 +51,31 @@ PHASES: tuple[Column, ...] = (
         "s, active time",
         "0 and up",
     ),
+    _P.number(
+        "achieved_latency_ms",
+        "Latency that the avatar really had: the lag at which its joints (without the hips) follow "
+        "the participant's best, from the recorded frames. Empty below 5 s of movement, or where "
+        "latency_reason says so. A body that follows with physics adds its own lag.",
+        "ms",
+    ),
+    _P.number("achieved_latency_low_ms", "Lower end of its 95 % confidence interval.", "ms"),
+    _P.number("achieved_latency_high_ms", "Upper end of its 95 % confidence interval.", "ms"),
+    _P.boolean(
+        "latency_off",
+        "Whether the achieved latency is off the ordered one by more than 10 ms and more than one "
+        "frame. Empty where there is none.",
+    ),
+    _P.text("latency_reason", "Why there is no achieved latency, or what to keep in mind of it."),
+    _P.number(
+        "movement_s",
+        "Active time during which at least one of the participant's joints (without the hips) "
+        "turned faster than 20 deg/s. Empty until it is computed.",
+        "s, active time",
+        "0 and up",
+    ),
+    _P.integer(
+        "latency_samples", "Active frames of the avatar that it rests on.", levels="0 and up"
+    ),
     _P.number("client_started_s", "Start of the phase on the client's monotonic clock.", "s"),
     _P.number("client_ended_s", "Freeze of the phase on the client's monotonic clock.", "s"),
     _P.time("prepared_at_utc", "When the phase was called."),

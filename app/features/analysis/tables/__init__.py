@@ -3,7 +3,8 @@
 Every function takes a study and a kind (people, simulated, test or all) and gives a DataFrame whose
 columns are those of the codebook, in their order. Nothing is left out: redone phases, superseded
 forms and broken-off sessions are there with `valid` false. Texts are `object`, whole numbers
-`Int64`, numbers `float64`, booleans `bool`, times `datetime64[us, UTC]`; missing values are NA.
+`Int64`, numbers `float64`, booleans `bool` (`boolean` where one is missing), times
+`datetime64[us, UTC]`; missing values are NA.
 """
 
 from app.features.analysis.schemas import Kind

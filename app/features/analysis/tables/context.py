@@ -51,7 +51,10 @@ def _cast(values: "pd.Series[Any]", kind: ColumnType) -> "pd.Series[Any]":
         case "number":
             return values.astype("float64")
         case "boolean":
-            return values.astype("bool")
+            if not values.isna().any():
+                return values.astype("bool")
+            told = [None if pd.isna(value) else bool(value) for value in values]
+            return pd.Series(pd.array(told, dtype="boolean"))
         case "text":
             return values.astype("object").where(values.notna(), None)
 

@@ -1,15 +1,16 @@
 """The table of phases, with what each came to."""
 
 import pandas as pd
-from sqlalchemy import func, select
+from sqlalchemy import case, func, select
 from sqlalchemy.orm import Session
 
 from app.features.analysis.red_time import red_spans, total_s
 from app.features.analysis.schemas import Kind
 from app.features.analysis.tables.context import finished, of_kind, phases_context, read
 from app.features.studies.service import study_by_key
-from app.models import Completion, Contact, Phase, Study, StudySession
+from app.models import Completion, Contact, Phase, PhaseLatency, Study, StudySession
 
+MS_PER_S = 1000.0
 _KEYS = ["session_id", "phase_id"]
 
 
@@ -17,8 +18,8 @@ def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """One row per phase, in order of session and phase."""
     study = study_by_key(db, study_key)
     frame = phases_context(db, study_key, kind)
-    for more in (_details(db, study, kind), _completions(db, study, kind), _red(db, study, kind)):
-        frame = frame.merge(more, on=_KEYS, how="left")
+    for more in (_details, _completions, _red, _latencies):
+        frame = frame.merge(more(db, study, kind), on=_KEYS, how="left")
     for name in ("completions", "side_contacts", "side_red_s"):
         frame[name] = [0 if pd.isna(value) else value for value in frame[name]]
     return finished(frame, "phases")
@@ -55,6 +56,28 @@ def _completions(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
         .group_by(Completion.session_id, Completion.phase_id)
     )
     return read(db, query, (*_KEYS, "completions"))
+
+
+def _latencies(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(
+            PhaseLatency.session_id,
+            PhaseLatency.phase_id,
+            PhaseLatency.achieved_s * MS_PER_S,
+            PhaseLatency.low_s * MS_PER_S,
+            PhaseLatency.high_s * MS_PER_S,
+            # Nothing is known to be off where nothing is known.
+            case((PhaseLatency.achieved_s.is_not(None), PhaseLatency.flagged)),
+            PhaseLatency.reason,
+            PhaseLatency.movement_s,
+            PhaseLatency.samples,
+        )
+        .join(StudySession, StudySession.id == PhaseLatency.session_id)
+        .where(of_kind(study, kind))
+    )
+    achieved = ("achieved_latency_ms", "achieved_latency_low_ms", "achieved_latency_high_ms")
+    others = ("latency_off", "latency_reason", "movement_s", "latency_samples")
+    return read(db, query, (*_KEYS, *achieved, *others))
 
 
 def _red(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
