@@ -10,6 +10,7 @@ from typing import Any
 
 from sqlalchemy import (
     JSON,
+    BigInteger,
     Boolean,
     Column,
     Connection,
@@ -37,7 +38,7 @@ def tables_of(engine: Engine | Connection) -> list[Table]:
 
 
 def fill(engine: Engine, rows: int = ROWS) -> None:
-    """Put `rows` rows into every table; the first of each refers to the first of the others."""
+    """Put `rows` rows into every table; each refers to those of the same number."""
     writes = engine.execution_options(reembody_writes=True)
     with writes.begin() as connection:
         for table in tables_of(connection):
@@ -83,22 +84,24 @@ def _value(column: Column[Any], words: list[str] | None, at: int) -> Any:
             moment = datetime(2026, 3, 29, 1, 59, 59, tzinfo=UTC) + timedelta(microseconds=at)
             # SQLite keeps no zone, and its reflected type takes none.
             return moment if column.type.timezone else moment.replace(tzinfo=None)
-        case Boolean():
-            return at % 2 == 0
-        case Float():
-            return at + 1 / 3
-        case Integer():
-            return 2**31 - 1 - at
         case JSON():
             return {"ö": [at, 1.5, None, "\u2028"]}
         case LargeBinary():
             return bytes(range(256)) * (at + 1)
+        case Boolean() | Float() | Integer():
+            return _number(column.type, at)
     if words:
         return words[at % len(words)]
-    text = f"{at}-{table_digits(column)}-naïve \U0001f9e0"
+    text = f"{at}-{column.table.name[:8]}.{column.name[:12]}-naïve \U0001f9e0"
     return text[: getattr(column.type, "length", None)]
 
 
-def table_digits(column: Column[Any]) -> str:
-    """Something short that is the column's own."""
-    return f"{column.table.name[:8]}.{column.name[:12]}"
+def _number(type_: Boolean | Float[Any] | Integer, at: int) -> bool | int | float:
+    match type_:
+        case Boolean():
+            return at % 2 == 0
+        case Float():
+            return at + 1 / 3
+        case BigInteger():
+            return 2**53 - 1 - at
+    return 2**31 - 1 - at

@@ -1,0 +1,17 @@
+"""A copy of everything in one file, made and put back while the server runs.
+
+The file is a SQLite database with the product's own schema, whichever engine it came from, plus a
+manifest with a checksum of every table. So a backup of one engine can be restored on the other, it
+can be looked into with any SQLite tool, and damage is noticed before anything is replaced.
+
+shapes     the tables of a schema, as far as copying needs to know them
+rows       rows in one form that is the same on both engines
+digest     checksums over such rows
+manifest   what a backup says of itself
+writing    making the file
+reading    opening the file, and checking that it is whole
+older      bringing an earlier version's to the newest schema
+restoring  putting its rows in the place of a database's
+progress   telling how far it has come
+service    what others use
+"""

@@ -1,0 +1,103 @@
+"""The tables of a schema, as far as copying needs to know them.
+
+They are read from a SQLite file, not from the models: a backup keeps the schema that it was made
+with, and a later version of the product, whose models differ, must still be able to read it.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from sqlalchemy import (
+    JSON,
+    Boolean,
+    Connection,
+    Date,
+    DateTime,
+    Float,
+    Integer,
+    LargeBinary,
+    MetaData,
+    String,
+    Table,
+    Time,
+)
+from sqlalchemy.types import TypeEngine
+
+from app.schema_revisions import VERSION_TABLE
+
+MANIFEST_TABLE = "backup_manifest"
+
+
+class Kind(StrEnum):
+    """What a column holds."""
+
+    TEXT = "text"
+    INTEGER = "integer"
+    NUMBER = "number"
+    TRUTH = "truth"
+    MOMENT = "moment"
+    JSON = "json"
+    BYTES = "bytes"
+
+
+_KINDS: tuple[tuple[type[TypeEngine[Any]], Kind], ...] = (
+    (DateTime, Kind.MOMENT),
+    (Boolean, Kind.TRUTH),
+    (JSON, Kind.JSON),
+    (LargeBinary, Kind.BYTES),
+    (Float, Kind.NUMBER),
+    (Integer, Kind.INTEGER),
+    (String, Kind.TEXT),
+)
+
+
+@dataclass(frozen=True)
+class ColumnShape:
+    """A column and what it holds."""
+
+    name: str
+    kind: Kind
+
+
+@dataclass(frozen=True)
+class TableShape:
+    """A table: its columns in the schema's order, and the names of its primary key's."""
+
+    name: str
+    columns: tuple[ColumnShape, ...]
+    key: tuple[str, ...]
+
+    @property
+    def has_bytes(self) -> bool:
+        """Whether its rows may be long."""
+        return any(column.kind is Kind.BYTES for column in self.columns)
+
+
+def shapes_of(connection: Connection) -> tuple[TableShape, ...]:
+    """The product's tables in a SQLite file, those that are referred to first.
+
+    Raises ValueError for a column of a kind that cannot be copied exactly.
+    """
+    metadata = MetaData()
+    metadata.reflect(connection)
+    return tuple(
+        _shape(table)
+        for table in metadata.sorted_tables
+        if table.name not in {VERSION_TABLE, MANIFEST_TABLE}
+    )
+
+
+def _shape(table: Table) -> TableShape:
+    columns = tuple(
+        ColumnShape(column.name, _kind(table.name, column.name, column.type))
+        for column in table.columns
+    )
+    return TableShape(table.name, columns, tuple(column.name for column in table.primary_key))
+
+
+def _kind(table: str, column: str, type_: TypeEngine[Any]) -> Kind:
+    for of, kind in _KINDS:
+        if isinstance(type_, of) and not isinstance(type_, Date | Time):
+            return kind
+    raise ValueError(f"column {table}.{column} is of type {type_!r}, which no backup can hold")

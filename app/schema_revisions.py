@@ -1,0 +1,37 @@
+"""Which schemas this program knows, and which one a database has.
+
+A revision is the name of the newest migration that was applied. A database may be older than the
+program (it is migrated), or newer: then it was used by a newer program, and an older one would not
+understand what it finds.
+"""
+
+from functools import lru_cache
+
+from alembic.script import ScriptDirectory
+from sqlalchemy import Connection, column, inspect, select, table
+
+from app.database import alembic_config
+
+VERSION_TABLE = "alembic_version"
+
+
+@lru_cache(maxsize=1)
+def known_revisions() -> tuple[str, ...]:
+    """Every revision of this program, oldest first."""
+    script = ScriptDirectory.from_config(alembic_config("sqlite://"))
+    return tuple(step.revision for step in script.walk_revisions())[::-1]
+
+
+def newest_revision() -> str:
+    """The revision that this program works with."""
+    return known_revisions()[-1]
+
+
+def revision_of(connection: Connection) -> str | None:
+    """The revision of a database; None where no migration was ever applied."""
+    if not inspect(connection).has_table(VERSION_TABLE):
+        return None
+    found: str | None = connection.scalar(
+        select(column("version_num")).select_from(table(VERSION_TABLE))
+    )
+    return found
