@@ -29,12 +29,10 @@ def pack(numbers: NDArray[np.uint32], widths: NDArray[np.int64]) -> bytes:
 
 def unpack(data: bytes, widths: NDArray[np.int64], first_bit: int = 0) -> NDArray[np.uint32]:
     """Read numbers (n,) of `widths` (n,) bits that begin at bit `first_bit`."""
-    # Two words more, because every window reaches into the next word.
+    # A window reaches into the next word, and an empty number at the end begins behind the last.
     words = np.frombuffer(data.ljust(-(-len(data) // 4) * 4 + 8, b"\0"), ">u4").astype(np.uint64)
+    windows = (words[:-1] << _WORD) | words[1:]
     first = np.cumsum(widths) - widths + first_bit
-    word = first >> 5
-    window = (words[word] << _WORD) | words[word + 1]
-    shifted = window >> (64 - widths - (first & 31)).astype(np.uint64)
-    mask = (np.uint64(1) << widths.astype(np.uint64)) - np.uint64(1)
-    numbers: NDArray[np.uint32] = (shifted & mask).astype(np.uint32)
+    begun = windows[first >> 5] << (first & 31).astype(np.uint64)
+    numbers: NDArray[np.uint32] = (begun >> (64 - widths).astype(np.uint64)).astype(np.uint32)
     return numbers

@@ -86,7 +86,7 @@ def encode(columns: Columns, *, level: int = LEVEL) -> bytes:
     low = differences & ((np.uint32(1) << low_bits) - np.uint32(1))[:, np.newaxis]
     noise = pack(
         np.concatenate((low.ravel(), floats.rest.ravel())),
-        np.concatenate((_each(low_bits, n), rest_widths(floats.coarse).ravel())),
+        np.concatenate((_each(low_bits, n), floats.rest_widths.ravel())),
     )
     return _sealed(n, w, zstandard.ZstdCompressor(level=level).compress(b"".join(parts)), noise)
 
@@ -108,8 +108,9 @@ def decode(data: bytes, frame_count: int, values_per_frame: int) -> Columns:
     low = unpack(noise, _each(low_bits, n)).reshape(w, n)
     rows = summed(row_bytes >> _ORDER_AT, (high << low_bits[:, np.newaxis]) | low)
     coarse = rows[: w - joints]
-    rest = unpack(noise, rest_widths(coarse).ravel(), n * int(low_bits.sum()))
-    kept = joined(Significands(top, coarse, rest.reshape(coarse.shape), parts.rest(np.uint32)))
+    widths = rest_widths(coarse)
+    rest = unpack(noise, widths.ravel(), n * int(low_bits.sum())).reshape(coarse.shape)
+    kept = joined(Significands(top, coarse, rest, widths, parts.rest(np.uint32)))
     bits = np.empty((w, n), np.uint32)
     bits[left_out.kept_rows] = kept
     bits[left_out.rows] = rows[w - joints :].view(np.uint32) + left_out.expected(kept)

@@ -28,13 +28,14 @@ _EXPONENT_AT = np.uint32(23)
 class Significands:
     """Rows of floats, cut.
 
-    `top` (rows,) biased exponents 0 to 254, `coarse` (rows, n), `rest` (rows, n) of which
-    `rest_widths(coarse)` bits count, `exceptions` (m,) the bits of the floats with coarse 0.
+    `top` (rows,) biased exponents 0 to 254; `coarse` (rows, n); `rest` (rows, n), each number of
+    `rest_widths` (rows, n) bits; `exceptions` (m,) the bits of the floats with coarse 0.
     """
 
     top: NDArray[np.uint8]
     coarse: NDArray[np.int32]
     rest: NDArray[np.uint32]
+    rest_widths: NDArray[np.int64]
     exceptions: NDArray[np.uint32]
 
 
@@ -45,13 +46,15 @@ def cut(bits: NDArray[np.uint32]) -> Significands:
     top = np.where(usable, exponent, 0).max(axis=1)
     shift = top[:, np.newaxis] - exponent
     usable &= shift < _SIGNIFICAND_BITS
-    shift = np.where(usable, shift, 0).astype(np.uint32)
+    rest_widths = np.where(usable, shift, 0)
+    shift = rest_widths.astype(np.uint32)
     significand = (bits & _STORED) | _IMPLIED
     magnitude = np.where(usable, significand >> shift, 0).astype(np.int32)
     return Significands(
         top=top.astype(np.uint8),
         coarse=np.where(bits >> _SIGN_AT, -magnitude, magnitude),
         rest=significand & ((np.uint32(1) << shift) - np.uint32(1)),
+        rest_widths=rest_widths.astype(np.int64),
         exceptions=bits[~usable],
     )
 
@@ -64,7 +67,7 @@ def rest_widths(coarse: NDArray[np.int32]) -> NDArray[np.int64]:
 
 def joined(parts: Significands) -> NDArray[np.uint32]:
     """The bits (rows, n) of the floats; the inverse of `cut`."""
-    shift = rest_widths(parts.coarse).astype(np.uint32)
+    shift = parts.rest_widths.astype(np.uint32)
     significand = (np.abs(parts.coarse).astype(np.uint32) << shift) | parts.rest
     # The implied bit of the significand adds 1 to the exponent: take it off before.
     exponent = parts.top[:, np.newaxis].astype(np.uint32) - shift - np.uint32(1)

@@ -1,0 +1,172 @@
+"""How small a minute of a session becomes and what that costs, for every way of writing chunks.
+
+A session-minute is two streams, target and actual, of 90 frames a second; a chunk is a second of
+one of them. Movement: the captures beside the repository (a mean over them), each with an actual
+stream that follows its target through a critically damped filter of 4 Hz, 125 ms late, with a noise
+of 0.01 degrees and 0.1 mm of its own; and one made up, all joints swinging, tracked with a noise of
+0.05 degrees and 0.5 mm and followed likewise. Times are CPU times of one thread, medians over the
+chunks. Every chunk is compared with what went in, bit by bit.
+"""
+
+import os
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.features.telemetry.encodings import f32_predicted
+from app.features.telemetry.encodings.columns import Columns
+from tests.benchmarks.codecs import Codec, own_codecs
+from tests.benchmarks.report import Figure, Report
+from tests.benchmarks.rival_codecs import rival_codecs
+from tests.conftest import SHARED_DATA_VARIABLE
+from tests.features.telemetry.followed_movement import (
+    CHUNK_FRAMES,
+    OWN_NOISE_DEG,
+    RATE_HZ,
+    TRACKING_NOISE_DEG,
+    Streams,
+    captured_movement,
+    followed,
+    made_movement,
+)
+
+PARTS = ("codecs", "noise", "lengths")
+BESIDE = Path(__file__).resolve().parents[3] / "shared" / "data"
+CAPTURES = Path(os.environ.get(SHARED_DATA_VARIABLE) or BESIDE) / "motion" / "cmu_bvh"
+MADE_S, REPEATS = 20.0, 3
+LIMIT_MB, LIMIT_MS = 3.0, 2.0
+IN_USE = f"{f32_predicted.NAME}, zstd {f32_predicted.LEVEL}"
+NOISES_DEG = (0.0, 0.01, 0.1, 1.0)
+LENGTHS = (9, 30, 90, 180, 450)
+Movements = Mapping[str, Sequence[Streams]]
+
+
+def measure(parts: frozenset[str]) -> Report:
+    """Measure the named parts."""
+    report = Report("encoding")
+    captured = _captured()
+    names = ", ".join(captured) or "none found"
+    print(f"  captures in {CAPTURES}: {names}", file=sys.stderr)
+    movements = {"made up": [_made(TRACKING_NOISE_DEG, OWN_NOISE_DEG)]}
+    if captured:
+        movements["captures"] = list(captured.values())
+    rivals, absent = rival_codecs()
+    for library in absent:
+        print(f"  {library} is not installed: left out", file=sys.stderr)
+    codecs = [*own_codecs(), *rivals]
+    if "codecs" in parts:
+        for codec in codecs:
+            report.add(*_sizes(codec, movements), *_times(codec, movements))
+    (ours,) = (codec for codec in codecs if codec.name == IN_USE)
+    if "noise" in parts:
+        report.add(*_by_noise(ours))
+    if "lengths" in parts:
+        report.add(*_by_length(ours, movements))
+    return report
+
+
+def _captured() -> dict[str, Streams]:
+    """Every capture that is there, by its name."""
+    files = sorted(CAPTURES.glob("*.bvh"))
+    rng = np.random.default_rng(0)
+    return {file.stem: followed(captured_movement(file), rng) for file in files}
+
+
+def _made(tracking_deg: float, own_deg: float) -> Streams:
+    rng = np.random.default_rng(0)
+    return followed(made_movement(MADE_S, rng, noise_deg=tracking_deg), rng, noise_deg=own_deg)
+
+
+def _all(movements: Movements) -> list[Streams]:
+    return [streams for several in movements.values() for streams in several]
+
+
+def _sizes(codec: Codec, movements: Movements) -> Iterator[Figure]:
+    for name, several in movements.items():
+        megabytes = np.mean([_session_minute_mb(codec, streams) for streams in several])
+        yield _size(f"{codec.name}: {name}", float(megabytes))
+
+
+def _size(name: str, megabytes: float, part: str = "codecs") -> Figure:
+    return Figure(part, name, megabytes, "MB/session-min", "limit", LIMIT_MB)
+
+
+def _session_minute_mb(codec: Codec, streams: Streams, frames: int = CHUNK_FRAMES) -> float:
+    """What 60 s of both streams come to, in 10^6 bytes."""
+    sizes = [len(codec.encode(one)) for pair in streams.chunks(frames) for one in pair]
+    seconds = len(sizes) / 2 * frames / RATE_HZ
+    return sum(sizes) * 60.0 / seconds / 1e6
+
+
+def _times(codec: Codec, movements: Movements) -> Iterator[Figure]:
+    chunks = [one for streams in _all(movements) for pair in streams.chunks() for one in pair]
+    encoding_s, decoding_s = [], []
+    for chunk in chunks * REPEATS:
+        begun_s = time.thread_time()
+        data = codec.encode(chunk)
+        encoded_s = time.thread_time()
+        back = codec.decode(data, *chunk.values.shape)
+        decoding_s.append(time.thread_time() - encoded_s)
+        encoding_s.append(encoded_s - begun_s)
+        _require_same(codec, chunk, back)
+    encode_ms, decode_ms = (1000 * float(np.median(one)) for one in (encoding_s, decoding_s))
+    yield Figure("codecs", f"{codec.name}: encode", encode_ms, "ms/chunk", "limit", LIMIT_MS)
+    yield Figure("codecs", f"{codec.name}: decode", decode_ms, "ms/chunk")
+    yield Figure("codecs", f"{codec.name}: throughput", 1000 / encode_ms, "chunks/s/core")
+
+
+def _require_same(codec: Codec, chunk: Columns, back: Columns) -> None:
+    pairs = (
+        (chunk.times_s, back.times_s),
+        (chunk.flags, back.flags),
+        (chunk.values, back.values),
+    )
+    if any(before.tobytes() != after.tobytes() for before, after in pairs):
+        raise AssertionError(f"{codec.name} does not give back what it was given")
+
+
+def _by_noise(ours: Codec) -> Iterator[Figure]:
+    """The made-up movement with the same white noise on both streams, from none to a lot."""
+    for noise_deg in NOISES_DEG:
+        megabytes = _session_minute_mb(ours, _made(noise_deg, noise_deg))
+        yield _size(f"noise of {noise_deg:g} degrees", megabytes, "noise")
+    streams = _made(TRACKING_NOISE_DEG, OWN_NOISE_DEG)
+    single = Streams(streams.times_s, _in_single(streams.target), _in_single(streams.actual))
+    megabytes = _session_minute_mb(ours, single)
+    yield _size("made up, normalised again in single precision", megabytes, "noise")
+
+
+def _in_single(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Values (n, 91) whose quaternions went through arithmetic in float32, as engines do it."""
+    turns = values[:, 3:].reshape(len(values), 22, 4) * np.float32(1.1)
+    turns /= np.sqrt(np.einsum("nji,nji->nj", turns, turns))[..., np.newaxis]
+    return np.concatenate((values[:, :3], turns.reshape(len(values), -1)), axis=1)
+
+
+def _by_length(ours: Codec, movements: Movements) -> Iterator[Figure]:
+    """Whether longer chunks, or both streams in one, would be worth it: means over long ones."""
+    long = [one for one in _all(movements) if len(one.times_s) >= max(LENGTHS)]
+    for frames in LENGTHS:
+        sizes = [_session_minute_mb(ours, one, frames) for one in long]
+        yield _size(f"chunks of {frames} frames", float(np.mean(sizes)), "lengths")
+    sizes = [_together_mb(ours, streams) for streams in long]
+    yield _size("both streams in a chunk of 90 frames", float(np.mean(sizes)), "lengths")
+
+
+def _together_mb(ours: Codec, streams: Streams) -> float:
+    """A session-minute where chunks hold both streams, so that the times are there once."""
+    sizes = []
+    for target, actual in streams.chunks():
+        both = np.concatenate((target.values, actual.values[:, 3:]), axis=1)
+        # The second root, which has no place in a chunk: alone, with times that cost nothing.
+        root = Columns(np.zeros(len(both)), actual.flags, actual.values[:, :3])
+        sizes.append(sum(len(ours.encode(one)) for one in (_with_values(target, both), root)))
+    return sum(sizes) * 60.0 / (len(sizes) * CHUNK_FRAMES / RATE_HZ) / 1e6
+
+
+def _with_values(columns: Columns, values: NDArray[np.float32]) -> Columns:
+    return Columns(columns.times_s, columns.flags, values)
