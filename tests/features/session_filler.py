@@ -23,6 +23,7 @@ from app.models import (
 from app.protocol.plan import Step
 from app.science.instruments import Instrument, item_order, score_answers
 from app.science.joint_error import ERROR_AXES, ERROR_JOINTS
+from tests.features.clock_filler import steady_probes, store_probes
 
 NOW = datetime(2026, 3, 2, 9, 30, tzinfo=UTC)
 
@@ -52,7 +53,8 @@ class Filler:
     phase_id: int = 0
 
     def fill(self, plan: Sequence[Step]) -> None:
-        """Add the rows of every step."""
+        """Add the rows of every step, and the readings of the one client run's clock."""
+        store_probes(self.db, self.session.id, steady_probes(NOW))
         for step in plan:
             for attempt in (1, 2) if step.key in self.spec.redone else (1,):
                 if step.kind in ("free_roam", "task"):

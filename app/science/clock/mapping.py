@@ -82,6 +82,11 @@ class ClockMapping:
             uncertainty_s[known] = np.maximum(high - offset_s, offset_s - low)
         return server_s, uncertainty_s
 
+    @property
+    def wall_s(self) -> float:
+        """The server's wall clock minus its time at the first probes, s; NaN if unknown."""
+        return self.placed[0].stretch.wall_first_s if self.placed else float("nan")
+
     @cached_property
     def segments(self) -> tuple[ClockSegment, ...]:
         """Every window, in the order in which they were made."""

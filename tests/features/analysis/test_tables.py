@@ -23,6 +23,8 @@ TABLES: dict[str, Table] = {
     "contacts": tables.contacts_table,
     "completions": tables.completions_table,
     "joint_errors": tables.joint_errors_table,
+    "clock_probes": tables.clock_probes_table,
+    "clock_mapping": tables.clock_mapping_table,
     "events": tables.events_table,
 }
 

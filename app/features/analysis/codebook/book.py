@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 
 import pandas as pd
 
+from app.features.analysis.codebook.clocks import CLOCK_MAPPING, CLOCK_PROBES
 from app.features.analysis.codebook.column import Column, Describe
 from app.features.analysis.codebook.movement import (
     COMPLETIONS,
@@ -26,6 +27,8 @@ TABLES: dict[str, str] = {
     "contacts": "One row per contact of a body part with a surface.",
     "completions": "One row per completed task.",
     "joint_errors": "One row per phase, reference, joint and axis.",
+    "clock_probes": "One row per exchange of clock readings between a headset and the server.",
+    "clock_mapping": "One row per segment of a headset's clock, brought to the server's.",
     "events": "One row per event of a session's log: the audit trail.",
     "codebook": "One row per column of the other files.",
     "samples": "One file per session, one row per frame: target and actual body side by side.",
@@ -40,6 +43,8 @@ CODEBOOK: tuple[Column, ...] = (
     *CONTACTS,
     *COMPLETIONS,
     *JOINT_ERRORS,
+    *CLOCK_PROBES,
+    *CLOCK_MAPPING,
     *EVENTS,
     _B.text("table", "The file the column is in; samples stands for all files in samples/."),
     _B.text("column", "Name of the column."),

@@ -1,5 +1,6 @@
 """The columns of contacts.csv, completions.csv, joint_errors.csv and samples/*.csv."""
 
+from app.features.analysis.codebook.clocks import epoch_column, mapped_columns
 from app.features.analysis.codebook.column import Column, Describe
 from app.features.analysis.codebook.common import phase_columns, session_columns
 from app.science.skeleton import JOINT_NAMES
@@ -23,6 +24,7 @@ CONTACTS: tuple[Column, ...] = (
         "What the task made of it.",
         "green, out_of_order, wrong_part, early, side, target, start, none",
     ),
+    epoch_column("contacts"),
     _C.number("begin_s", "Begin on the client's monotonic clock.", "s"),
     _C.number("end_s", "End on the client's monotonic clock.", "s"),
     _C.number("begin_active_s", "Begin in active time of the phase.", "s", "0 and up"),
@@ -34,17 +36,20 @@ CONTACTS: tuple[Column, ...] = (
         "s",
         "0 and up",
     ),
+    *mapped_columns("contacts", "begin_utc", "Begin"),
 )
 
 COMPLETIONS: tuple[Column, ...] = (
     *session_columns("completions"),
     *phase_columns("completions"),
     _T.integer("number", "Which completed task of the phase.", levels="1 and up"),
+    epoch_column("completions"),
     _T.number("at_s", "When, on the client's monotonic clock.", "s"),
     _T.number("active_s", "When, in active time of the phase.", "s", "0 and up"),
     _T.number("duration_s", "Active time since the one before, or the start.", "s", "0 and up"),
     _T.text("panel_order", "Boxes in the order touched, separated by spaces."),
     _T.integer("out_of_order_touches", "Panels touched out of order.", levels="0 and up"),
+    *mapped_columns("completions", "at_utc", "When"),
 )
 
 JOINT_ERRORS: tuple[Column, ...] = (

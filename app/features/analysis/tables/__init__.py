@@ -8,6 +8,7 @@ forms and broken-off sessions are there with `valid` false. Texts are `object`, 
 """
 
 from app.features.analysis.schemas import Kind
+from app.features.analysis.tables.clocks import clock_mapping_table, clock_probes_table
 from app.features.analysis.tables.context import KINDS
 from app.features.analysis.tables.events import events_table
 from app.features.analysis.tables.joint_errors import joint_errors_table
@@ -20,6 +21,8 @@ __all__ = [
     "KINDS",
     "Kind",
     "answers_table",
+    "clock_mapping_table",
+    "clock_probes_table",
     "completions_table",
     "contacts_table",
     "events_table",

@@ -4,6 +4,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.analysis.clocks import add_utc
 from app.features.analysis.schemas import Kind
 from app.features.analysis.tables.context import finished, of_kind, phases_context, read
 from app.features.studies.service import study_by_key
@@ -18,6 +19,7 @@ def contacts_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         select(
             Contact.session_id,
             Contact.phase_id,
+            Contact.epoch,
             Contact.surface,
             Contact.surface_kind,
             Contact.box,
@@ -35,7 +37,8 @@ def contacts_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     )
     names = ("surface", "surface_kind", "box", "side", "body_part", "effect")
     times = ("begin_s", "end_s", "begin_active_s", "end_active_s")
-    contacts = read(db, query, (*_KEYS, *names, *times))
+    contacts = read(db, query, (*_KEYS, "epoch", *names, *times))
+    add_utc(db, contacts, "begin_s", "begin_utc")
     frame = phases_context(db, study_key, kind).merge(contacts, on=_KEYS)
     frame["duration_s"] = frame["end_active_s"] - frame["begin_active_s"]
     return finished(frame, "contacts")
@@ -47,6 +50,7 @@ def completions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         select(
             Completion.session_id,
             Completion.phase_id,
+            Completion.epoch,
             Completion.number,
             Completion.at_s,
             Completion.active_s,
@@ -59,7 +63,8 @@ def completions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         .order_by(Completion.number)
     )
     names = ("number", "at_s", "active_s", "duration_s", "panels", "out_of_order_touches")
-    done = read(db, query, (*_KEYS, *names))
+    done = read(db, query, (*_KEYS, "epoch", *names))
+    add_utc(db, done, "at_s", "at_utc")
     frame = phases_context(db, study_key, kind).merge(done, on=_KEYS)
     frame["panel_order"] = [" ".join(str(box) for box in panels) for panels in frame["panels"]]
     return finished(frame, "completions")
