@@ -1,7 +1,6 @@
 """Counting a stream from its rows: every chunk is opened, nothing is taken from a counter."""
 
 import hashlib
-import zlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
@@ -10,7 +9,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.sessions.journal import canonical
-from app.features.telemetry.encoding import Frames
+from app.features.telemetry.encoding import DamagedChunkError, Frames
 from app.features.telemetry.frames import decode_piece, iter_pieces
 from app.models import ClientReport, TelemetryStream
 from app.wire.messages import REPORT_STREAM
@@ -97,7 +96,7 @@ def _frames(db: Session, row: TelemetryStream, count: _Count) -> Iterator[bytes]
     for piece in iter_pieces(db, row.session_id, row.stream, row.epoch):
         try:
             frames = decode_piece(piece)
-        except (ValueError, zlib.error):
+        except DamagedChunkError:
             count.found(piece.seq_first, piece.frame_count, readable=False)
             continue
         count.found(piece.seq_first, piece.frame_count)

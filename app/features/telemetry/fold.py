@@ -20,7 +20,7 @@ from app.features.context import AppContext
 from app.features.telemetry.checkpoints import Checkpointer
 from app.features.telemetry.encoding import ENCODING, encode_frames
 from app.models import TelemetryBatch, TelemetryChunk
-from app.wire import Batch, decode_batch
+from app.wire import Batch, MalformedBatchError, decode_batch
 
 log = logging.getLogger(__name__)
 CHUNK_S = 1.0
@@ -84,7 +84,7 @@ class Folder:
         now = self.context.clock.utc_now()
         # Compress before the writing turn: telemetry waits for it.
         with self.context.database.reading() as db:
-            chunks = [chunk for key in _due(db, now) for chunk in _chunks_of(db, key, now)]
+            chunks = [chunk for key in _due(db, now) for chunk in _sound_chunks(db, key, now)]
         if chunks:
             with self.context.database.writing() as db:
                 _replace(db, chunks)
@@ -111,6 +111,15 @@ def _due(db: Session, now: datetime) -> list[dict[str, Any]]:
         .limit(STREAMS_PER_TURN)
     )
     return [dict(row) for row in db.execute(query).mappings()]
+
+
+def _sound_chunks(db: Session, key: dict[str, Any], now: datetime) -> list[dict[str, Any]]:
+    """The chunks of a stream; none, if a batch of it can no longer be read: it stays as it is."""
+    try:
+        return _chunks_of(db, key, now)
+    except MalformedBatchError as error:
+        log.error("a stored batch of %s is damaged: %s", key, error)
+        return []
 
 
 def _chunks_of(db: Session, key: dict[str, Any], now: datetime) -> list[dict[str, Any]]:

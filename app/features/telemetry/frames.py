@@ -1,5 +1,6 @@
 """Reading movement back: chunks and the batches not folded yet, as one run of frames."""
 
+import logging
 from collections.abc import Iterator, Sequence
 from heapq import merge
 
@@ -7,11 +8,12 @@ import numpy as np
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.telemetry.encoding import Frames, decode_frames
+from app.features.telemetry.encoding import DamagedChunkError, Frames, decode_frames
 from app.models import TelemetryBatch, TelemetryChunk, TelemetryStream
-from app.wire import VALUES_PER_FRAME, decode_batch
+from app.wire import VALUES_PER_FRAME, MalformedBatchError, decode_batch
 
 Piece = TelemetryChunk | TelemetryBatch
+log = logging.getLogger(__name__)
 
 
 def epochs_of(db: Session, session_id: str, stream: str) -> list[int]:
@@ -33,11 +35,17 @@ def iter_frames(
 ) -> Iterator[tuple[int, Frames]]:
     """Pieces of about a second in seq order, each with its phase_id; of one phase or of all.
 
-    `since_s` leaves out chunks that end before that client time. Raises ValueError where a piece
-    is damaged.
+    `since_s` leaves out chunks that end before that client time. A damaged chunk is left out too,
+    so that one bad page does not take a session with it: the session's receipt counts its frames as
+    missing.
     """
     for piece in iter_pieces(db, session_id, stream, epoch, phase_id, since_s=since_s):
-        yield piece.phase_id, decode_piece(piece)
+        try:
+            frames = decode_piece(piece)
+        except DamagedChunkError as error:
+            log.warning("%s of %s, seq %d: %s", stream, session_id, piece.seq_first, error)
+            continue
+        yield piece.phase_id, frames
 
 
 def iter_pieces(
@@ -77,7 +85,7 @@ def iter_pieces(
 
 
 def decode_piece(piece: Piece) -> Frames:
-    """Its frames; raises ValueError where its bytes are not what was written."""
+    """Its frames; raises DamagedChunkError where its bytes are not what was written."""
     return _of_chunk(piece) if isinstance(piece, TelemetryChunk) else _of_batch(piece)
 
 
@@ -134,7 +142,10 @@ def _of_chunk(chunk: TelemetryChunk) -> Frames:
 
 
 def _of_batch(row: TelemetryBatch) -> Frames:
-    batch = decode_batch(row.message)
+    try:
+        batch = decode_batch(row.message)
+    except MalformedBatchError as error:
+        raise DamagedChunkError(str(error)) from error
     return Frames(
         seq=np.arange(row.seq_first, row.seq_first + row.frame_count),
         times_s=batch.times_s,

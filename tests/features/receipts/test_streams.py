@@ -9,6 +9,7 @@ from sqlalchemy import delete, select, update
 from sqlalchemy.orm import Session
 
 from app.features.telemetry.encoding import ENCODING, decode_frames, encode_frames
+from app.features.telemetry.frames import iter_frames
 from app.models import TelemetryChunk, TelemetryStream
 from tests.features.receipts.conftest import FRAMES, Kept
 
@@ -76,6 +77,9 @@ def test_a_chunk_that_cannot_be_read_counts_as_missing(kept: Kept) -> None:
     kept.change(damage)
     found = kept.stream()
     assert (found.missing, found.damaged, found.gaps) == (90, 90, ((180, 270),))
+    with kept.database.reading() as db:
+        read = [frames for _, frames in iter_frames(db, kept.session_id, "target", 1)]
+    assert sum(len(frames) for frames in read) == FRAMES - 90
     assert "target, epoch 1: 90 frames can no longer be read" in kept.receipt().problems
 
 
