@@ -11,23 +11,25 @@ endpoints, the one that holds the lock could find no thread to finish on. Postgr
 waited for where endpoints run, so fewer requests may write at once than there are such threads.
 """
 
-import sqlite3
 import threading
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
+from typing import Protocol
 
 from alembic import command
 from alembic.config import Config
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
-from sqlalchemy import Connection, Engine, MetaData, create_engine, event, make_url
-from sqlalchemy.engine.interfaces import DBAPIConnection
+from sqlalchemy import Engine, MetaData, create_engine, event, make_url
+from sqlalchemy.exc import DatabaseError
 from sqlalchemy.orm import DeclarativeBase, Session
-from sqlalchemy.pool import ConnectionPoolEntry
 
+from app.errors import NotDurable
 from app.resources import migrations_dir
+from app.sqlite import BUSY_TIMEOUT_S, SqliteBegin, has_changes, prepare_connection
 
 NAMING_CONVENTION = {
     "ix": "ix_%(table_name)s_%(column_0_N_name)s",
@@ -36,8 +38,8 @@ NAMING_CONVENTION = {
     "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
     "pk": "pk_%(table_name)s",
 }
-BUSY_TIMEOUT_S = 30.0
-LONGEST_LOG_PAGES = 65_536
+TURN_TIMEOUT_S = 20.0
+"""How long a request waits for the writers of this process before it is told to come again."""
 WRITERS = 20
 """Half of the threads that endpoints run on."""
 
@@ -48,11 +50,22 @@ class Base(DeclarativeBase):
     metadata = MetaData(naming_convention=NAMING_CONVENTION)
 
 
+class WriteObserver(Protocol):
+    """Hears what becomes of writing transactions, from any thread."""
+
+    def failed(self, error: DatabaseError) -> object:
+        """The database refused."""
+
+    def succeeded(self) -> object:
+        """Changes are on disk."""
+
+
 @dataclass(frozen=True)
 class Database:
     """An engine with its two ways in: `reading()` and `writing()`."""
 
     engine: Engine
+    observer: WriteObserver | None = None
     _write_lock: threading.Lock = field(default_factory=threading.Lock)
     _waiting_room: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(1000))
     _writers: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(WRITERS))
@@ -74,9 +87,9 @@ class Database:
     @contextmanager
     def writing(self) -> Iterator[Session]:
         """One transaction: committed as the block ends, rolled back if it raises. Not nestable."""
-        with self.write_turn(), self._writer() as session:
+        with self.write_turn(), self._observed(), self._writer() as session:
             yield session
-            session.commit()
+            self._commit(session)
 
     @contextmanager
     def write_turn(self) -> Iterator[None]:
@@ -86,16 +99,25 @@ class Database:
 
     @asynccontextmanager
     async def writing_async(self) -> AsyncIterator[Session]:
-        """The same for a request: waits and commits without holding up the event loop."""
+        """The same for a request: waits and commits without holding up the event loop.
+
+        Raises NotDurable when its turn does not come.
+        """
         async with self._turn():
-            with self._writer() as session:
+            with self._observed(), self._writer() as session:
                 yield session
-                await run_sync(session.commit)
+                await run_sync(self._commit, session)
 
     @asynccontextmanager
     async def _turn(self) -> AsyncIterator[None]:
         if self.is_sqlite:
-            await run_sync(self._write_lock.acquire, limiter=self._waiting_room)
+            acquire = partial(self._write_lock.acquire, timeout=TURN_TIMEOUT_S)
+            if not await run_sync(acquire, limiter=self._waiting_room):
+                raise NotDurable(
+                    "too much waits to be stored before this; nothing was promised",
+                    value=f"waited {TURN_TIMEOUT_S:g} s",
+                    remedy="Try again in a moment.",
+                )
             try:
                 yield
             finally:
@@ -111,6 +133,23 @@ class Database:
     def _writer(self) -> Session:
         engine = self.engine.execution_options(reembody_writes=True)
         return Session(engine, expire_on_commit=False)
+
+    def _commit(self, session: Session) -> None:
+        session.flush()
+        changes = session.in_transaction() and has_changes(session.connection())
+        session.commit()
+        # A commit without changes says nothing of the disk.
+        if changes and self.observer is not None:
+            self.observer.succeeded()
+
+    @contextmanager
+    def _observed(self) -> Iterator[None]:
+        try:
+            yield
+        except DatabaseError as error:
+            if self.observer is not None:
+                self.observer.failed(error)
+            raise
 
     def close(self) -> None:
         """Return every connection."""
@@ -133,14 +172,14 @@ def make_engine(url: str) -> Engine:
         connect_args={"timeout": BUSY_TIMEOUT_S, "check_same_thread": False},
         **pool,
     )
-    event.listen(engine, "connect", _prepare_sqlite)
-    event.listen(engine, "begin", _begin_sqlite)
+    event.listen(engine, "connect", prepare_connection)
+    event.listen(engine, "begin", SqliteBegin())
     return engine
 
 
-def open_database(url: str) -> Database:
+def open_database(url: str, observer: WriteObserver | None = None) -> Database:
     """Open `url` without touching its schema."""
-    return Database(make_engine(url))
+    return Database(make_engine(url), observer)
 
 
 def alembic_config(url: str) -> Config:
@@ -154,24 +193,3 @@ def alembic_config(url: str) -> Config:
 def migrate(url: str) -> None:
     """Bring the schema of `url` to the newest version, from whatever version it has."""
     command.upgrade(alembic_config(url), "head")
-
-
-def _prepare_sqlite(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
-    if not isinstance(dbapi_connection, sqlite3.Connection):
-        return
-    # Transactions are opened explicitly by `_begin_sqlite`.
-    dbapi_connection.isolation_level = None
-    pragmas = (
-        "journal_mode=WAL",
-        "synchronous=FULL",
-        "foreign_keys=ON",
-        # The server copies the log itself, beside its commits; this is only a limit to its length.
-        f"wal_autocheckpoint={LONGEST_LOG_PAGES}",
-    )
-    for pragma in pragmas:
-        dbapi_connection.execute(f"PRAGMA {pragma}")
-
-
-def _begin_sqlite(connection: Connection) -> None:
-    writes = connection.get_execution_options().get("reembody_writes", False)
-    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")

@@ -18,6 +18,7 @@ from app.features.context import AppContext
 from app.features.live import Hub
 from app.features.rate_limit import RateLimiter
 from app.features.sessions.recovery import stop_running_clocks
+from app.features.storage_health import StorageHealth
 from app.features.studies.service import add_shipped
 from app.features.telemetry.fold import Folder
 from app.features.telemetry.summaries import Summariser
@@ -43,12 +44,14 @@ def create_app(
     `on_first_password`), stores the shipped studies and pauses phases that a crash cut off.
     """
     settings = settings or Settings()
-    clock = clock or Clock()
+    clock, hub = clock or Clock(), Hub()
+    storage = StorageHealth(clock, settings.data_dir, settings.low_disk_bytes, hub.publish_storage)
     context = AppContext(
         settings=settings,
-        database=open_database(settings.resolved_database_url),
+        database=open_database(settings.resolved_database_url, storage),
         clock=clock,
-        hub=Hub(),
+        hub=hub,
+        storage=storage,
         login_limiter=RateLimiter(LOGIN_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
         pairing_limiter=RateLimiter(PAIRING_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
     )

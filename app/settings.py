@@ -14,8 +14,9 @@ class Settings(BaseSettings):
     """Frozen settings, read from `REEMBODY_*` variables and overridden by arguments.
 
     `database_url` empty means the embedded SQLite in `data_dir`. `admin_password` is for scripts;
-    without it the first start makes a random one and prints it once. A running phase is paused
-    after `headset_silent_s` without a frame. `production` switches the interactive API pages off.
+    without it the first start makes a random one and prints it once. Below `low_disk_bytes` of free
+    space in `data_dir` the console warns. A running phase is paused after `headset_silent_s`
+    without a frame. `production` switches the interactive API pages off.
     """
 
     model_config = SettingsConfigDict(env_prefix="REEMBODY_", frozen=True, extra="ignore")
@@ -30,6 +31,7 @@ class Settings(BaseSettings):
     pairing_minutes: float = 10.0
     max_body_bytes: int = 2 * 1024 * 1024
     max_telemetry_message_bytes: int = 256 * 1024
+    low_disk_bytes: int = 1024**3
     headset_silent_s: float = 3.0
 
     @property

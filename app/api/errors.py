@@ -7,7 +7,7 @@ from typing import Any
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from sqlalchemy.exc import DataError, IntegrityError, OperationalError
+from sqlalchemy.exc import DatabaseError, DataError, IntegrityError, OperationalError
 from starlette.exceptions import HTTPException
 
 from app.errors import (
@@ -18,6 +18,7 @@ from app.errors import (
     NotFound,
     ReembodyError,
 )
+from app.features.trouble import BUSY, explain
 
 log = logging.getLogger(__name__)
 
@@ -68,12 +69,7 @@ def install_error_handler(app: FastAPI) -> None:
 
     @app.exception_handler(Exception)
     def anything_else(_: Request, _error: Exception) -> JSONResponse:
-        return error_response(
-            ReembodyError(
-                "something went wrong on the server; nothing was stored",
-                remedy="Try again. If it happens again, the server's log tells why.",
-            )
-        )
+        return _went_wrong()
 
 
 def _install_database_handlers(app: FastAPI) -> None:
@@ -82,12 +78,12 @@ def _install_database_handlers(app: FastAPI) -> None:
     @app.exception_handler(OperationalError)
     def not_now(_: Request, error: OperationalError) -> JSONResponse:
         log.error("the database refused", exc_info=error)
-        return error_response(
-            NotDurable(
-                "the record cannot be written just now; nothing was promised",
-                remedy="Check the disk of the server, then try again.",
-            )
-        )
+        return _not_durable(error)
+
+    @app.exception_handler(DatabaseError)
+    def never(_: Request, error: DatabaseError) -> JSONResponse:
+        log.error("the database failed", exc_info=error)
+        return _went_wrong() if explain(error) is None else _not_durable(error)
 
     @app.exception_handler(IntegrityError)
     def clash(_: Request, error: IntegrityError) -> JSONResponse:
@@ -107,6 +103,21 @@ def _install_database_handlers(app: FastAPI) -> None:
                 remedy="Leave out control characters and numbers beyond all measure.",
             )
         )
+
+
+def _not_durable(error: DatabaseError) -> JSONResponse:
+    trouble = explain(error) or BUSY
+    message = f"{trouble.message}: nothing was stored or promised"
+    return error_response(NotDurable(message, remedy=f"{trouble.remedy} Then try again."))
+
+
+def _went_wrong() -> JSONResponse:
+    return error_response(
+        ReembodyError(
+            "something went wrong on the server; nothing was stored",
+            remedy="Try again. If it happens again, the server's log tells why.",
+        )
+    )
 
 
 def _jsonable(value: Any) -> Any:

@@ -1,6 +1,8 @@
 """Every route of the application, in one place."""
 
 import asyncio
+from datetime import datetime
+from typing import Literal
 
 from fastapi import APIRouter, WebSocket
 from pydantic import BaseModel
@@ -24,11 +26,18 @@ from app.features.telemetry.writer import TelemetryWriter
 
 
 class Health(BaseModel):
-    """Whether the server and its database answer."""
+    """Whether the server and its database answer, and whether the record can be written.
+
+    `low_disk`: little space is left in the data folder.
+    """
 
     status: str
     version: str
     database: str
+    storage: Literal["ok", "failing"]
+    storage_since: datetime | None
+    storage_reason: str | None
+    low_disk: bool
 
 
 def build_router() -> APIRouter:
@@ -49,7 +58,16 @@ def get_health(context: Context) -> Health:
     """Whether the server and its database answer."""
     with context.database.reading() as db:
         db.execute(text("SELECT 1"))
-    return Health(status="ok", version=__version__, database=context.database.engine.dialect.name)
+    storage = context.storage.state()
+    return Health(
+        status="ok",
+        version=__version__,
+        database=context.database.engine.dialect.name,
+        storage=storage.status,
+        storage_since=storage.since,
+        storage_reason=storage.reason,
+        low_disk=storage.low_disk,
+    )
 
 
 async def vr_stream(socket: WebSocket) -> None:

@@ -6,6 +6,7 @@ from app.clock import Clock
 from app.database import Database
 from app.features.live import Hub
 from app.features.rate_limit import RateLimiter
+from app.features.storage_health import StorageHealth
 from app.settings import Settings
 
 
@@ -17,5 +18,6 @@ class AppContext:
     database: Database
     clock: Clock
     hub: Hub
+    storage: StorageHealth
     login_limiter: RateLimiter
     pairing_limiter: RateLimiter

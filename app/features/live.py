@@ -103,6 +103,13 @@ class Hub:
         """Publish "session changed" once this transaction is on disk, and only then."""
         after_commit(db, lambda: self.publish(session_id, "session"))
 
+    def publish_storage(self) -> None:
+        """Tell every reader of every session that storing began or ceased to fail."""
+        with self._lock:
+            readers = [reader for group in self._subscribers.values() for reader in group]
+        for reader in readers:
+            reader.offer("storage", None)
+
     def headset_joined(self, session_id: str) -> None:
         """A headset's socket is open."""
         with self._lock:

@@ -11,18 +11,18 @@ from sqlalchemy.pool import ConnectionPoolEntry
 
 from app import database
 from app.cli import main
+from app.sqlite import prepare_connection
 
 
 def weaken(level: str) -> None:
     """Set `synchronous` of every connection to come."""
-    careful = database._prepare_sqlite
 
     def prepare(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
-        careful(dbapi_connection, _record)
+        prepare_connection(dbapi_connection, _record)
         assert isinstance(dbapi_connection, sqlite3.Connection)
         dbapi_connection.execute(f"PRAGMA synchronous={level}")
 
-    database._prepare_sqlite = prepare
+    database.__dict__["prepare_connection"] = prepare
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ def post_pairing(
     session_id: str, wish: NewPairing, request: Request, db: Writing, context: Context, _: SignedIn
 ) -> PairingView:
     """Show a new code for a device of this session; an older unused code stops working."""
+    context.storage.require_storage()
     session = session_by_id(db, session_id)
     made = new_code(
         db,
@@ -43,6 +44,7 @@ def post_pair(
     request_body: PairRequest, request: Request, response: Response, db: Writing, context: Context
 ) -> PairedView:
     """Use a code up. Guessing is slowed down."""
+    context.storage.require_storage()
     caller = request.client.host if request.client else "unknown"
     context.pairing_limiter.attempt(caller)
     paired = pair(db, code=request_body.code, name=request_body.name, now=context.clock.utc_now())

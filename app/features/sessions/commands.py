@@ -12,12 +12,17 @@ from app.features.sessions.service import state_of
 from app.models import StudySession
 
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw")
+_STARTS = ("start", "begin_phase")
 
 
 def command_of(
     db: Session, context: AppContext, session: StudySession, request: CommandRequest, actor: str
 ) -> Command:
-    """The engine's command; raises InvalidInput where words are missing."""
+    """The engine's command; raises InvalidInput where words are missing, and NotDurable where
+    something would start that cannot be stored.
+    """
+    if request.type in _STARTS:
+        context.storage.require_storage()
     reason = (request.reason or "").strip()
     if request.type in _NEEDS_REASON and not reason:
         raise InvalidInput(

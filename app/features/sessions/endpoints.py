@@ -151,10 +151,17 @@ def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
 async def get_live(
     _: SignedIn, session_id: KnownSession, context: Context
 ) -> AsyncIterator[ServerSentEvent]:
-    """News of a session: `session` on every change, `telemetry` a few times a second."""
+    """News of a session: `session` on every change, `telemetry` a few times a second, and
+    `storage` at first and when the record ceases to be written, or the disk gets low.
+    """
     with context.hub.subscribe(session_id, "telemetry") as subscription:
         yield await _session_event(context, session_id)
+        told = None
         while True:
+            storage = await asyncio.to_thread(context.storage.state)
+            if storage != told:
+                yield ServerSentEvent(data=storage, event="storage")
+                told = storage
             news = await subscription.next(HEARTBEAT_S)
             if not news:
                 yield ServerSentEvent(comment="still here")

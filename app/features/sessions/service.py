@@ -91,8 +91,9 @@ def join(
     """A new session on the next slot of the ledger.
 
     `time_scale` is how many seconds of the client's clock pass per real second; only simulated
-    sessions may set it. Raises InvalidInput, NotFound or Conflict.
+    sessions may set it. Raises InvalidInput, NotFound, Conflict or NotDurable.
     """
+    context.storage.require_storage()
     study = study_by_key(db, study_key)
     version = newest_version(db, study)
     protocol = protocol_of(version)

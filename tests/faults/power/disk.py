@@ -10,7 +10,7 @@ from tests.faults.power.files import Choice, Rng, TracedFile
 from tests.faults.tracing.events import NEVER, Event
 
 Image = dict[str, bytes]
-"""The files of a folder by name."""
+"""The files of a folder by their path in it."""
 REBUILT = "-shm"
 """What the name of a file ends with that is rebuilt, whatever it holds."""
 MOODS = ("nothing", "everything", "scattered", "most", "few", "later first", "earlier first")
@@ -39,7 +39,10 @@ class _Name:
 
 @dataclass
 class Disk:
-    """A folder that was empty before the trace. Feed it with `advance`, then take images."""
+    """A folder that was empty before the trace. Feed it with `replay`, then take images.
+
+    A folder within is there with its first file: nobody cares for empty ones.
+    """
 
     folder: str
     _names: dict[str, _Name] = field(default_factory=dict)
@@ -66,18 +69,18 @@ class Disk:
         """A call has returned: a sync makes certain what had returned before it began."""
         if event.what != "sync":
             return
-        if event.path == self.folder:
-            for name in self._names.values():
-                name.sync(event.began)
-        elif event.path in self._names:
-            file = self._names[event.path].now
-            if file is not None:
-                file.sync(event.began)
+        synced = self._names.get(event.path)
+        if synced is None:
+            for path, name in self._names.items():
+                if str(Path(path).parent) == event.path:
+                    name.sync(event.began)
+        elif synced.now is not None:
+            synced.now.sync(event.began)
 
     def certain(self) -> Image:
         """Only what no power loss can take."""
         return {
-            Path(path).name: bytes(name.certain.certain)
+            self._in_folder(path): bytes(name.certain.certain)
             for path, name in self._names.items()
             if name.certain is not None and not path.endswith(REBUILT)
         }
@@ -89,13 +92,16 @@ class Disk:
         for path, name in sorted(self._names.items()):
             if path.endswith(REBUILT):
                 if rng.random() < 0.5:
-                    found[Path(path).name] = rng.bytes(32768)
+                    found[self._in_folder(path)] = rng.bytes(32768)
                 continue
             versions = name.could_be()
             file = versions[_which(rng, mood, len(versions))]
             if file is not None:
-                found[Path(path).name] = _torn(file, sector, rng, mood)
+                found[self._in_folder(path)] = _torn(file, sector, rng, mood)
         return found
+
+    def _in_folder(self, path: str) -> str:
+        return str(Path(path).relative_to(self.folder))
 
     def _name(self, path: str) -> _Name:
         return self._names.setdefault(path, _Name())
