@@ -12,10 +12,11 @@ from app.api.guards import Guards
 from app.api.pages import install_pages
 from app.api.router import build_router
 from app.clock import Clock
-from app.database import migrate, open_database
+from app.database import open_database
 from app.features.accounts.service import ensure_admin
 from app.features.context import AppContext
 from app.features.live import Hub
+from app.features.opening.service import bring_up_to_date
 from app.features.rate_limit import RateLimiter
 from app.features.sessions.recovery import stop_running_clocks
 from app.features.storage_health import StorageHealth
@@ -89,7 +90,9 @@ def create_app(
 
 
 def _prepare(context: AppContext, on_first_password: Callable[[str], None] | None) -> None:
-    migrate(context.settings.resolved_database_url)
+    kept = bring_up_to_date(context.settings, context.clock)
+    if kept is not None:
+        log.warning("the database was migrated; as it was before, it is in %s", kept)
     secret = context.settings.admin_password
     now = context.clock.utc_now()
     with context.database.writing() as db:

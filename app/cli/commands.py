@@ -136,6 +136,46 @@ def rehearse(
         fail(str(error))
 
 
+@app.command()
+def backup(
+    file: Annotated[Path, typer.Argument(help="New file to write.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
+) -> None:
+    """Copy everything into one file, while the server runs or not."""
+    from app.cli.backing_up import back_up_to
+    from app.errors import ReembodyError
+
+    try:
+        print(back_up_to(file, as_json=as_json))
+    except ReembodyError as error:
+        fail(f"{error.message}. {error.remedy}".strip())
+
+
+@app.command()
+def restore(
+    file: Annotated[Path, typer.Argument(help="A file that `backup` wrote.")],
+    replace: Annotated[
+        bool, typer.Option("--replace", help="Replace what is there; it is backed up first.")
+    ] = False,
+    even_though_active: Annotated[
+        bool, typer.Option("--even-though-active", help="Also while sessions are active.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
+) -> None:
+    """Put a backup in the place of everything that is there."""
+    from app.cli.backing_up import restore_from
+    from app.errors import ReembodyError
+
+    try:
+        print(
+            restore_from(
+                file, replace=replace, even_though_active=even_though_active, as_json=as_json
+            )
+        )
+    except ReembodyError as error:
+        fail(f"{error.message}. {error.remedy}".strip())
+
+
 def fail(message: str) -> NoReturn:
     """Say what is wrong and leave with the status for unusable input."""
     print(f"reembody: {message}", file=sys.stderr)

@@ -4,16 +4,26 @@ import sys
 
 import uvicorn
 
+from app.clock import Clock
+from app.errors import ReembodyError
+from app.features.opening.service import prepare_database
 from app.main import create_app
 from app.settings import Settings
 
+UNUSABLE = 2
 
-def serve_forever(*, host: str | None, port: int | None) -> None:
-    """Serve until interrupted; says where, and on the first start the admin's password."""
+
+def serve_forever(*, host: str | None, port: int | None, new_database: bool = False) -> None:
+    """Serve until interrupted; says where, and on the first start the admin's password.
+
+    A database that cannot be worked with ends it before it listens, saying why and what to do;
+    `new_database` begins an empty one in the place of one in quarantine.
+    """
     given = {"host": host, "port": port}
     settings = Settings().model_copy(
         update={name: value for name, value in given.items() if value is not None}
     )
+    _prepare(settings, new_database=new_database)
     app = create_app(settings, on_first_password=_tell_password)
     url = f"http://{settings.host}:{settings.port}"
     print(f"Reembody   {url}\nTablet     {url}/tablet\nData       {_where(settings)}", flush=True)
@@ -28,6 +38,16 @@ def serve_forever(*, host: str | None, port: int | None) -> None:
         server_header=False,
         timeout_graceful_shutdown=5,
     )
+
+
+def _prepare(settings: Settings, *, new_database: bool) -> None:
+    try:
+        kept = prepare_database(settings, Clock(), new_database=new_database)
+    except ReembodyError as error:
+        print(f"reembody: {error.message}. {error.remedy}", file=sys.stderr)
+        raise SystemExit(UNUSABLE) from error
+    if kept is not None:
+        print(f"Backup     {kept}, made before the database was migrated", flush=True)
 
 
 def _where(settings: Settings) -> str:

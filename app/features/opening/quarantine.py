@@ -1,0 +1,74 @@
+"""Putting a damaged database away, never deleting it.
+
+Each goes into a folder of its own, `quarantine/UTC/`, with its log and a note. The note's name says
+how far things are: `moving` while files are moved (a start that finds it goes on with that),
+`unresolved` until somebody has decided what to work with instead, `resolved` from then on.
+"""
+
+import os
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+MOVING, UNRESOLVED, RESOLVED = "moving.txt", "unresolved.txt", "resolved.txt"
+SUFFIXES = ("", "-wal", "-shm", "-journal")
+
+
+@dataclass(frozen=True)
+class Quarantine:
+    """The quarantine beside the database `file`."""
+
+    file: Path
+
+    @property
+    def folder(self) -> Path:
+        """Where everything is that was ever put away."""
+        return self.file.absolute().parent / "quarantine"
+
+    def put_away(self, why: str, now: datetime) -> Path:
+        """Move the database with all that belongs to it, unchanged; the folder it is in now."""
+        place = self.folder / f"{now:%Y%m%dT%H%M%S.%fZ}"
+        place.mkdir(parents=True)
+        note = place / MOVING
+        note.write_text(
+            f"{self.file.absolute()} was put away on {now.isoformat()}.\n"
+            f"Why: {why}.\n"
+            "What to do: see docs/backups.md. Nothing here was changed, and nothing needs it.\n",
+            encoding="utf-8",
+        )
+        _onto_disk(place, self.folder)
+        self._move(place)
+        return place
+
+    def finish(self) -> None:
+        """Move what an interrupted start left behind."""
+        for note in sorted(self.folder.glob(f"*/{MOVING}")):
+            self._move(note.parent)
+
+    def unresolved(self) -> list[Path]:
+        """The folders that nobody has decided about yet, newest last."""
+        return sorted(note.parent for note in self.folder.glob(f"*/{UNRESOLVED}"))
+
+    def resolve(self) -> None:
+        """Somebody has decided: the notes stay, and hold nobody up any more."""
+        for place in self.unresolved():
+            (place / UNRESOLVED).rename(place / RESOLVED)
+
+    def _move(self, place: Path) -> None:
+        for suffix in SUFFIXES:
+            part = self.file.with_name(self.file.name + suffix)
+            # A part that is there already was moved before the interruption.
+            if part.exists() and not (place / part.name).exists():
+                part.rename(place / part.name)
+        _onto_disk(place, self.file.absolute().parent)
+        (place / MOVING).rename(place / UNRESOLVED)
+        _onto_disk(place)
+
+
+def _onto_disk(*folders: Path) -> None:
+    for folder in folders:
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)

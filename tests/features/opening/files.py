@@ -1,0 +1,52 @@
+"""SQLite databases as they are left by a process that ended well, or was killed."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+from app.database import open_database
+from tests.support.filled import fill
+from tests.support.sqlite import fresh_sqlite
+
+KILLED = """
+import os, signal, sqlite3, sys
+file, page_size, rows = sys.argv[1], sys.argv[2], int(sys.argv[3])
+connection = sqlite3.connect(file, isolation_level=None)
+connection.execute(f"PRAGMA page_size={page_size}")
+connection.execute("PRAGMA journal_mode=WAL")
+connection.execute("PRAGMA wal_autocheckpoint=0")
+connection.execute("CREATE TABLE IF NOT EXISTS written (number INTEGER, data BLOB)")
+for number in range(rows):
+    data = os.urandom(100 + 3000 * (number % 4))
+    connection.execute("INSERT INTO written VALUES (?, ?)", (number, data))
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def filled(file: Path, rows: int = 60) -> Path:
+    """A database of ours with rows everywhere, closed as it should be."""
+    opened = open_database(fresh_sqlite(file))
+    fill(opened.engine, rows=rows)
+    opened.close()
+    return file
+
+
+def killed(file: Path, *, rows: int = 40, page_size: int = 4096) -> Path:
+    """Let a process commit rows one by one and kill it: everything is in the log."""
+    arguments = [sys.executable, "-c", KILLED, str(file), str(page_size), str(rows)]
+    assert subprocess.run(arguments, check=False).returncode == -signal.SIGKILL
+    return file
+
+
+def log(file: Path) -> Path:
+    """Its write-ahead log."""
+    return Path(f"{os.fspath(file)}-wal")
+
+
+def flip(file: Path, at: int) -> None:
+    """Turn one bit of a file."""
+    data = bytearray(file.read_bytes())
+    data[at] ^= 1
+    file.write_bytes(data)
