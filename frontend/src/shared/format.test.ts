@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { ago, clockFace, duration, number } from "./format";
-import { seconds } from "./units";
+import { ago, clockFace, duration, latencyDifference, latencyWithin, number } from "./format";
+import { milliseconds, seconds } from "./units";
 
 describe("formats", () => {
   it("cut the clock's seconds off instead of rounding them up", () => {
@@ -22,6 +22,20 @@ describe("formats", () => {
   it("use the notation of the language", () => {
     expect(number(1.0407, "en")).toBe("1.04");
     expect(number(1.0407, "de")).toBe("1,04");
+  });
+
+  it("write a measured latency with its uncertainty, which is not rounded away", () => {
+    const within = (value: number, half: number, language: string) =>
+      latencyWithin(milliseconds(value), milliseconds(half), language);
+    expect(within(124.98, 0.05, "en")).toBe("125.0 ± 0.1 ms");
+    expect(within(350.16, 0.21, "de")).toBe("350,2 ± 0,3 ms");
+    expect(within(-0.04, 0.05, "en")).toBe("0.0 ± 0.1 ms");
+    expect(within(-12.34, 1, "en")).toBe("−12.3 ± 1.0 ms");
+  });
+
+  it("write a difference with its sign", () => {
+    expect(latencyDifference(milliseconds(20), "en")).toBe("+20.0 ms");
+    expect(latencyDifference(milliseconds(-20.26), "de")).toBe("−20,3 ms");
   });
 
   it("say how long ago something was", () => {

@@ -24,6 +24,36 @@ export function duration(time: Seconds): string {
 /** `125 ms`. */
 export const latency = (value: Milliseconds): string => `${value} ms`;
 
+/** `125.0 ms`: a latency that was measured, not ordered. */
+export const latencyMeasured = (value: Milliseconds, language: string): string =>
+  `${tenths(value, language)} ms`;
+
+/** `125.0 ± 0.1 ms`: a measured value and half of its interval, which is never rounded down. */
+export function latencyWithin(
+  value: Milliseconds,
+  halfWidth: Milliseconds,
+  language: string,
+): string {
+  const about = Math.ceil(halfWidth * 10) / 10;
+  return `${tenths(value, language)} ± ${tenths(about, language)} ms`;
+}
+
+/** `+20.0 ms`, `−20.0 ms`: how far one is from the other. */
+export function latencyDifference(value: Milliseconds, language: string): string {
+  return `${tenths(value, language, "exceptZero")} ms`;
+}
+
+function tenths(
+  value: number,
+  language: string,
+  signDisplay: "negative" | "exceptZero" = "negative",
+): string {
+  const digits = { minimumFractionDigits: 1, maximumFractionDigits: 1 };
+  return new Intl.NumberFormat(locale(language), { ...digits, signDisplay })
+    .format(value)
+    .replace("-", "−");
+}
+
 /** A number with at most `digits` decimals in the language's own notation. */
 export function number(value: number, language: string, digits = 2): string {
   return new Intl.NumberFormat(locale(language), { maximumFractionDigits: digits }).format(value);

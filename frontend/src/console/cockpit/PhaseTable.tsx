@@ -4,10 +4,19 @@ import { latency, number } from "@shared/format";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
+import { AchievedLatency } from "./AchievedLatency";
 import cockpit from "./Cockpit.module.css";
 import classes from "./Panels.module.css";
 
-const COLUMNS = ["phase", "latency", "active", "completions", "contacts", "contactTime"] as const;
+const COLUMNS = [
+  "phase",
+  "latency",
+  "achieved",
+  "active",
+  "completions",
+  "contacts",
+  "contactTime",
+] as const;
 
 export function PhaseTable({ session }: { readonly session: SessionView }): JSX.Element | null {
   const { t } = useTexts();
@@ -41,13 +50,18 @@ function PhaseRow({ phase }: { readonly phase: PhaseSummary }): JSX.Element {
   const voided = phase.status === "voided";
   return (
     <tr className={voided ? classes.voided : undefined}>
-      <td>
-        {phase.limb !== null && t(`step.task.${phase.limb}`)}
+      <td className={classes.phase}>
+        {phase.limb !== null && (
+          <span className={classes.nowrap}>{t(`step.task.${phase.limb}`)}</span>
+        )}
         {phase.attempt > 1 && ` · ${t("timeline.attempt", { number: phase.attempt })}`}
         {voided && ` · ${t("recorded.voided")}`}
       </td>
       <td>
         {phase.latency_ms === null ? t("timeline.hidden") : latency(milliseconds(phase.latency_ms))}
+      </td>
+      <td>
+        <AchievedLatency phase={phase} />
       </td>
       <td>{number(phase.active_s, language, 1)} s</td>
       <td>{phase.completions}</td>

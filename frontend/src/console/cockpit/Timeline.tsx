@@ -5,6 +5,7 @@ import { milliseconds, seconds } from "@shared/units";
 import { type JSX, useEffect, useRef } from "react";
 import { useTexts } from "../i18n";
 import { stepName } from "../steps";
+import { AchievedInBrief } from "./AchievedLatency";
 import cockpit from "./Cockpit.module.css";
 import { groupSteps, type StepGroup } from "./groupSteps";
 import classes from "./Timeline.module.css";
@@ -77,6 +78,11 @@ function StepRow({ step, phase }: StepRowProps): JSX.Element {
         {t(stepName(step))}
         <span className="visually-hidden">, {t(`timeline.${step.status}`)}</span>
         <Sub step={step} phase={phase} />
+        {phase !== undefined && step.status === "done" && (
+          <span className={classes.sub}>
+            <AchievedInBrief phase={phase} />
+          </span>
+        )}
       </span>
     </li>
   );

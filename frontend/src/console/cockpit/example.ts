@@ -64,6 +64,7 @@ export const session: SessionView = {
   allowed: [],
   devices: [],
   phases: [],
+  alarms: [],
   notes: [],
   scores: [],
 };

@@ -144,6 +144,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/alarms": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Alarms
+         * @description Every alarm that a session had, the newest first.
+         */
+        readonly get: operations["get_alarms_api_sessions__session_id__alarms_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/sessions/{session_id}/answers": {
         readonly parameters: {
             readonly query?: never;
@@ -233,7 +253,8 @@ export interface paths {
         };
         /**
          * Get Live
-         * @description News of a session: `session` on every change, `telemetry` a few times a second.
+         * @description News of a session: `session` on every change, `telemetry` a few times a second, and
+         *     `storage` at first and when the record ceases to be written, or the disk gets low.
          */
         readonly get: operations["get_live_api_sessions__session_id__live_get"];
         readonly put?: never;
@@ -258,6 +279,26 @@ export interface paths {
          * @description Show a new code for a device of this session; an older unused code stops working.
          */
         readonly post: operations["post_pairing_api_sessions__session_id__pairings_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/sessions/{session_id}/receipt": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Receipt
+         * @description Prove from the record what of a session is there; a blinded operator sees no latencies.
+         */
+        readonly get: operations["get_receipt_api_sessions__session_id__receipt_get"];
+        readonly put?: never;
+        readonly post?: never;
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -639,6 +680,92 @@ export interface components {
             readonly step_index: number;
         };
         /**
+         * AlarmView
+         * @description One alarm from its raising to its clearing; `cleared_at` is null while it is open.
+         *
+         *     `value` with its `unit` says how much when it was raised, `client_t_s` when it was on the
+         *     headset's clock. `outcome` says why it was cleared, where there is more to say than that its
+         *     cause was gone.
+         */
+        readonly AlarmView: {
+            /** Cleared At */
+            readonly cleared_at: string | null;
+            /** Client T S */
+            readonly client_t_s: number | null;
+            /** Code */
+            readonly code: string;
+            /** Id */
+            readonly id: string;
+            /** Message */
+            readonly message: string;
+            /** Outcome */
+            readonly outcome: string | null;
+            /**
+             * Severity
+             * @enum {string}
+             */
+            readonly severity: "info" | "warning" | "critical";
+            /**
+             * Since
+             * Format: date-time
+             */
+            readonly since: string;
+            /** Stream */
+            readonly stream: string | null;
+            /** Unit */
+            readonly unit: string | null;
+            /** Value */
+            readonly value: number | null;
+        };
+        /**
+         * Receipt
+         * @description Proof that the form is stored; `duplicate` if it was stored before.
+         */
+        readonly app__features__questionnaires__schemas__Receipt: {
+            /** Duplicate */
+            readonly duplicate: boolean;
+            /** Receipt Id */
+            readonly receipt_id: string;
+            /**
+             * Stored At
+             * Format: date-time
+             */
+            readonly stored_at: string;
+        };
+        /**
+         * Receipt
+         * @description What a session's record holds and what it lacks.
+         *
+         *     `complete` is true where `problems` is empty: nothing that was made is missing or damaged, the
+         *     event log's hash chain holds, and the stored completions follow from the stored contacts. A
+         *     session that still runs may lack what its headset has yet to send.
+         */
+        readonly app__features__receipts__service__Receipt: {
+            /** Achieved Latency */
+            readonly achieved_latency: readonly components["schemas"]["LatencyReceipt"][];
+            readonly chain: components["schemas"]["ChainCheck"];
+            /** Chain Ok */
+            readonly chain_ok: boolean;
+            /** Complete */
+            readonly complete: boolean;
+            /** Completions */
+            readonly completions: readonly components["schemas"]["CompletionReceipt"][];
+            /** Problems */
+            readonly problems: readonly string[];
+            /** Product Version */
+            readonly product_version: string;
+            /** Session Id */
+            readonly session_id: string;
+            /** Simulated */
+            readonly simulated: boolean;
+            /** Status */
+            readonly status: string;
+            /** Streams */
+            readonly streams: readonly components["schemas"]["StreamReceipt"][];
+            /** Study */
+            readonly study: string;
+        };
+        /**
          * AttemptView
          * @description A session that holds or held a slot.
          */
@@ -661,6 +788,18 @@ export interface components {
             readonly reason: string | null;
             /** Session Id */
             readonly session_id: string;
+        };
+        /**
+         * ChainCheck
+         * @description Whether a log verifies; `broken_at` is the first seq that does not.
+         */
+        readonly ChainCheck: {
+            /** Broken At */
+            readonly broken_at?: number | null;
+            /** Events */
+            readonly events: number;
+            /** Ok */
+            readonly ok: boolean;
         };
         /**
          * CheckResult
@@ -720,6 +859,24 @@ export interface components {
              * @enum {string}
              */
             readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "note";
+        };
+        /**
+         * CompletionReceipt
+         * @description A task phase: how many completions are stored, how many follow from its contacts.
+         *
+         *     `agree`: the same numbers at the same instants, with the same durations. `reason` says why not.
+         */
+        readonly CompletionReceipt: {
+            /** Agree */
+            readonly agree: boolean;
+            /** Phase Id */
+            readonly phase_id: number;
+            /** Reason */
+            readonly reason: string | null;
+            /** Rederived */
+            readonly rederived: number;
+            /** Stored */
+            readonly stored: number;
         };
         /**
          * Credentials
@@ -841,13 +998,26 @@ export interface components {
         };
         /**
          * Health
-         * @description Whether the server and its database answer.
+         * @description Whether the server and its database answer, and whether the record can be written.
+         *
+         *     `low_disk`: little space is left in the data folder.
          */
         readonly Health: {
             /** Database */
             readonly database: string;
+            /** Low Disk */
+            readonly low_disk: boolean;
             /** Status */
             readonly status: string;
+            /**
+             * Storage
+             * @enum {string}
+             */
+            readonly storage: "ok" | "failing";
+            /** Storage Reason */
+            readonly storage_reason: string | null;
+            /** Storage Since */
+            readonly storage_since: string | null;
             /** Version */
             readonly version: string;
         };
@@ -873,6 +1043,34 @@ export interface components {
         readonly LanguageChoice: {
             /** Language */
             readonly language: string;
+        };
+        /**
+         * LatencyReceipt
+         * @description One phase. Null where it could not be told, with the reason; low and high span 95 %.
+         *
+         *     `off`: by more than 10 ms and more than one frame.
+         */
+        readonly LatencyReceipt: {
+            /** Achieved Latency High Ms */
+            readonly achieved_latency_high_ms: number | null;
+            /** Achieved Latency Low Ms */
+            readonly achieved_latency_low_ms: number | null;
+            /** Achieved Latency Ms */
+            readonly achieved_latency_ms: number | null;
+            /** Kind */
+            readonly kind: string;
+            /** Latency Ms */
+            readonly latency_ms: number;
+            /** Limb */
+            readonly limb: string | null;
+            /** Movement S */
+            readonly movement_s: number;
+            /** Off */
+            readonly off: boolean;
+            /** Phase Id */
+            readonly phase_id: number;
+            /** Reason */
+            readonly reason: string | null;
         };
         /**
          * LedgerView
@@ -1000,8 +1198,21 @@ export interface components {
         /**
          * PhaseView
          * @description A phase that was prepared, with what happened in it so far.
+         *
+         *     `side_contacts` counts how often a side turned red, `side_contact_s` sums how long (active s).
+         *
+         *     The achieved latency is measured once the phase is over: `movement_s` is null until then. It
+         *     comes with its 95 % interval; where nothing can be said it is null and `latency_reason` says
+         *     why. `latency_off`: by more than 10 ms and more than one frame. A blinded operator is only told
+         *     whether it is off.
          */
         readonly PhaseView: {
+            /** Achieved High Ms */
+            readonly achieved_high_ms: number | null;
+            /** Achieved Latency Ms */
+            readonly achieved_latency_ms: number | null;
+            /** Achieved Low Ms */
+            readonly achieved_low_ms: number | null;
             /** Active S */
             readonly active_s: number;
             /** Attempt */
@@ -1017,8 +1228,14 @@ export interface components {
             readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "task" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
+            /** Latency Off */
+            readonly latency_off: boolean | null;
+            /** Latency Reason */
+            readonly latency_reason: string | null;
             /** Limb */
             readonly limb: ("hand" | "foot") | null;
+            /** Movement S */
+            readonly movement_s: number | null;
             /** Phase Id */
             readonly phase_id: number;
             /** Side Contact S */
@@ -1034,21 +1251,6 @@ export interface components {
             readonly status: "preparing" | "running" | "paused" | "walk_back" | "freezing" | "done" | "voided";
             /** Step Index */
             readonly step_index: number;
-        };
-        /**
-         * Receipt
-         * @description Proof that the form is stored; `duplicate` if it was stored before.
-         */
-        readonly Receipt: {
-            /** Duplicate */
-            readonly duplicate: boolean;
-            /** Receipt Id */
-            readonly receipt_id: string;
-            /**
-             * Stored At
-             * Format: date-time
-             */
-            readonly stored_at: string;
         };
         /**
          * ScoreView
@@ -1118,8 +1320,12 @@ export interface components {
         /**
          * SessionView
          * @description Everything a cockpit shows. `sequence` and latencies are null for a blinded operator.
+         *
+         *     `alarms`: those that are open, the oldest first.
          */
         readonly SessionView: {
+            /** Alarms */
+            readonly alarms: readonly components["schemas"]["AlarmView"][];
             /** Allowed */
             readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "note") | "enter_answers")[];
             /** Avatar */
@@ -1316,6 +1522,38 @@ export interface components {
             };
             /** Step Index */
             readonly step_index: number;
+        };
+        /**
+         * StreamReceipt
+         * @description One stream of one client run.
+         *
+         *     `sent`: how many frames (or reports) the client made, as far as it could still tell. `gaps`:
+         *     the seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be read;
+         *     they count as missing. `flagged`: frames with values that no summary uses. `sha256` covers every
+         *     bit of every readable frame in the order of seqs, so two copies of a record can be compared.
+         */
+        readonly StreamReceipt: {
+            /** Damaged */
+            readonly damaged: number;
+            /** Epoch */
+            readonly epoch: number;
+            /** Flagged */
+            readonly flagged: number;
+            /** Gaps */
+            readonly gaps: readonly (readonly [
+                number,
+                number
+            ])[];
+            /** Missing */
+            readonly missing: number;
+            /** Sent */
+            readonly sent: number;
+            /** Sha256 */
+            readonly sha256: string;
+            /** Stored */
+            readonly stored: number;
+            /** Stream */
+            readonly stream: string;
         };
         /**
          * StreamView
@@ -1693,6 +1931,37 @@ export interface operations {
             };
         };
     };
+    readonly get_alarms_api_sessions__session_id__alarms_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["AlarmView"][];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     readonly get_answers_api_sessions__session_id__answers_get: {
         readonly parameters: {
             readonly query?: never;
@@ -1886,6 +2155,37 @@ export interface operations {
             };
         };
     };
+    readonly get_receipt_api_sessions__session_id__receipt_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["app__features__receipts__service__Receipt"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     readonly get_streams_api_sessions__session_id__streams_get: {
         readonly parameters: {
             readonly query?: never;
@@ -1938,7 +2238,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["Receipt"];
+                    readonly "application/json": components["schemas"]["app__features__questionnaires__schemas__Receipt"];
                 };
             };
             /** @description Validation Error */
@@ -2427,7 +2727,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["Receipt"];
+                    readonly "application/json": components["schemas"]["app__features__questionnaires__schemas__Receipt"];
                 };
             };
             /** @description Validation Error */
