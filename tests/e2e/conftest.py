@@ -5,8 +5,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, BrowserContext, Page
 
+from app.database import open_database
+from tests.e2e.telemetry_bench import Headset, Mode, Wear
+from tests.features.headset.site import Site
+from tests.features.lab import ok
 from tests.support.browser import (
     ColorScheme,
     ContextFactory,
@@ -16,6 +20,8 @@ from tests.support.browser import (
     take_screenshot,
     watched_contexts,
 )
+from tests.support.bundle import Bundle, bundled
+from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 SCREENSHOTS_VARIABLE = "REEMBODY_SCREENSHOTS"
 HERE = Path(__file__).resolve().parent
@@ -76,3 +82,46 @@ def screenshot(tmp_path: Path) -> Callable[[Page, str], Path]:
 def axe() -> Callable[[Page], list[str]]:
     """`axe(page)` lists serious and critical accessibility violations; assert that it is empty."""
     return accessibility_violations
+
+
+@pytest.fixture(scope="module")
+def telemetry_bundle(tmp_path_factory: pytest.TempPathFactory) -> Bundle:
+    """The client, bundled for the browser."""
+    return bundled("vr/telemetry/testing/bench.ts", tmp_path_factory.mktemp("bundle"))
+
+
+@pytest.fixture
+def headset_site(shared_server: LiveServer) -> Iterator[Site]:
+    """A server with its operator signed in; it runs again if the test before left it dead."""
+    try:
+        _ = shared_server.pid
+    except RuntimeError:
+        shared_server.start()
+    with shared_server.client() as operator:
+        ok(operator.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+        database = open_database(f"sqlite:///{shared_server.data_dir / 'reembody.sqlite'}")
+        yield Site(shared_server, operator, database)
+        database.close()
+
+
+@pytest.fixture
+def wear(
+    headset_site: Site,
+    telemetry_bundle: Bundle,
+    new_context: ContextFactory,
+    page_watch: PageWatch,
+) -> Wear:
+    """A paired headset on a page; `context` None is a new one."""
+    # What a browser says when a server is away.
+    page_watch.allow(r"WebSocket connection to .* failed")
+
+    def put_on(
+        context: BrowserContext | None = None, mode: Mode = "worker", **limits: float
+    ) -> Headset:
+        session_id = headset_site.join()
+        token = headset_site.token(session_id)
+        place = context or new_context()
+        server = headset_site.server
+        return Headset(place, telemetry_bundle, server, session_id, token, mode, limits).load()
+
+    return put_on

@@ -1,0 +1,112 @@
+"""Pages that are left, crash, or are killed with their browser: the journal is delivered later."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from playwright.sync_api import Browser, BrowserContext
+
+from app.models import TelemetryStream
+from tests.e2e.killing import crash, kept_profile, kill_browser
+from tests.e2e.telemetry_bench import (
+    BATCHES_PER_S,
+    FRAMES_PER_BATCH,
+    Headset,
+    Made,
+    Wear,
+    reconciled,
+)
+from tests.features.headset.site import Site
+from tests.support.browser import ContextFactory
+
+MANY = 6000
+"""More frames than a page makes before it is killed."""
+
+
+def test_a_page_that_is_left_takes_its_journal_to_disk(
+    wear: Wear, headset_site: Site, new_context: ContextFactory
+) -> None:
+    """A reload or a closed tab does not wait for the journal's turn, and loses nothing."""
+    context = new_context()
+    headset = wear(context, flushEveryS=600)
+    first = headset.open()
+    headset_site.server.kill()
+    headset.produce(30, speed=None)
+    certain = headset.made
+    headset.page.goto("about:blank")
+    headset_site.server.start()
+    check_both_lives(next_life(headset, context), headset_site, first, certain)
+
+
+def test_a_page_that_crashes_delivers_under_its_old_number(
+    wear: Wear, headset_site: Site, new_context: ContextFactory
+) -> None:
+    """The page's process dies without a server; the next life delivers, and has its own number."""
+    context = new_context()
+    headset = wear(context)
+    first = headset.open()
+    certain = make_and_be_killed(headset, headset_site, lambda: crash(headset.page))
+    again = next_life(headset, context)
+    check_both_lives(again, headset_site, first, certain)
+
+
+def test_a_browser_that_is_killed_delivers_under_its_old_number(
+    wear: Wear, headset_site: Site, browser: Browser, tmp_path: Path
+) -> None:
+    """The same with SIGKILL for the whole browser, which then finds its journal on the disk."""
+    profile = tmp_path / "profile"
+    with kept_profile(browser, profile) as context:
+        headset = wear(context)
+        first = headset.open()
+        certain = make_and_be_killed(headset, headset_site, lambda: kill_browser(profile))
+    with kept_profile(browser, profile) as context:
+        check_both_lives(next_life(headset, context), headset_site, first, certain)
+
+
+def make_and_be_killed(headset: Headset, site: Site, kill: Callable[[], None]) -> Made:
+    """Stream, lose the server, go on, and die in the middle of it; what was certain by then."""
+    headset.produce(2 * BATCHES_PER_S, speed=4.0)
+    site.server.kill()
+    headset.produce(2 * BATCHES_PER_S, speed=4.0)
+    headset.flush()
+    certain = headset.made
+    headset.begin(MANY // FRAMES_PER_BATCH, speed=4.0)
+    time.sleep(0.4)
+    kill()
+    site.server.start()
+    return replace(certain, perhaps=MANY)
+
+
+def next_life(headset: Headset, context: BrowserContext) -> Headset:
+    """The same headset after it was started again."""
+    return replace(headset, context=context).load()
+
+
+def check_both_lives(again: Headset, site: Site, first: int, certain: Made) -> None:
+    """What was in the journal is stored under its own epoch, what is new under a new one."""
+    second = again.open()
+    again.produce(BATCHES_PER_S, speed=4.0)
+    again.drained()
+    runs = {first: certain, second: again.made}
+    found = reconciled(site.server, again.session_id, runs)
+    assert second == first + 1
+    assert found.sound
+    assert found.stored >= sum(2 * made.frames + made.reports for made in runs.values())
+    again.close()
+    told = produced_of(site, again.session_id)
+    assert told["target", second] == again.made.frames
+    # The journal tells of the dead page too how far it had come.
+    assert certain.frames <= told["actual", first] <= certain.frames + certain.perhaps
+
+
+def produced_of(site: Site, session_id: str) -> dict[tuple[str, int], int]:
+    """How far each run has come, as it told the server before it hung up."""
+    deadline = time.monotonic() + 10.0
+    while True:
+        with site.database.reading() as db:
+            rows = db.query(TelemetryStream).filter_by(session_id=session_id).all()
+            told = {(row.stream, row.epoch): row.produced for row in rows}
+        if all(row.produced >= row.next_seq for row in rows) or time.monotonic() > deadline:
+            return told
+        time.sleep(0.05)

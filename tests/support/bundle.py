@@ -1,0 +1,65 @@
+"""Bundling a module of the frontend for a test alone, and loading it on the server's own address.
+
+The product ships no test pages. What only a test needs is bundled by the frontend's own Vite into a
+temporary folder, and the test answers when the browser asks the server for it: so it runs under the
+server's origin and content security policy, as the product's pages do.
+"""
+
+import json
+import mimetypes
+from dataclasses import dataclass
+from pathlib import Path
+
+from playwright.sync_api import BrowserContext, Page, Route
+
+from tests.support.node import install_packages, run_node
+
+FRONTEND = Path(__file__).resolve().parents[2] / "frontend"
+BASE, SCRIPT = "/only-in-tests/", "page.js"
+DOCUMENT = "/api/health"
+"""Any answer of the server that runs no script."""
+# Run in the frontend's folder, so that its packages are found.
+BUILD = """
+import { build } from "vite";
+const [entry, outDir, base, entryFileNames] = JSON.parse(process.argv[1]);
+await build({
+  configFile: false, root: "src", base, logLevel: "warn", publicDir: false,
+  resolve: { alias: { "@shared": process.cwd() + "/src/shared" } },
+  worker: { format: "es" },
+  build: {
+    outDir, emptyOutDir: false, modulePreload: false,
+    rolldownOptions: { input: entry, output: { entryFileNames } },
+  },
+});
+"""
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """A built module in `folder`."""
+
+    folder: Path
+
+    def open(self, context: BrowserContext, server_url: str) -> Page:
+        """A page that has run the module."""
+        # What a test answers comes from nowhere, in Chromium's eyes: a worker from there may reach
+        # this machine only if it is allowed to.
+        context.grant_permissions(["local-network-access"], origin=server_url)
+        context.route(f"{server_url}{BASE}**", lambda route: self._answer(route))
+        page = context.new_page()
+        page.goto(server_url + DOCUMENT)
+        page.evaluate("(address) => import(address)", f"{BASE}{SCRIPT}")
+        return page
+
+    def _answer(self, route: Route) -> None:
+        name = route.request.url.partition(BASE)[2]
+        kind = mimetypes.guess_type(name)[0] or "application/octet-stream"
+        route.fulfill(body=(self.folder / name).read_bytes(), content_type=kind)
+
+
+def bundled(entry: str, folder: Path) -> Bundle:
+    """Bundle `entry`, a path below `frontend/src`, into `folder`."""
+    install_packages(FRONTEND)
+    arguments = json.dumps([str(FRONTEND / "src" / entry), str(folder), BASE, SCRIPT])
+    run_node("--input-type=module", "-e", BUILD, arguments, cwd=FRONTEND)
+    return Bundle(folder)
