@@ -32,7 +32,7 @@ def fit_clock(probes: ClockProbes, limits: ClockLimits = DEFAULT_LIMITS) -> Cloc
         np.concatenate((answered.client_sent_s, answered.client_received_s))
     )
     widening_s = limits.slack_s + resolution_s
-    possible = is_possible(answered, limits, widening_s)
+    possible = is_possible(answered, widening_s)
     used = answered.taken(possible)
     bounds = bounds_of(used, widening_s)
     # How many usable probes came before each impossible one.

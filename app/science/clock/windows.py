@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.clock.band import Band, band_of
-from app.science.clock.limits import ClockLimits
+from app.science.clock.limits import ClockError, ClockLimits
 from app.science.clock.probes import Bounds, FloatArray
 
 Index = npt.NDArray[np.intp]
@@ -97,10 +97,12 @@ def _fitting(bounds: Bounds, index: Index, drift: float) -> tuple[int, Band]:
     band = band_of(bounds.chosen(index), drift)
     if band is not None:
         return len(index), band
-    fits, too_many = 0, len(index)
-    best = None
-    while best is None or too_many - fits > 1:
-        middle = max(1, (fits + too_many) // 2)
+    fits, too_many = 1, len(index)
+    best = band_of(bounds.chosen(index[:1]), drift)
+    if best is None:
+        raise ClockError(f"Probe {index[0]} contradicts itself: leave impossible probes out first.")
+    while too_many - fits > 1:
+        middle = (fits + too_many) // 2
         band = band_of(bounds.chosen(index[:middle]), drift)
         if band is None:
             too_many = middle

@@ -98,6 +98,46 @@ def test_around_a_jump_the_bound_covers_both_sides() -> None:
     assert 0.4 < uncertainty_s.max() < 1.0
 
 
+def _halves(
+    way_s: tuple[float, float], trip_s: tuple[float, float], step_s: float, every_s: float = 1.0
+) -> ClockProbes:
+    """Two hundred probes, with the way up and the round trip of each half. Truth: server = client.
+
+    The server's clock steps between the halves, its wall clock does not.
+    """
+    sent_s = every_s * np.arange(200, dtype=np.float64) + 0.0123
+    second = np.arange(200) >= 100
+    received_s = sent_s + np.where(second, way_s[1], way_s[0])
+    server_s = received_s + np.where(second, step_s, 0.0)
+    back_s = sent_s + np.where(second, trip_s[1], trip_s[0])
+    return ClockProbes(sent_s, server_s, server_s.copy(), back_s, UTC_S + received_s)
+
+
+@pytest.mark.parametrize("way_s", [(0.0, 0.001), (0.04, 0.001)])
+def test_undoing_a_jump_of_the_server_leaves_its_doubt(way_s: tuple[float, float]) -> None:
+    """After the jump the network was fast, but the jump itself is known no better than before."""
+    probes = _halves(way_s, (0.04, 0.002), 5.0)
+    mapping = fit_clock(probes)
+    assert [segment.stepped for segment in mapping.segments] == ["", "server"]
+    server_s, uncertainty_s = mapping.to_server(probes.client_sent_s)
+    assert (np.abs(server_s - probes.client_sent_s) <= uncertainty_s).all()
+
+
+def test_the_course_never_falls_even_where_the_probes_look_like_it() -> None:
+    """The answers begin to come late as the client's clock is set 5 ms ahead."""
+    probes = _halves((0.04, 0.0), (0.04, 0.04), 0.0, every_s=0.041)
+    ahead_s = np.where(np.arange(200) >= 100, 0.005, 0.0)
+    client_s = probes.client_sent_s + ahead_s
+    mapping = fit_clock(replace(probes, client_sent_s=client_s, client_received_s=client_s + 0.04))
+    assert [segment.stepped for segment in mapping.segments] == ["", "client"]
+    first, last = mapping.segments
+    assert last.client_from_s + last.offset_s < first.client_to_s + first.offset_s
+    server_s, uncertainty_s = mapping.to_server(client_s)
+    assert (np.abs(server_s - probes.client_sent_s) <= uncertainty_s).all()
+    course_s, _ = mapping.to_server(np.linspace(-1.0, 10.0, 20_001))
+    assert (np.diff(course_s) >= 0.0).all()
+
+
 def test_a_time_that_was_shown_twice_is_taken_for_the_first() -> None:
     """The client's clock was set back by 30 s: the bound covers the second as well."""
     stepping = replace(PLAIN, client_step_s=-30.0)

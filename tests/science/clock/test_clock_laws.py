@@ -92,6 +92,40 @@ def test_without_a_probe_nothing_is_known() -> None:
     assert np.isinf(uncertainty_s).tolist() == [True, True, False]
 
 
+def test_only_impossible_probes_tell_nothing() -> None:
+    """Back before it went, or handled for longer than it was away: nothing to go by."""
+    backwards = _probes(5.0, way_s=-0.25, count=4)
+    assert fit_clock(backwards).segments == ()
+    away = _probes(5.0, way_s=0.1, count=4)
+    handled = replace(away, server_sent_s=away.server_sent_s + 0.5)
+    assert fit_clock(handled).segments == ()
+
+
+def test_a_wander_within_the_slack_cuts_nothing() -> None:
+    """Without delay and 80 us to either side of a line: one segment, and the bound covers it."""
+    probes = _probes(1.0, count=200)
+    server_s = probes.server_received_s + 80e-6 * np.sin(probes.client_sent_s / 12.0)
+    probes = replace(probes, server_received_s=server_s, server_sent_s=server_s)
+    mapping = fit_clock(probes)
+    assert [segment.left_out for segment in mapping.segments] == [0]
+    server_s, uncertainty_s = mapping.to_server(probes.client_sent_s)
+    assert (np.abs(server_s - probes.server_received_s) <= uncertainty_s).all()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_told_lies_between_the_bounds(seed: int) -> None:
+    """Also where the ways are so uneven that the mean of the probes' offsets does not."""
+    rng = np.random.default_rng(seed)
+    sent_s = np.cumsum(rng.uniform(0.5, 1.5, 12))
+    up_s = 0.05 * rng.beta(0.2, 0.6, 12)
+    probes = ClockProbes(sent_s, sent_s + up_s, sent_s + up_s, sent_s + 0.05)
+    mapping = fit_clock(probes)
+    server_s, _ = mapping.to_server(sent_s)
+    low, high = mapping.placed[0].bounds_at(sent_s)
+    assert (server_s - sent_s >= low).all()
+    assert (server_s - sent_s <= high).all()
+
+
 def test_away_from_the_probes_the_bound_grows_with_the_drift_limit() -> None:
     """Before the first and behind the last: 500 ppm of the distance, more or less the own drift."""
     mapping = fit_clock(_probes(2.0, way_s=0.001, drift=100e-6))
