@@ -77,12 +77,12 @@ def _install_database_handlers(app: FastAPI) -> None:
 
     @app.exception_handler(OperationalError)
     def not_now(_: Request, error: OperationalError) -> JSONResponse:
-        log.error("the database refused", exc_info=error)
+        _log_refusal(error)
         return _not_durable(error)
 
     @app.exception_handler(DatabaseError)
     def never(_: Request, error: DatabaseError) -> JSONResponse:
-        log.error("the database failed", exc_info=error)
+        _log_refusal(error)
         return _went_wrong() if explain(error) is None else _not_durable(error)
 
     @app.exception_handler(IntegrityError)
@@ -103,6 +103,15 @@ def _install_database_handlers(app: FastAPI) -> None:
                 remedy="Leave out control characters and numbers beyond all measure.",
             )
         )
+
+
+def _log_refusal(error: DatabaseError) -> None:
+    trouble = explain(error)
+    if trouble is None:
+        log.error("the database refused", exc_info=error)
+    else:
+        # Where it came from was logged when it began; a full disk must not be filled by telling.
+        log.error("a request was refused: %s (%s)", trouble.message, error.orig)
 
 
 def _not_durable(error: DatabaseError) -> JSONResponse:

@@ -1,0 +1,203 @@
+"""A time in which the server cannot write, watched from outside while headsets stream.
+
+The watch asks all the while as people would: reads, words, starts, the server's health. It notes
+every answer, when the alarm could be seen, when something new was refused, and when all was well.
+"""
+
+import asyncio
+import json
+import time
+import uuid
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from typing import Any
+
+from httpx2 import AsyncClient, Response
+
+from tests.faults.streaming import StreamingHeadset, stream
+from tests.rehearsal.performed import STUDY
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+BEFORE_S, AFTER_S, LOOK_EVERY_S = 1.5, 1.0, 0.05
+GIVE_UP_S = 30.0
+READS = (f"/api/studies/{STUDY}/sessions", "/api/studies", f"/api/studies/{STUDY}/ledger")
+
+
+@dataclass
+class Watch:
+    """What was seen. Times in s: `noticed_s` from the cause to the alarm; the alarm and the
+    refusal since the first commit that failed; recovery since the server could write again.
+    `acked_during`: messages that were acknowledged although nothing could be stored. `console`:
+    what an open page was told of storage. `answers`: how many by (reads, writes) and status.
+    """
+
+    noticed_s: float = float("nan")
+    alarm_s: float = float("nan")
+    refusal_s: float = float("nan")
+    recovery_s: float = float("nan")
+    restart_s: float = float("nan")
+    longest_wait_s: float = 0.0
+    longest_queue: int = 0
+    acked_during: int = 0
+    reason: str = ""
+    console: list[str] = field(default_factory=list)
+    refusals: list[dict[str, Any]] = field(default_factory=list)
+    answers: Counter[tuple[str, int]] = field(default_factory=Counter)
+
+
+@dataclass
+class Outage:
+    """`begin` makes writing impossible, `end` possible again; it lasts `lasts_s`.
+
+    `latecomer` connects its headset only when nothing can be written any more.
+    """
+
+    server: LiveServer
+    headsets: Sequence[StreamingHeadset]
+    begin: Callable[[], object]
+    end: Callable[[], object]
+    lasts_s: float
+    latecomer: StreamingHeadset | None = None
+    watch: Watch = field(default_factory=Watch)
+    _streaming: bool = True
+
+    async def run(self) -> Watch:
+        """Stream, have the outage in the middle, and wait until everything is acknowledged."""
+        async with AsyncClient(base_url=self.server.url, timeout=GIVE_UP_S) as client:
+            credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+            (await client.post("/api/login", json=credentials)).raise_for_status()
+            async with asyncio.TaskGroup() as group:
+                group.create_task(self._stream(self.headsets))
+                try:
+                    await asyncio.sleep(BEFORE_S)
+                    await self._outage(client, group)
+                    await asyncio.sleep(AFTER_S)
+                finally:
+                    self._streaming = False
+        return self.watch
+
+    async def _stream(self, headsets: Sequence[StreamingHeadset]) -> None:
+        await stream(self.server, headsets, lambda: self._streaming)
+
+    async def _outage(self, client: AsyncClient, group: asyncio.TaskGroup) -> None:
+        planned = await self._new_session(client)
+        listening = asyncio.create_task(self._listen(client, planned))
+        await asyncio.sleep(LOOK_EVERY_S)
+        began_s = time.monotonic()
+        self.begin()
+        try:
+            # Who asks before anybody knows waits longest.
+            first = asyncio.create_task(self._command(client, planned, "note"))
+            since = await self._alarm(client)
+            self.watch.noticed_s = time.monotonic() - began_s
+            await first
+            if self.latecomer is not None:
+                group.create_task(self._stream([self.latecomer]))
+            acked = self._acked()
+            async with asyncio.TaskGroup() as asking:
+                asking.create_task(self._ask_to_start(client, planned, since))
+                asking.create_task(self._keep_asking(client, planned, began_s + self.lasts_s))
+            self.watch.acked_during = self._acked() - acked
+        finally:
+            self.end()
+        ended_s = time.monotonic()
+        await self._until(client, lambda health: health["storage"] == "ok")
+        self.watch.recovery_s = time.monotonic() - ended_s
+        started = await self._command(client, planned, "start")
+        assert started.status_code == 200, started.text
+        self.watch.restart_s = time.monotonic() - ended_s
+        listening.cancel()
+
+    async def _listen(self, client: AsyncClient, session_id: str) -> None:
+        """What the page of a session is told of storage."""
+        async with client.stream("GET", f"/api/sessions/{session_id}/live") as answer:
+            told = ""
+            async for line in answer.aiter_lines():
+                if line.startswith("data:") and told == "storage":
+                    self.watch.console.append(json.loads(line[5:])["status"])
+                told = line.removeprefix("event:").strip() if line.startswith("event:") else told
+
+    async def _alarm(self, client: AsyncClient) -> datetime:
+        """Until health tells; when the first commit failed."""
+        health = await self._until(client, lambda health: health["storage"] == "failing")
+        since = datetime.fromisoformat(health["storage_since"])
+        self.watch.alarm_s = _seconds_since(since)
+        self.watch.reason = health["storage_reason"]
+        return since
+
+    async def _ask_to_start(self, client: AsyncClient, planned: str, since: datetime) -> None:
+        """Whatever would start something: each is refused."""
+        pairing = {"device": "tablet"}
+        self.watch.refusals = [
+            _refusal(await self._command(client, planned, "start")),
+            _refusal(await self._post(client, f"/api/studies/{STUDY}/sessions", {"kind": "test"})),
+            _refusal(await self._post(client, f"/api/sessions/{planned}/pairings", pairing)),
+        ]
+        self.watch.refusal_s = _seconds_since(since)
+
+    async def _keep_asking(self, client: AsyncClient, planned: str, until_s: float) -> None:
+        while time.monotonic() < until_s:
+            for path in READS:
+                await self._get(client, path)
+            for headset in self.headsets:
+                await self._get(client, f"/api/sessions/{headset.session_id}")
+            await self._command(client, planned, "note")
+            await asyncio.sleep(LOOK_EVERY_S)
+            self._look_at_queue()
+
+    async def _until(
+        self, client: AsyncClient, is_it: Callable[[dict[str, Any]], bool]
+    ) -> dict[str, Any]:
+        async with asyncio.timeout(GIVE_UP_S):
+            while True:
+                answer = await self._get(client, "/api/health")
+                health: dict[str, Any] = answer.json()
+                if answer.is_success and is_it(health):
+                    return health
+                self._look_at_queue()
+                await asyncio.sleep(LOOK_EVERY_S)
+
+    async def _new_session(self, client: AsyncClient) -> str:
+        body = {"kind": "test"}
+        answer = await client.post(f"/api/studies/{STUDY}/sessions", json=body)
+        answer.raise_for_status()
+        return str(answer.json()["id"])
+
+    async def _command(self, client: AsyncClient, session_id: str, kind: str) -> Response:
+        body = {"command_id": str(uuid.uuid4()), "expected_version": 0, "type": kind, "text": "x"}
+        if kind == "start":
+            view = await self._get(client, f"/api/sessions/{session_id}")
+            body["expected_version"] = view.json()["version"]
+        return await self._post(client, f"/api/sessions/{session_id}/commands", body)
+
+    async def _get(self, client: AsyncClient, path: str) -> Response:
+        return self._note("reads", time.monotonic(), await client.get(path))
+
+    async def _post(self, client: AsyncClient, path: str, body: dict[str, Any]) -> Response:
+        began_s = time.monotonic()
+        return self._note("writes", began_s, await client.post(path, json=body))
+
+    def _note(self, what: str, began_s: float, answer: Response) -> Response:
+        if what == "writes":
+            self.watch.longest_wait_s = max(self.watch.longest_wait_s, time.monotonic() - began_s)
+        self.watch.answers[what, answer.status_code] += 1
+        return answer
+
+    def _acked(self) -> int:
+        return sum(sum(headset.ledger.acked.values()) for headset in self.headsets)
+
+    def _look_at_queue(self) -> None:
+        longest = max(len(headset.ledger) for headset in self.headsets)
+        self.watch.longest_queue = max(self.watch.longest_queue, longest)
+
+
+def _refusal(answer: Response) -> dict[str, Any]:
+    assert answer.status_code == 503, (answer.status_code, answer.text)
+    refusal: dict[str, Any] = answer.json()["error"]
+    return refusal
+
+
+def _seconds_since(moment: datetime) -> float:
+    return (datetime.now(UTC) - moment).total_seconds()

@@ -1,0 +1,52 @@
+"""What must hold after an outage, and its figures."""
+
+from collections.abc import Sequence
+
+from tests.faults.outage import Watch
+from tests.faults.record import record_of
+from tests.faults.streaming import StreamingHeadset
+from tests.rehearsal.ledger import Reconciliation, reconcile
+from tests.support.server import LiveServer
+
+
+def reconciled(server: LiveServer, headsets: Sequence[StreamingHeadset]) -> list[Reconciliation]:
+    """What each headset knows beside what is stored."""
+    with record_of(server) as db:
+        return [reconcile(db, headset.session_id, headset.ledger) for headset in headsets]
+
+
+def check_outage(watch: Watch, found: Sequence[Reconciliation]) -> None:
+    """Everything sent is stored, once; reads went on; nothing was answered by a 500; what would
+    start something was refused in words.
+    """
+    for one in found:
+        assert one == Reconciliation(one.sent, one.sent, one.sent, 0, 0, 0, 0), one
+        assert one.sent > 0
+    assert watch.acked_during == 0
+    assert watch.console == ["ok", "failing", "ok"]
+    assert {status for what, status in watch.answers if what == "reads"} == {200}
+    assert {status for what, status in watch.answers if what == "writes"} <= {200, 201, 503}
+    assert len(watch.refusals) == 3
+    for refusal in watch.refusals:
+        assert refusal["code"] == "not_durable", refusal
+        assert watch.reason in refusal["message"], refusal
+        assert refusal["remedy"], refusal
+
+
+def outage_figures(name: str, watch: Watch, found: Sequence[Reconciliation]) -> str:
+    """What was seen, in a few lines."""
+    answers = ", ".join(
+        f"{what} {status}: {count}" for (what, status), count in sorted(watch.answers.items())
+    )
+    return (
+        f"\n{name} ({watch.reason})\n"
+        f"  acked {sum(one.acked for one in found)}, lost {sum(one.lost for one in found)}, "
+        f"twice {sum(one.duplicated for one in found)}, "
+        f"acked while nothing could be stored {watch.acked_during}, "
+        f"longest queue of a headset {watch.longest_queue} messages\n"
+        f"  alarm {watch.noticed_s:.2f} s after the cause, {watch.alarm_s:.2f} s after the first "
+        f"commit that failed, refusal {watch.refusal_s:.2f} s; "
+        f"well again {watch.recovery_s:.2f} s, started {watch.restart_s:.2f} s after the cause "
+        f"was gone\n"
+        f"  {answers}; longest wait of a write {watch.longest_wait_s:.2f} s\n"
+    )
