@@ -79,7 +79,7 @@ def test_the_oracle_sees_acks_that_come_before_the_flush(recording: Recording) -
     """The same record with every acknowledgement moved before its flush loses data."""
     careless = recording.with_earlier_acks()
     assert experiment.prove_acks(careless).early > 50
-    crashes = crash(careless, 60, seed=1)
+    crashes = crash(careless, 30, seed=1)
     assert sum(one.verdict.lost for one in crashes) > 0
 
 
@@ -91,7 +91,7 @@ def test_the_oracle_sees_a_database_that_does_not_flush(
     command = [sys.executable, "-m", "tests.faults.weakened", level]
     recording = experiment.record_streaming(tmp_path / "run", 2, 2.5, command)
     assert experiment.prove_acks(recording).early > 20
-    crashes = crash(recording, 60, seed=1)
+    crashes = crash(recording, 30, seed=1)
     assert sum(one.verdict.lost for one in crashes) > 0
 
 

@@ -1,5 +1,6 @@
 """Opening what a power loss left: with SQLite, then as the server's next start would."""
 
+import shutil
 import sqlite3
 from collections.abc import Iterable, Mapping
 from contextlib import closing
@@ -9,8 +10,12 @@ from pathlib import Path
 from sqlalchemy import select
 from sqlalchemy.exc import DatabaseError
 
-from app.database import migrate, open_database
+from app.clock import Clock
+from app.database import open_database
+from app.errors import ReembodyError
+from app.features.opening.service import prepare_database
 from app.models import StudySession, TelemetryStream
+from app.settings import Settings
 from tests.faults.power.disk import Image
 from tests.faults.power.promises import Position, Promise
 from tests.rehearsal.ledger import LedgerJournal, reconcile
@@ -54,10 +59,10 @@ def promised_by(promises: Iterable[Promise], stamp: int) -> Promised:
 
 def write_image(folder: Path, image: Image) -> Path:
     """Put an image into an emptied folder; where its database is."""
-    folder.mkdir(exist_ok=True)
-    for old in folder.iterdir():
-        old.unlink()
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
     for name, content in image.items():
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_bytes(content)
     return folder / DATABASE
 
@@ -77,16 +82,19 @@ def positions_in(database: Path) -> dict[Position, int]:
 
 
 def judge(database: Path, promised: Promised, ledgers: Mapping[str, LedgerJournal]) -> Verdict:
-    """Open an image and compare it with what was promised; `ledgers` by session."""
+    """Start with an image and compare it with what was promised; `ledgers` by session.
+
+    A start that puts the database away as damaged counts as corruption, too.
+    """
     try:
+        prepare_database(Settings(data_dir=database.parent), Clock())
         with closing(sqlite3.connect(database)) as connection:
             (said,) = connection.execute("PRAGMA integrity_check(1)").fetchone()
             strays = connection.execute("PRAGMA foreign_key_check").fetchall()
         if said != "ok" or strays:
             return Verdict(corrupt=f"{said} {strays}")
-        migrate(f"sqlite:///{database}")
         return _compared(database, promised, ledgers)
-    except (sqlite3.DatabaseError, DatabaseError, ValueError) as error:
+    except (sqlite3.DatabaseError, DatabaseError, ReembodyError, ValueError) as error:
         # A ValueError: the product's own checks of what it reads.
         return Verdict(corrupt=str(error))
 
