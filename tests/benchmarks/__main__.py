@@ -6,6 +6,7 @@ Those with a load take its duration (`--seconds`, `--minutes`).
 import argparse
 import importlib
 import json
+import signal
 import sys
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from tests.benchmarks.report import Report, as_table
 
 HERE = Path(__file__).parent
 NAMES = sorted(path.stem for path in HERE.glob("*.py") if "def measure(" in path.read_text())
+TERMINATED = 128 + signal.SIGTERM
 
 
 def main(arguments: list[str]) -> int:
@@ -25,6 +27,8 @@ def main(arguments: list[str]) -> int:
     duration.add_argument("--seconds", type=float, help="how long a load lasts, where there is one")
     duration.add_argument("--minutes", type=float, help="the same in minutes")
     asked = parser.parse_args(arguments)
+    # Whoever ends a benchmark ends its servers too.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
     benchmark = importlib.import_module(f"tests.benchmarks.{asked.name}")
     given = {}
     if asked.seconds or asked.minutes:

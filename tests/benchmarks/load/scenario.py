@@ -48,6 +48,7 @@ class Outcome:
     news: NDArray[np.float64]
     views_s: NDArray[np.float64]
     told: dict[str, dict[str, Any]]
+    consoles_cpu_s: float
     watch: Watch
     verdict: Verdict
     database_bytes: int
@@ -93,6 +94,7 @@ def run_load(folder: Path, load: Load, environment: dict[str, str] | None = None
         news=np.load(news) if news.exists() else np.empty((0, 3)),
         views_s=np.asarray(seen.get("views_s", [])),
         told=told,
+        consoles_cpu_s=seen.get("cpu_s", 0.0),
         watch=watch,
         verdict=verify(url or f"sqlite:///{file}", sessions),
         database_bytes=0 if file is None else file.stat().st_size,

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from app.database import Database, open_database
 from app.features.telemetry.encoding import Frames, decode_frames
-from app.models import ClientReport, TelemetryBatch, TelemetryChunk
+from app.models import AlarmRow, ClientReport, TelemetryBatch, TelemetryChunk
 from app.wire import StreamName, decode_batch
 from app.wire.messages import REPORT_STREAM
 from tests.benchmarks.load.record import Digest
@@ -25,7 +25,8 @@ class Verdict:
     """Frames and reports: handed over, acknowledged, stored; and what is wrong with them.
 
     `lost` were acknowledged and are not stored, `duplicated` are stored more than once, `surplus`
-    were never handed over. `digested`, `differing`: streams that were compared bit by bit.
+    were never handed over. `digested`, `differing`: streams that were compared bit by bit. `alarms`
+    that the server raised.
     """
 
     handed: int = 0
@@ -36,6 +37,7 @@ class Verdict:
     surplus: int = 0
     digested: int = 0
     differing: int = 0
+    alarms: int = 0
     batches_left: int = 0
     chunk_bytes: int = 0
     chunk_frames: int = 0
@@ -63,6 +65,8 @@ def _measure(database: Database, verdict: Verdict) -> None:
         size = func.sum(func.length(TelemetryChunk.data))
         found = db.execute(select(size, func.sum(TelemetryChunk.frame_count))).one()
         verdict.chunk_bytes, verdict.chunk_frames = found[0] or 0, found[1] or 0
+        raised = select(func.count()).where(AlarmRow.state == "raised")
+        verdict.alarms = db.scalar(raised) or 0
         verdict.batches_left = db.scalar(select(func.count()).select_from(TelemetryBatch)) or 0
 
 
