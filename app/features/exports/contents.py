@@ -18,6 +18,8 @@ from app.features.analysis.codebook import codebook_frame
 from app.features.analysis.tables import (
     Kind,
     answers_table,
+    clock_mapping_table,
+    clock_probes_table,
     completions_table,
     contacts_table,
     events_table,
@@ -43,6 +45,8 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "completions": completions_table,
     "joint_errors": joint_errors_table,
     "events": events_table,
+    "clock_probes": clock_probes_table,
+    "clock_mapping": clock_mapping_table,
 }
 README = "README.txt"
 FOLDERS = {"samples": ".csv", "receipts": ".json"}
