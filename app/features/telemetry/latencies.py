@@ -22,7 +22,7 @@ _BEYOND_S = 0.5
 def phase_latency(db: Session, session_id: str, phase_id: int) -> AchievedLatency:
     """Measure a phase's latency again; see `app.science.achieved_latency` for what it means.
 
-    Raises NoResultFound where there is no such phase, ValueError where a stored chunk is damaged.
+    Raises NoResultFound where there is no such phase.
     """
     phase = db.get_one(Phase, (session_id, phase_id))
     return measure(phase, phase_runs(db, session_id, phase_id, history_s=history_s(phase)))

@@ -46,7 +46,8 @@ def _between(
 ) -> Iterator[Frames]:
     """Target frames of a stretch of the client's time; pieces are whole, so that some are more."""
     for _, frames in iter_frames(db, session_id, StreamName.TARGET, epoch, since_s=since_s):
-        # What came later in the session would be read for nothing. NaN is not later.
-        if frames.times_s[0] > until_s:
+        # What came later in the session would be read for nothing. One odd time is not "later".
+        finite = frames.times_s[np.isfinite(frames.times_s)]
+        if len(finite) and float(np.median(finite)) > until_s:
             return
         yield frames
