@@ -5,7 +5,6 @@ The remote avatar is the same movement with every joint but the hips delayed by 
 """
 
 import asyncio
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -14,7 +13,8 @@ from numpy.typing import NDArray
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
-from app.rehearsal.body import FRAME_RATE_HZ, Person
+from app.rehearsal.body import Person
+from app.rehearsal.frame_clock import FrameClock
 from app.rehearsal.goals import goal_of
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
@@ -50,24 +50,24 @@ class Buffers:
 class Headset:
     """Runs until the session is over or recording ends with the debriefing.
 
-    `speed`: seconds of the headset's clock per real second (at most; a busy machine is slower).
+    `clock` is the one that the client shows in its probes, too.
     """
 
-    def __init__(self, client: TelemetryClient, person: Person, tasks: Tasks, speed: float) -> None:
+    def __init__(
+        self, client: TelemetryClient, person: Person, tasks: Tasks, clock: FrameClock
+    ) -> None:
         self.client = client
         self.frames_sent: dict[str, int] = {name.value: 0 for name in StreamName}
         self.completions = 0
         self.contacts = 0
-        self._person, self._speed = person, speed
+        self._person, self._clock = person, clock
         self._layouts = {"hand": tasks.hand.layout(), "foot": tasks.foot.layout()}
         self._delay = DelayBuffer(0.0)
         self._run: TimedRun | None = None
         self._phase_id = 0
         self._buffers = Buffers()
-        self._frame = 0
         self._t_pose_since_s: float | None = None
         self._materialised = False
-        self._started_s = time.monotonic()
 
     @property
     def _goes_on_alone(self) -> bool:
@@ -78,11 +78,11 @@ class Headset:
     @property
     def t_s(self) -> float:
         """The headset's monotonic clock: the time of the present frame."""
-        return self._frame / FRAME_RATE_HZ
+        return self._clock.t_s
 
     async def run(self) -> None:
         """Draw frame after frame while the session lasts."""
-        self._started_s = time.monotonic()
+        self._clock.start()
         while True:
             state = self.client.state
             if state is None or state.status in ("completed", "aborted", "withdrawn"):
@@ -100,9 +100,8 @@ class Headset:
         A rehearsal faster than life also waits for the server: else its orders would come late in
         the headset's time. A headset in real time cannot wait, and goes on by its journal.
         """
-        due_s = self._started_s + self.t_s / self._speed
-        await asyncio.sleep(max(0.0, due_s - time.monotonic()))
-        if self._speed > 1.0:
+        await asyncio.sleep(max(0.0, self._clock.due_in_s))
+        if self._clock.speed > 1.0:
             await self.client.at_most_waiting(MESSAGES_AHEAD)
 
     async def _follow(self, state: HeadsetState) -> None:
@@ -154,7 +153,7 @@ class Headset:
 
     async def _draw(self, *, recording: bool) -> None:
         """One frame: the person's pose, the delayed avatar, its contacts, and the record."""
-        self._frame += 1
+        self._clock.frame += 1
         t_s, run = self.t_s, self._run
         goal = None
         if isinstance(run, BoxRun):

@@ -22,6 +22,7 @@ from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
 from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, perform
+from app.rehearsal.frame_clock import FrameClock
 from app.rehearsal.headset import Headset
 
 Json = dict[str, Any]
@@ -87,7 +88,7 @@ async def assembled(
     journal: Journal | None = None,
 ) -> AsyncIterator[Cast]:
     """Three paired devices in a new session that waits for its start; raises as `rehearse`."""
-    began_s = time.monotonic()
+    clock = FrameClock(plan.speed)
     rng = np.random.default_rng(plan.seed)
     person = make_person(rng, plan.capture)
     async with AsyncExitStack() as stack:
@@ -103,11 +104,11 @@ async def assembled(
             url=f"{plan.url.replace('http', 'ws', 1)}/api/vr/stream",
             token=paired["token"],
             name="reembody rehearsal",
-            monotonic_s=lambda: (time.monotonic() - began_s) * plan.speed,
+            monotonic_s=clock.now_s,
             journal=journal if journal is not None else Journal(),
         )
         await stack.enter_async_context(socket)
-        headset = Headset(socket, person, tasks_of(socket), plan.speed)
+        headset = Headset(socket, person, tasks_of(socket), clock)
         yield Cast(operator, Tablet(tablet_http), headset, person, rng, say)
 
 

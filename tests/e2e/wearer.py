@@ -3,7 +3,6 @@
 import asyncio
 import json
 import threading
-import time
 from types import TracebackType
 from typing import Self
 
@@ -13,6 +12,7 @@ import numpy as np
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
 from app.rehearsal.body import make_person
+from app.rehearsal.frame_clock import FrameClock
 from app.rehearsal.headset import Headset
 
 
@@ -46,14 +46,14 @@ class Wearer:
         paired = httpx2.post(
             f"{self._url}/api/devices/pair", json={"code": self._code, "name": "headset"}
         ).json()
-        began_s = time.monotonic()
+        clock = FrameClock(1.0)
         async with TelemetryClient(
             url=f"{self._url.replace('http', 'ws', 1)}/api/vr/stream",
             token=paired["token"],
             name="test headset",
-            monotonic_s=lambda: time.monotonic() - began_s,
+            monotonic_s=clock.now_s,
         ) as client:
             assert client.welcome is not None
             tasks = Tasks.model_validate_json(json.dumps(client.welcome.tasks))
             person = make_person(np.random.default_rng(7), None)
-            await Headset(client, person, tasks, speed=1.0).run()
+            await Headset(client, person, tasks, clock).run()

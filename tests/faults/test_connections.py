@@ -17,6 +17,7 @@ from app.models import ClientReport
 from app.rehearsal.answers import fill_in
 from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, answer, operate
+from app.rehearsal.frame_clock import FrameClock
 from app.rehearsal.headset import FRAMES_PER_BATCH, MESSAGES_AHEAD, Headset
 from app.rehearsal.rehearse import RehearsalPlan, assembled, tasks_of
 from app.wire import StreamName
@@ -142,11 +143,12 @@ def test_a_headset_that_starts_again_goes_on_with_the_time_that_is_left(
         old = cast.headset.client
         await old.__aexit__(None, None, None)
         await asyncio.sleep(RESTART_S)
+        clock = FrameClock(SPEED)
         async with TelemetryClient(
-            old.url, old.token, old.name, old.monotonic_s, journal=second
+            old.url, old.token, old.name, clock.now_s, journal=second
         ) as client:
             person = make_person(np.random.default_rng(3), None)
-            cast.headset = Headset(client, person, tasks_of(client), SPEED)
+            cast.headset = Headset(client, person, tasks_of(client), clock)
             await cast.headset.run()
 
     outcome = rehearse_with(live_server, start_again, ledger)

@@ -8,6 +8,7 @@ import numpy as np
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
 from app.rehearsal.body import make_person
+from app.rehearsal.frame_clock import FrameClock
 from app.rehearsal.headset import Headset
 from app.wire.messages import CompletionReport, ContactReport, PhaseOrder
 from tests.protocol.helpers import study
@@ -21,7 +22,7 @@ def play(seed: int, phase: PhaseOrder) -> InstantServer:
     server = InstantServer(phase)
     person = make_person(np.random.default_rng(seed), None)
     client = cast("TelemetryClient", server)
-    asyncio.run(Headset(client, person, shipped_tasks(), AS_FAST_AS_IT_GOES).run())
+    asyncio.run(Headset(client, person, shipped_tasks(), FrameClock(AS_FAST_AS_IT_GOES)).run())
     return server
 
 
