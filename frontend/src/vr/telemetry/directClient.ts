@@ -50,6 +50,7 @@ export class DirectClient implements TelemetryClient {
   #state: HeadsetState | null = null;
   #closing: Promise<void> | null = null;
   #told = "";
+  #toldAll = "";
 
   constructor(options: TelemetryOptions, ground: Ground) {
     this.#ground = ground;
@@ -211,7 +212,8 @@ export class DirectClient implements TelemetryClient {
 
   #tick(): void {
     void this.#journal.tidy();
-    this.#tellStatus(this.status);
+    const status = this.status;
+    if (this.#toldAll !== JSON.stringify(status)) this.#tellStatus(status);
   }
 
   #changed(): void {
@@ -225,6 +227,7 @@ export class DirectClient implements TelemetryClient {
 
   #tellStatus(status: Status): void {
     this.#told = turningPoint(status);
+    this.#toldAll = JSON.stringify(status);
     this.#statuses.tell(status);
   }
 }

@@ -100,9 +100,10 @@ export class Connection {
     const ending = await channel.ended;
     const conversation = this.#conversation;
     this.#conversation = null;
-    await conversation?.stop();
     this.failure ??= finalFailure(ending);
+    // At once: a running phase has to stop its clock.
     this.#parts.hooks.onChange();
+    await conversation?.stop();
     return conversation !== null;
   }
 

@@ -1,6 +1,7 @@
 /** What a client does on a connection that was welcomed: send the journal, probe, announce. */
 import type { Failure } from "../failure";
 import type { Journal } from "../journal/journal";
+import { JournalLost } from "../journal/reader";
 import type { Limits } from "../limits";
 import type { StreamPosition } from "../wire/fromServer";
 import { Announcer } from "./announcing";
@@ -61,24 +62,34 @@ export class Conversation {
 
   /** The only sender of journaled messages: so they go out in order, and none is left out. */
   async #sendJournal(): Promise<void> {
-    const { reader } = this.#parts.journal;
-    try {
-      while (this.#channel.isOpen) {
-        const entry = await reader.next();
-        if (entry !== null) {
-          await this.#channel.room();
-          this.#channel.send(entry.message);
-        } else if (this.#channel.isOpen) await reader.news();
+    while (this.#channel.isOpen) {
+      try {
+        await this.#sendNext();
+      } catch (error) {
+        if (error instanceof JournalLost) this.#parts.onFailure(lostHere(error));
+        // A disk that cannot be read now may be readable in a moment.
+        else await new Promise((resolve) => setTimeout(resolve, READ_AGAIN_MS));
       }
-    } catch (error) {
-      this.#parts.onFailure({
-        code: "journal_lost",
-        message: error instanceof Error ? error.message : String(error),
-        remedy: "Reload this page: it goes on as a new run. Note what was lost.",
-      });
     }
   }
+
+  async #sendNext(): Promise<void> {
+    const { reader } = this.#parts.journal;
+    const entry = await reader.next();
+    if (entry !== null) {
+      await this.#channel.room();
+      this.#channel.send(entry.message);
+    } else if (this.#channel.isOpen) await reader.news();
+  }
 }
+
+const READ_AGAIN_MS = 500;
+
+const lostHere = ({ message }: JournalLost): Failure => ({
+  code: "journal_lost",
+  message,
+  remedy: "Note the time in the session's record and reload this page: it goes on as a new run.",
+});
 
 const lostOnTheServer = ({ stream, epoch, next_seq }: StreamPosition): Failure => ({
   code: "lost_on_the_server",

@@ -1,45 +1,8 @@
 import { describe, expect, it } from "vitest";
-import { DEFAULT_LIMITS, type Limits } from "../limits";
 import { seeded } from "../testing/frames";
+import { ack, entry, filled, opened, SESSION, toSend } from "../testing/journals";
 import { MemoryBlocks } from "../testing/memoryBlocks";
 import type { Entry } from "./entries";
-import { Journal } from "./journal";
-
-const SESSION = "session";
-
-function entry(stream: string, seqEnd: number, { epoch = 1, size = 10, madeAtMs = 0 } = {}): Entry {
-  return { stream, epoch, seqEnd, message: "x".repeat(size), madeAtMs };
-}
-
-async function opened(
-  store: MemoryBlocks,
-  limits: Partial<Limits> = {},
-  room = async () => Number.POSITIVE_INFINITY,
-): Promise<Journal> {
-  const journal = await Journal.open({ store, limits: { ...DEFAULT_LIMITS, ...limits }, room });
-  await journal.claim(SESSION);
-  return journal;
-}
-
-async function filled(...entries: readonly Entry[]): Promise<[Journal, MemoryBlocks]> {
-  const store = new MemoryBlocks();
-  const journal = await opened(store);
-  for (const one of entries) journal.add(one);
-  return [journal, store];
-}
-
-/** Everything that would be sent now, from the front. */
-async function toSend(journal: Journal): Promise<readonly string[]> {
-  journal.reader.rewind();
-  const found: string[] = [];
-  for (;;) {
-    const next = await journal.reader.next();
-    if (next === null) return found;
-    found.push(`${next.stream}/${next.epoch}/${next.seqEnd}`);
-  }
-}
-
-const ack = (stream: string, next_seq: number, epoch = 1) => ({ stream, epoch, next_seq });
 
 describe("a journal", () => {
   it("gives messages back in the order in which they came", async () => {
@@ -117,85 +80,6 @@ describe("a journal", () => {
     journal.acknowledge([ack("target", 6)]);
     expect(await journal.claim("another")).toBe(true);
     expect(journal.runs).toEqual([]);
-  });
-});
-
-describe("the disk of a journal", () => {
-  it("takes many messages in one write, and those that were acknowledged before not at all", async () => {
-    const [journal, store] = await filled(...[6, 12, 18, 24].map((end) => entry("target", end)));
-    journal.acknowledge([ack("target", 12)]);
-    await journal.flush();
-    expect(store.writes).toBe(1);
-    expect([...store.entries.values()].flat().map(({ seqEnd }) => seqEnd)).toEqual([18, 24]);
-  });
-
-  it("is not touched when there is nothing to do", async () => {
-    const [journal, store] = await filled(entry("target", 6));
-    journal.acknowledge([ack("target", 6)]);
-    await journal.flush();
-    await journal.flush();
-    expect(store.writes).toBe(1);
-    expect(store.blocks.size).toBe(0);
-  });
-
-  it("is emptied by the write after the acknowledgement", async () => {
-    const [journal, store] = await filled(entry("target", 6), entry("target", 12));
-    await journal.flush();
-    journal.acknowledge([ack("target", 12)]);
-    expect(store.blocks.size).toBe(1);
-    await journal.flush();
-    expect([store.blocks.size, store.entries.size, journal.messages]).toEqual([0, 0, 0]);
-  });
-
-  it("keeps a block until all of it is stored, and sends only what is not", async () => {
-    const [journal] = await filled(entry("target", 6), entry("actual", 6), entry("target", 12));
-    await journal.flush();
-    journal.acknowledge([ack("target", 12)]);
-    expect(journal.messages).toBe(3);
-    expect(await toSend(journal)).toEqual(["actual/1/6"]);
-  });
-
-  it("is written to as soon as much has gathered, without waiting for the time", async () => {
-    const store = new MemoryBlocks();
-    const journal = await opened(store, { flushBytes: 100 });
-    for (let end = 1; end <= 10; end++) journal.add(entry("target", end));
-    await journal.tidy();
-    expect(store.writes).toBe(1);
-  });
-
-  it("fails: nothing is lost, the memory stays bounded, and it goes on when it works again", async () => {
-    const store = new MemoryBlocks();
-    const journal = await opened(store, { memoryBytes: 25 });
-    store.failure = new Error("the disk is broken");
-    journal.add(entry("target", 1));
-    await journal.flush();
-    expect(journal.problem).toBe("Error: the disk is broken");
-    expect(journal.hasRoom).toBe(true);
-    for (const end of [2, 3]) journal.add(entry("target", end));
-    expect([journal.hasRoom, journal.isFull]).toEqual([false, true]);
-    store.failure = null;
-    await journal.flush();
-    expect([journal.hasRoom, journal.isFull, journal.problem]).toEqual([true, false, null]);
-    expect(await toSend(journal)).toEqual(["target/1/1", "target/1/2", "target/1/3"]);
-  });
-
-  it("is full: what is acknowledged is still deleted, which makes room", async () => {
-    const [journal, store] = await filled(entry("target", 1));
-    await journal.flush();
-    store.isFull = new DOMException("no space", "QuotaExceededError");
-    journal.add(entry("target", 2));
-    journal.acknowledge([ack("target", 1)]);
-    await journal.flush();
-    expect(journal.problem).toContain("QuotaExceededError");
-    expect(store.blocks.size).toBe(0);
-    expect(await toSend(journal)).toEqual(["target/1/2"]);
-  });
-
-  it("has lost a block: that is said, not passed over", async () => {
-    const [journal, store] = await filled(entry("target", 1), entry("target", 2));
-    await journal.flush();
-    store.entries.clear();
-    await expect(toSend(journal)).rejects.toThrow("lost 2 messages");
   });
 });
 

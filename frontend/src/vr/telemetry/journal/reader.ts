@@ -73,7 +73,7 @@ export class Reader {
       else throw new JournalLost(`the browser has lost ${block.messages} messages of the journal`);
     }
     const last = blocks.at(-1);
-    if (last === undefined) return;
+    if (last === undefined) throw new JournalLost(`nothing of the journal is at place ${place}`);
     this.#window = { place: last.place + last.messages - entries.length, entries };
   }
 }

@@ -21,6 +21,8 @@ export class FakeServer {
   sessionId = "session";
   /** Nobody gets through while it is false. */
   isUp = true;
+  /** How often a seq was skipped. */
+  resends = 0;
   acknowledges = true;
   answersProbes = true;
   lastEpoch = 0;
@@ -52,6 +54,10 @@ export class FakeServer {
 
   acknowledge(): void {
     this.say({ type: "ack", positions: this.#positions });
+  }
+
+  storedOf(stream: string, epoch: number): readonly string[] {
+    return this.stored.filter((one) => one.startsWith(`${stream}/${epoch}/`));
   }
 
   of(type: string): readonly Said[] {
@@ -98,6 +104,7 @@ export class FakeServer {
     const key = `${stream}/${epoch}`;
     const next = this.positions.get(key) ?? 0;
     if (seqFirst > next) {
+      this.resends++;
       this.say({ type: "resend", stream, epoch, next_seq: next });
       return;
     }

@@ -11,6 +11,9 @@ export class MemoryBlocks implements BlockStore {
   failure: Error | null = null;
   /** Writes that add something fail with it. */
   isFull: Error | null = null;
+  /** Every read fails with it while it is set. */
+  unreadable: Error | null = null;
+  failedReads = 0;
 
   async load(): Promise<Held> {
     return {
@@ -38,6 +41,10 @@ export class MemoryBlocks implements BlockStore {
 
   async read(places: readonly number[]): Promise<readonly (readonly Entry[] | null)[]> {
     await Promise.resolve();
+    if (this.unreadable !== null) {
+      this.failedReads++;
+      throw this.unreadable;
+    }
     return places.map((place) => this.entries.get(place) ?? null);
   }
 

@@ -1,8 +1,10 @@
 /** A client on a fake server and a fake disk; the disk outlives the client, as in a browser. */
+import type { TelemetryClient } from "../client";
 import { DirectClient } from "../directClient";
 import { Journal } from "../journal/journal";
 import { DEFAULT_LIMITS, type Limits } from "../limits";
 import type { FakeServer } from "./fakeServer";
+import { standing } from "./frames";
 import { MemoryBlocks } from "./memoryBlocks";
 
 /** Everything that is waited for in seconds, in milliseconds. */
@@ -44,6 +46,21 @@ export async function openedClient(
 ): Promise<DirectClient> {
   return (await startedClient(...how)).opened();
 }
+
+export const MATERIALISED = { kind: "materialised", t_s: 1 } as const;
+
+/** So many batches of six frames of each stream, and a report after them. */
+export async function produce(producer: TelemetryClient, batches: number): Promise<void> {
+  for (let batch = 0; batch < batches; batch++) {
+    await producer.sendFrames("target", standing(6));
+    await producer.sendFrames("actual", standing(6));
+  }
+  await producer.report(MATERIALISED);
+}
+
+/** So many seqs as the fake server notes them. */
+export const seqs = (stream: string, epoch: number, count: number): readonly string[] =>
+  Array.from({ length: count }, (_, seq) => `${stream}/${epoch}/${seq}`);
 
 /** Until it holds; a test that waits in vain runs into its own time limit. */
 export async function eventually(holds: () => boolean): Promise<void> {

@@ -1,0 +1,92 @@
+import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
+import { DEFAULT_LIMITS } from "../limits";
+import { FakeSocket } from "../testing/fakeSocket";
+import { Channel, type Ending } from "./channel";
+
+const ADDRESS = { url: "ws://test", token: "TOKEN" };
+let socket: FakeSocket;
+let channel: Channel;
+let heard: string[];
+let ending: Ending | null;
+
+beforeEach(() => {
+  vi.useFakeTimers();
+  heard = [];
+  ending = null;
+  const make = (_url: string, protocols: string[]) => {
+    socket = new FakeSocket(protocols, () => undefined);
+    return socket as unknown as WebSocket;
+  };
+  channel = new Channel(
+    ADDRESS,
+    DEFAULT_LIMITS,
+    make,
+    () => heard.push("open"),
+    (text) => heard.push(text),
+  );
+  void channel.ended.then((how) => {
+    ending = how;
+  });
+});
+
+afterEach(() => {
+  vi.useRealTimers();
+});
+
+describe("a channel", () => {
+  it("that is not answered in time ends as a broken one", async () => {
+    socket.opens();
+    await vi.advanceTimersByTimeAsync(9_900);
+    expect(ending).toBe(null);
+    await vi.advanceTimersByTimeAsync(200);
+    expect(ending).toEqual({ code: 1006, reason: "" });
+    expect(socket.readyState).toBe(WebSocket.CLOSED);
+  });
+
+  it("stays open as long as something is heard now and then", async () => {
+    socket.opens();
+    for (let second = 0; second < 60; second += 5) {
+      socket.hears("news");
+      await vi.advanceTimersByTimeAsync(5_000);
+    }
+    expect(ending).toBe(null);
+    await vi.advanceTimersByTimeAsync(2_000);
+    expect(ending).toEqual({ code: 1006, reason: "" });
+  });
+
+  it("ends with the server's code and words, and says nothing after that", async () => {
+    socket.opens();
+    socket.breaks(4401, "replaced");
+    await vi.advanceTimersByTimeAsync(0);
+    expect(ending).toEqual({ code: 4401, reason: "replaced" });
+    socket.hears("late");
+    await vi.advanceTimersByTimeAsync(0);
+    expect([heard, channel.isOpen]).toEqual([["open"], false]);
+  });
+
+  it("does not wait for the handshake of a dead network when it is closed", async () => {
+    socket.opens();
+    const shut = vi.spyOn(socket, "close").mockImplementation(() => undefined);
+    channel.close(1000);
+    await vi.advanceTimersByTimeAsync(0);
+    expect(ending).toEqual({ code: 1000, reason: "" });
+    expect(shut).toHaveBeenCalledWith(1000, "");
+  });
+
+  it("waits while the network takes nothing, and no longer than it is open", async () => {
+    socket.opens();
+    const [first, second] = [vi.fn(), vi.fn()];
+    socket.bufferedAmount = DEFAULT_LIMITS.bufferedBytes;
+    void channel.room().then(first);
+    await vi.advanceTimersByTimeAsync(100);
+    expect(first).not.toHaveBeenCalled();
+    socket.bufferedAmount--;
+    await vi.advanceTimersByTimeAsync(20);
+    expect(first).toHaveBeenCalled();
+    socket.bufferedAmount = DEFAULT_LIMITS.bufferedBytes;
+    void channel.room().then(second);
+    socket.breaks();
+    await vi.advanceTimersByTimeAsync(20);
+    expect(second).toHaveBeenCalled();
+  });
+});

@@ -1,0 +1,95 @@
+import { describe, expect, it } from "vitest";
+import { ack, entry, filled, opened, toSend } from "../testing/journals";
+import { MemoryBlocks } from "../testing/memoryBlocks";
+
+describe("the disk of a journal", () => {
+  it("takes many messages in one write, and those that were acknowledged before not at all", async () => {
+    const [journal, store] = await filled(...[6, 12, 18, 24].map((end) => entry("target", end)));
+    journal.acknowledge([ack("target", 12)]);
+    await journal.flush();
+    expect(store.writes).toBe(1);
+    expect([...store.entries.values()].flat().map(({ seqEnd }) => seqEnd)).toEqual([18, 24]);
+  });
+
+  it("takes what is acknowledged meanwhile, and what joins meanwhile is not lost", async () => {
+    const [journal] = await filled(entry("target", 6), entry("target", 12), entry("target", 18));
+    const writing = journal.tidy();
+    journal.acknowledge([ack("target", 6)]);
+    journal.add(entry("target", 24));
+    await writing;
+    journal.add(entry("target", 30));
+    const rest = ["target/1/12", "target/1/18", "target/1/24", "target/1/30"];
+    expect(await toSend(journal)).toEqual(rest);
+    await journal.flush();
+    expect(await toSend(journal)).toEqual(rest);
+  });
+
+  it("is not touched when there is nothing to do", async () => {
+    const [journal, store] = await filled(entry("target", 6));
+    journal.acknowledge([ack("target", 6)]);
+    await journal.flush();
+    await journal.flush();
+    expect(store.writes).toBe(1);
+    expect(store.blocks.size).toBe(0);
+  });
+
+  it("is emptied by the write after the acknowledgement", async () => {
+    const [journal, store] = await filled(entry("target", 6), entry("target", 12));
+    await journal.flush();
+    journal.acknowledge([ack("target", 12)]);
+    expect(store.blocks.size).toBe(1);
+    await journal.flush();
+    expect([store.blocks.size, store.entries.size, journal.messages]).toEqual([0, 0, 0]);
+  });
+
+  it("keeps a block until all of it is stored, and sends only what is not", async () => {
+    const [journal] = await filled(entry("target", 6), entry("actual", 6), entry("target", 12));
+    await journal.flush();
+    journal.acknowledge([ack("target", 12)]);
+    expect(journal.messages).toBe(3);
+    expect(await toSend(journal)).toEqual(["actual/1/6"]);
+  });
+
+  it("is written to as soon as much has gathered, without waiting for the time", async () => {
+    const store = new MemoryBlocks();
+    const journal = await opened(store, { flushBytes: 100 });
+    for (let end = 1; end <= 10; end++) journal.add(entry("target", end));
+    await journal.tidy();
+    expect(store.writes).toBe(1);
+  });
+
+  it("fails: nothing is lost, the memory stays bounded, and it goes on when it works again", async () => {
+    const store = new MemoryBlocks();
+    const journal = await opened(store, { memoryBytes: 25 });
+    store.failure = new Error("the disk is broken");
+    journal.add(entry("target", 1));
+    await journal.flush();
+    expect(journal.problem).toBe("Error: the disk is broken");
+    expect(journal.hasRoom).toBe(true);
+    for (const end of [2, 3]) journal.add(entry("target", end));
+    expect([journal.hasRoom, journal.isFull]).toEqual([false, true]);
+    store.failure = null;
+    await journal.flush();
+    expect([journal.hasRoom, journal.isFull, journal.problem]).toEqual([true, false, null]);
+    expect(await toSend(journal)).toEqual(["target/1/1", "target/1/2", "target/1/3"]);
+  });
+
+  it("is full: what is acknowledged is still deleted, which makes room", async () => {
+    const [journal, store] = await filled(entry("target", 1));
+    await journal.flush();
+    store.isFull = new DOMException("no space", "QuotaExceededError");
+    journal.add(entry("target", 2));
+    journal.acknowledge([ack("target", 1)]);
+    await journal.flush();
+    expect(journal.problem).toContain("QuotaExceededError");
+    expect(store.blocks.size).toBe(0);
+    expect(await toSend(journal)).toEqual(["target/1/2"]);
+  });
+
+  it("has lost a block: that is said, not passed over", async () => {
+    const [journal, store] = await filled(entry("target", 1), entry("target", 2));
+    await journal.flush();
+    store.entries.clear();
+    await expect(toSend(journal)).rejects.toThrow("lost 2 messages");
+  });
+});
