@@ -11,6 +11,9 @@ from app.main import create_app
 from app.settings import Settings
 
 UNUSABLE = 2
+SWITCH_INTERVAL_S = 0.0005
+"""The event loop and the telemetry writer let go of the interpreter at every call into the network
+or the database. With Python's own 5 ms, each then waits that long for a thread that computes."""
 
 
 def serve_forever(*, host: str | None, port: int | None, new_database: bool = False) -> None:
@@ -25,6 +28,7 @@ def serve_forever(*, host: str | None, port: int | None, new_database: bool = Fa
     )
     _prepare(settings, new_database=new_database)
     app = create_app(settings, on_first_password=_tell_password)
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
     url = f"http://{settings.host}:{settings.port}"
     print(f"Reembody   {url}\nTablet     {url}/tablet\nData       {_where(settings)}", flush=True)
     uvicorn.run(

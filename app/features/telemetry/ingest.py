@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, cast
 
-from sqlalchemy import Table, insert
+from sqlalchemy import Table, insert, select
 from sqlalchemy.orm import Session
 
 from app.features.alarms.alarm import Change
@@ -24,7 +24,7 @@ from app.features.sessions.service import (
 )
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.positions import Positions, certain_active_s
-from app.models import ClockProbe, TelemetryBatch
+from app.models import ClockProbe, Phase, TelemetryBatch
 from app.models.types import new_id
 from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
 from app.wire.messages import Flag, Probed, Produced, Resend
@@ -44,8 +44,8 @@ class Intake:
     context: AppContext
     now: datetime
     positions: Positions = field(init=False)
-    _batches: list[dict[str, Any]] = field(default_factory=list)
-    _probes: list[dict[str, Any]] = field(default_factory=list)
+    _rows: dict[Table, list[dict[str, Any]]] = field(default_factory=dict)
+    _phases: dict[str, frozenset[int]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.positions = Positions(self.db, self.now)
@@ -53,10 +53,20 @@ class Intake:
     def flush(self) -> None:
         """Write what has gathered."""
         self.positions.flush()
-        for table, rows in ((BATCHES, self._batches), (PROBES, self._probes)):
-            if rows:
-                self.db.execute(insert(table), rows)
-                rows.clear()
+        for table, rows in self._rows.items():
+            self.db.execute(insert(table), rows)
+        self._rows.clear()
+
+    def gather(self, table: Table, row: dict[str, Any]) -> None:
+        """Insert a row with the others of its table."""
+        self._rows.setdefault(table, []).append(row)
+
+    def has_phase(self, session_id: str, phase_id: int) -> bool:
+        """Whether the session has this phase; asked once a transaction, as none begins in it."""
+        if session_id not in self._phases:
+            known = self.db.scalars(select(Phase.phase_id).where(Phase.session_id == session_id))
+            self._phases[session_id] = frozenset(known)
+        return phase_id in self._phases[session_id]
 
     def store_batch(
         self, session_id: str, header: BatchHeader, message: bytes, flags: FrameFlags, told: Outcome
@@ -68,7 +78,8 @@ class Intake:
             return
         skip = at.next_seq - header.seq_first
         if skip < header.frame_count:
-            self._batches.append(
+            self.gather(
+                BATCHES,
                 {
                     "session_id": session_id,
                     "stream": str(header.stream),
@@ -78,7 +89,7 @@ class Intake:
                     "phase_id": header.phase_id,
                     "received_at": self.now,
                     "message": message if skip == 0 else _without_first(message, skip),
-                }
+                },
             )
             bad = int(flags.bad[skip:].sum())
             at.stored(header.frame_count - skip)
@@ -91,14 +102,15 @@ class Intake:
     def store_probe(self, session_id: str, epoch: int, probe: Probed) -> None:
         """Keep one raw reading of the clocks."""
         times = probe.model_dump(exclude={"type"})
-        self._probes.append(
+        self.gather(
+            PROBES,
             {
                 "id": new_id(),
                 "session_id": session_id,
                 "epoch": epoch,
                 "server_utc": self.now,
                 **times,
-            }
+            },
         )
 
     def store_produced(self, session_id: str, produced: Produced) -> None:
@@ -125,7 +137,13 @@ class Intake:
         apply_command(self.db, self.context, session, lost, actor="system")
 
     def store_alarm(self, session_id: str, change: Change) -> None:
-        """Put an alarm on the record, and let the pages draw themselves anew."""
+        """Put an alarm on the record, and let the pages draw themselves anew.
+
+        A session that has ended raises none: its end has cleared them all.
+        """
+        raised = change.state == "raised"
+        if raised and session_by_id(self.db, session_id, lock=True).ended_at is not None:
+            return
         if store_change(self.db, session_id, change):
             self.context.hub.publish_after_commit(self.db, session_id)
 

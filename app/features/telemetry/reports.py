@@ -1,8 +1,9 @@
 """Storing a headset's report and acting on it; one that does not fit is kept with the reason."""
 
 from datetime import datetime
+from typing import Any, cast
 
-from sqlalchemy import select
+from sqlalchemy import Table
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
@@ -14,7 +15,8 @@ from app.features.sessions.service import (
 )
 from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
-from app.models import ClientReport, Completion, Contact, Phase
+from app.models import ClientReport, Completion, Contact
+from app.models.types import new_id
 from app.wire.messages import (
     REPORT_STREAM,
     CompletionReport,
@@ -26,6 +28,9 @@ from app.wire.messages import (
 )
 from app.wire.messages import Report as ReportMessage
 
+REPORTS = cast("Table", ClientReport.__table__)
+CONTACTS = cast("Table", Contact.__table__)
+
 
 def store_report(intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome) -> None:
     """Store a report and act on it; one that does not fit is kept with the reason."""
@@ -34,10 +39,8 @@ def store_report(intake: Intake, session_id: str, message: ReportMessage, outcom
         outcome.notices.append(Resend(**at.as_told.model_dump()))
         return
     if message.seq == at.next_seq:
-        # Acting looks at what is stored, so the frames before it must be.
-        intake.flush()
-        refusal = _act(intake.db, intake.context, session_id, message, outcome)
-        intake.db.add(_row(session_id, message, refusal, intake.now))
+        refusal = _take(intake, session_id, message, outcome)
+        intake.gather(REPORTS, _row(session_id, message, refusal, intake.now))
         at.stored(1)
         if refusal is not None:
             outcome.notices.append(
@@ -53,48 +56,54 @@ def store_report(intake: Intake, session_id: str, message: ReportMessage, outcom
 
 def _row(
     session_id: str, message: ReportMessage, refusal: ReembodyError | None, now: datetime
-) -> ClientReport:
-    return ClientReport(
-        session_id=session_id,
-        epoch=message.epoch,
-        seq=message.seq,
-        type=message.body.kind,
-        payload=message.body.model_dump(),
-        accepted=refusal is None,
-        refusal=None if refusal is None else refusal.message[:400],
-        received_at=now,
-    )
+) -> dict[str, Any]:
+    return {
+        "session_id": session_id,
+        "epoch": message.epoch,
+        "seq": message.seq,
+        "type": message.body.kind,
+        "payload": message.body.model_dump(),
+        "accepted": refusal is None,
+        "refusal": None if refusal is None else refusal.message[:400],
+        "received_at": now,
+    }
 
 
-def _act(
-    db: Session,
-    context: AppContext,
-    session_id: str,
-    message: ReportMessage,
-    outcome: Outcome,
+def _take(
+    intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome
 ) -> ReembodyError | None:
     """Do what a report says; the refusal if it does not fit."""
     body = message.body
     try:
-        with db.begin_nested():
-            match body:
-                case PhaseReport():
-                    _act_on_phase(db, context, session_id, body, outcome)
-                case MaterialisedReport():
-                    session = session_by_id(db, session_id, lock=True)
-                    command = Materialise(by="headset", client_t_s=body.t_s)
-                    apply_command(db, context, session, command, actor="headset")
-                case ContactReport():
-                    _require_phase(db, session_id, body.phase_id)
-                    values = body.model_dump(exclude={"kind"})
-                    db.add(Contact(session_id=session_id, epoch=message.epoch, **values))
-                case CompletionReport():
-                    _require_phase(db, session_id, body.phase_id)
-                    _require_new(db, session_id, body)
-                    db.add(_completion(session_id, message.epoch, body))
+        if isinstance(body, ContactReport | CompletionReport):
+            _require_phase(intake, session_id, body.phase_id)
+        if isinstance(body, ContactReport):
+            # By far the most frequent: it changes no state, so it is stored with the others.
+            values = body.model_dump(exclude={"kind"})
+            own = {"id": new_id(), "session_id": session_id, "epoch": message.epoch}
+            intake.gather(CONTACTS, {**own, **values})
+        else:
+            # Acting looks at what is stored, so what came before it must be.
+            intake.flush()
+            with intake.db.begin_nested():
+                _act(intake, session_id, message, outcome)
     except ReembodyError as refusal:
         return refusal
     return None
+
+
+def _act(intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome) -> None:
+    db, body = intake.db, message.body
+    match body:
+        case PhaseReport():
+            _act_on_phase(db, intake.context, session_id, body, outcome)
+        case MaterialisedReport():
+            session = session_by_id(db, session_id, lock=True)
+            command = Materialise(by="headset", client_t_s=body.t_s)
+            apply_command(db, intake.context, session, command, actor="headset")
+        case CompletionReport():
+            _require_new(db, session_id, body)
+            db.add(_completion(session_id, message.epoch, body))
 
 
 def _act_on_phase(
@@ -127,11 +136,8 @@ def _completion(session_id: str, epoch: int, body: CompletionReport) -> Completi
     )
 
 
-def _require_phase(db: Session, session_id: str, phase_id: int) -> None:
-    known = db.scalar(
-        select(Phase.phase_id).where(Phase.session_id == session_id, Phase.phase_id == phase_id)
-    )
-    if known is None:
+def _require_phase(intake: Intake, session_id: str, phase_id: int) -> None:
+    if not intake.has_phase(session_id, phase_id):
         raise ReembodyError(
             f"there is no phase {phase_id}",
             value=phase_id,
