@@ -16,15 +16,17 @@ from app.features.context import AppContext
 from app.features.telemetry.joint_errors import joint_error_rows
 from app.features.telemetry.latencies import history_s, latency_rows
 from app.features.telemetry.movement import Run, phase_runs
-from app.models import JointErrorRow, Phase, PhaseLatency
+from app.features.telemetry.quality_rows import quality_rows
+from app.models import JointErrorRow, Phase, PhaseLatency, PhaseQuality
 
 log = logging.getLogger(__name__)
-Row = JointErrorRow | PhaseLatency
+Row = JointErrorRow | PhaseLatency | PhaseQuality
 Summary = Callable[[Phase, Sequence[Run]], Sequence[Row]]
 
 SUMMARIES: dict[type[Row], Summary] = {
     JointErrorRow: joint_error_rows,
     PhaseLatency: latency_rows,
+    PhaseQuality: quality_rows,
 }
 """Each table with what fills it."""
 
@@ -45,16 +47,16 @@ class Summariser:
     def catch_up(self) -> None:
         """Queue every phase that ended without summaries, as after a crash or an update.
 
-        Every phase gets a latency's row, if only to say that there is no latency: where it is
-        missing, all is.
+        Every phase gets rows of its streams' quality, if only to say that it has no frames: where
+        they are missing, all is.
         """
-        has_latency = select(PhaseLatency.phase_id).where(
-            PhaseLatency.session_id == Phase.session_id, PhaseLatency.phase_id == Phase.phase_id
+        has_quality = select(PhaseQuality.phase_id).where(
+            PhaseQuality.session_id == Phase.session_id, PhaseQuality.phase_id == Phase.phase_id
         )
         with self.context.database.reading() as db:
             missing = db.execute(
                 select(Phase.session_id, Phase.phase_id)
-                .where(Phase.status == "done", ~has_latency.exists())
+                .where(Phase.status == "done", ~has_quality.exists())
                 .order_by(Phase.session_id, Phase.phase_id)
             ).all()
         for session_id, phase_id in missing:

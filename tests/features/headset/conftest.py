@@ -1,7 +1,8 @@
 """A real server for a module, on each engine."""
 
-from collections.abc import Iterator
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
 
 import pytest
 
@@ -18,13 +19,29 @@ def site(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Site]:
     """The server with its operator signed in; each test joins sessions of its own."""
-    folder = tmp_path_factory.mktemp("site")
+    with running_site(request.param, tmp_path_factory.mktemp("site"), {}) as site:
+        yield site
+
+
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+def quick_site(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Site]:
+    """The same, but a headset counts as silent after a second."""
+    quick = {"REEMBODY_HEADSET_SILENT_S": "1"}
+    with running_site(request.param, tmp_path_factory.mktemp("site"), quick) as site:
+        yield site
+
+
+@contextmanager
+def running_site(engine: str, folder: Path, settings: Mapping[str, str]) -> Iterator[Site]:
+    """A server on an engine, with `REEMBODY_*` settings."""
     with ExitStack() as stack:
-        if request.param == "postgresql":
+        if engine == "postgresql":
             url = stack.enter_context(fresh_postgres())
         else:
             url = fresh_sqlite(folder / "reembody.sqlite")
-        environment = {"REEMBODY_DATABASE_URL": url}
+        environment = {"REEMBODY_DATABASE_URL": url, **settings}
         server = stack.enter_context(LiveServer(folder, environment=environment))
         operator = stack.enter_context(server.client())
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
