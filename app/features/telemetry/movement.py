@@ -5,15 +5,19 @@ own. The actual body's frames are those of the phase. The target's begin earlier
 avatar does at the start of a phase was asked for before it.
 """
 
+import logging
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.features.telemetry.encoding import Frames
-from app.features.telemetry.frames import concatenate, iter_frames, phase_frames
+from app.features.telemetry.encoding import DamagedChunkError, Frames
+from app.features.telemetry.frames import concatenate, decode_piece, iter_pieces, phase_frames
+from app.models import TelemetryChunk
 from app.wire import StreamName
+
+log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -45,9 +49,11 @@ def _between(
     db: Session, session_id: str, epoch: int, since_s: float, until_s: float
 ) -> Iterator[Frames]:
     """Target frames of a stretch of the client's time; pieces are whole, so that some are more."""
-    for _, frames in iter_frames(db, session_id, StreamName.TARGET, epoch, since_s=since_s):
-        # What came later in the session would be read for nothing. One odd time is not "later".
-        finite = frames.times_s[np.isfinite(frames.times_s)]
-        if len(finite) and float(np.median(finite)) > until_s:
-            return
-        yield frames
+    for piece in iter_pieces(db, session_id, StreamName.TARGET, epoch, since_s=since_s):
+        # To the end even so: PostgreSQL's cursor would stay open behind a loop that is left.
+        if isinstance(piece, TelemetryChunk) and piece.t_first_s > until_s:
+            continue
+        try:
+            yield decode_piece(piece)
+        except DamagedChunkError as error:
+            log.warning("target of %s, seq %d: %s", session_id, piece.seq_first, error)
