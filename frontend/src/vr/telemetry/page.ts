@@ -15,8 +15,9 @@ export async function openTelemetryInWorker(
   options: TelemetryOptions,
   { onStatus, signal }: Omit<Surroundings, "clock"> = {},
 ): Promise<TelemetryClient> {
-  // Without this a browser that runs out of disk may delete the journal without a word.
-  await navigator.storage?.persist?.().catch(() => false);
+  // Without this a browser that runs out of disk may delete the journal without a word. Some ask the
+  // user first: nobody waits for the answer.
+  void navigator.storage?.persist?.().catch(() => false);
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   const port = worker as Port<ToWorker, FromWorker>;
   const client = new PageClient(port, options, performance.timeOrigin);
