@@ -5,25 +5,25 @@ import hashlib
 import pytest
 from sqlalchemy.orm import Session
 
-from app.features.receipts.service import Receipt, receipt_of
+from app.features.receipts.service import SessionReceipt, receipt_of
 from app.wire.messages import REPORT_STREAM
 from tests.rehearsal.performed import Performed
 
 
 @pytest.fixture
-def receipt(performed: Performed, db: Session) -> Receipt:
+def receipt(performed: Performed, db: Session) -> SessionReceipt:
     """Made from the record alone."""
     return receipt_of(db, performed.session_id)
 
 
-def test_the_session_is_complete(receipt: Receipt) -> None:
+def test_the_session_is_complete(receipt: SessionReceipt) -> None:
     """Nothing is missing, nothing was changed, everything follows."""
     assert receipt.problems == ()
     assert receipt.complete
     assert receipt.chain_ok
 
 
-def test_sent_is_what_the_headset_sent(performed: Performed, receipt: Receipt) -> None:
+def test_sent_is_what_the_headset_sent(performed: Performed, receipt: SessionReceipt) -> None:
     """By stream and epoch, counted on either side."""
     told = {(one.stream, one.epoch): (one.sent, one.stored) for one in receipt.streams}
     sent = {key: len(known) for key, known in performed.ledger.sent.items()}
@@ -32,7 +32,9 @@ def test_sent_is_what_the_headset_sent(performed: Performed, receipt: Receipt) -
     assert len({one.sha256 for one in receipt.streams} - {hashlib.sha256().hexdigest()}) >= 3
 
 
-def test_every_completion_follows_from_its_contacts(performed: Performed, receipt: Receipt) -> None:
+def test_every_completion_follows_from_its_contacts(
+    performed: Performed, receipt: SessionReceipt
+) -> None:
     """In each of the six task phases."""
     assert len(receipt.completions) == 6
     assert all(one.agree for one in receipt.completions)

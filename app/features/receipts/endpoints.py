@@ -5,14 +5,14 @@ from dataclasses import replace
 from fastapi import APIRouter
 
 from app.features.dependencies import Reading, SignedIn
-from app.features.receipts.service import Receipt, receipt_of
+from app.features.receipts.service import SessionReceipt, receipt_of
 from app.features.sessions.service import protocol_of_session, session_by_id
 
 router = APIRouter(tags=["receipts"])
 
 
 @router.get("/sessions/{session_id}/receipt")
-def get_receipt(session_id: str, db: Reading, _: SignedIn) -> Receipt:
+def get_receipt(session_id: str, db: Reading, _: SignedIn) -> SessionReceipt:
     """Prove from the record what of a session is there; a blinded operator sees no latencies."""
     receipt = receipt_of(db, session_id)
     if protocol_of_session(db, session_by_id(db, session_id)).blinding.operator:

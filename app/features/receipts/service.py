@@ -16,7 +16,7 @@ from app.models import Phase, Study, TelemetryBatch, TelemetryChunk
 
 
 @dataclass(frozen=True)
-class Receipt:
+class SessionReceipt:
     """What a session's record holds and what it lacks.
 
     `complete` is true where `problems` is empty: nothing that was made is missing or damaged, the
@@ -42,7 +42,7 @@ class Receipt:
         return asdict(self)
 
 
-def receipt_of(db: Session, session_id: str) -> Receipt:
+def receipt_of(db: Session, session_id: str) -> SessionReceipt:
     """Count, verify and derive everything anew; takes about a second per ten minutes of session.
 
     Raises NotFound for an unknown session.
@@ -57,7 +57,7 @@ def receipt_of(db: Session, session_id: str) -> Receipt:
         *_chain_problems(chain),
         *(f"phase {one.phase_id}: {one.reason}" for one in completions if not one.agree),
     )
-    return Receipt(
+    return SessionReceipt(
         product_version=__version__,
         study=db.get_one(Study, session.study_id).key,
         session_id=session_id,

@@ -1,10 +1,10 @@
 """A receipt for people: one screen, the verdict first."""
 
 from app.features.receipts.latencies import LatencyReceipt
-from app.features.receipts.service import Receipt
+from app.features.receipts.service import SessionReceipt
 
 
-def receipt_text(receipt: Receipt) -> str:
+def receipt_text(receipt: SessionReceipt) -> str:
     """Verdict, what is wrong, then streams, event log, completions and latencies."""
     verdict = "COMPLETE" if receipt.complete else "NOT COMPLETE"
     simulated = ", simulated" if receipt.simulated else ""
@@ -29,7 +29,7 @@ def receipt_text(receipt: Receipt) -> str:
     return "\n".join(lines)
 
 
-def _completions_line(receipt: Receipt) -> str:
+def _completions_line(receipt: SessionReceipt) -> str:
     stored = sum(one.stored for one in receipt.completions)
     rederived = sum(one.rederived for one in receipt.completions)
     return f"completions  {stored} stored, {rederived} follow from the contacts"

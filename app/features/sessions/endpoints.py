@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import AsyncIterator
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends
 from fastapi.sse import EventSourceResponse, ServerSentEvent
@@ -27,7 +27,13 @@ from app.features.sessions.schemas import (
     SessionView,
     StreamView,
 )
-from app.features.sessions.service import apply_command, is_repeated, join, session_by_id
+from app.features.sessions.service import (
+    apply_command,
+    is_repeated,
+    join,
+    protocol_of_session,
+    session_by_id,
+)
 from app.features.sessions.view import event_views, list_sessions, session_view
 from app.features.studies.service import study_by_key
 from app.models import TelemetryStream
@@ -154,6 +160,7 @@ async def get_live(
     """News of a session: `session` on every change, `telemetry` a few times a second, and
     `storage` at first and when the record ceases to be written, or the disk gets low.
     """
+    blinded = await asyncio.to_thread(_is_blinded, context, session_id)
     with context.hub.subscribe(session_id, "telemetry") as subscription:
         yield await _session_event(context, session_id)
         told = None
@@ -168,7 +175,18 @@ async def get_live(
             if "session" in news:
                 yield await _session_event(context, session_id)
             if "telemetry" in news:
-                yield ServerSentEvent(data=news["telemetry"], event="telemetry")
+                figures = _unblinding_left_out(news["telemetry"]) if blinded else news["telemetry"]
+                yield ServerSentEvent(data=figures, event="telemetry")
+
+
+def _is_blinded(context: AppContext, session_id: str) -> bool:
+    with context.database.reading() as db:
+        return protocol_of_session(db, session_by_id(db, session_id)).blinding.operator
+
+
+def _unblinding_left_out(figures: dict[str, Any]) -> dict[str, Any]:
+    """Joint errors grow with the latency, so they would tell the condition."""
+    return {name: value for name, value in figures.items() if name != "joint_error_deg"}
 
 
 async def _session_event(context: AppContext, session_id: str) -> ServerSentEvent:

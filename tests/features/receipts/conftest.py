@@ -8,7 +8,7 @@ from sqlalchemy import update
 from sqlalchemy.orm import Session
 
 from app.database import Database, open_database
-from app.features.receipts.service import Receipt, receipt_of
+from app.features.receipts.service import SessionReceipt, receipt_of
 from app.features.receipts.streams import StreamReceipt
 from app.models import TelemetryStream
 from app.wire import StreamName
@@ -30,7 +30,7 @@ class Kept:
         with self.database.writing() as db:
             act(db)
 
-    def receipt(self) -> Receipt:
+    def receipt(self) -> SessionReceipt:
         """What the record proves now."""
         with self.database.reading() as db:
             return receipt_of(db, self.session_id)

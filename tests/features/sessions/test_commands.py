@@ -219,6 +219,9 @@ def test_a_blinded_operator_sees_no_latency_anywhere(fresh_lab: Lab) -> None:
     ledger = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/ledger"))
     assert ledger["sequences"] is None
     assert {slot["sequence"] for slot in ledger["slots"]} == {None}
+    receipt = ok(fresh_lab.operator.get(f"/api/sessions/{view['id']}/receipt"))
+    assert receipt["achieved_latency"] == []
+    assert _unblinding_left_out({"fps": 90.0, "joint_error_deg": {"Head": 5.0}}) == {"fps": 90.0}
 
 
 def _stored(lab: Lab, session_id: str) -> str:
@@ -227,7 +230,8 @@ def _stored(lab: Lab, session_id: str) -> str:
 
 
 def _report_started(lab: Lab, session_id: str) -> None:
-    from app.features.sessions.engine.commands import Report
+    from app.features.sessions.endpoints import _unblinding_left_out
+from app.features.sessions.engine.commands import Report
     from app.features.sessions.service import apply_command, session_by_id
 
     with lab.database.writing() as db:

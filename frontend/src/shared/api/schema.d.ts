@@ -718,54 +718,6 @@ export interface components {
             readonly value: number | null;
         };
         /**
-         * Receipt
-         * @description Proof that the form is stored; `duplicate` if it was stored before.
-         */
-        readonly app__features__questionnaires__schemas__Receipt: {
-            /** Duplicate */
-            readonly duplicate: boolean;
-            /** Receipt Id */
-            readonly receipt_id: string;
-            /**
-             * Stored At
-             * Format: date-time
-             */
-            readonly stored_at: string;
-        };
-        /**
-         * Receipt
-         * @description What a session's record holds and what it lacks.
-         *
-         *     `complete` is true where `problems` is empty: nothing that was made is missing or damaged, the
-         *     event log's hash chain holds, and the stored completions follow from the stored contacts. A
-         *     session that still runs may lack what its headset has yet to send.
-         */
-        readonly app__features__receipts__service__Receipt: {
-            /** Achieved Latency */
-            readonly achieved_latency: readonly components["schemas"]["LatencyReceipt"][];
-            readonly chain: components["schemas"]["ChainCheck"];
-            /** Chain Ok */
-            readonly chain_ok: boolean;
-            /** Complete */
-            readonly complete: boolean;
-            /** Completions */
-            readonly completions: readonly components["schemas"]["CompletionReceipt"][];
-            /** Problems */
-            readonly problems: readonly string[];
-            /** Product Version */
-            readonly product_version: string;
-            /** Session Id */
-            readonly session_id: string;
-            /** Simulated */
-            readonly simulated: boolean;
-            /** Status */
-            readonly status: string;
-            /** Streams */
-            readonly streams: readonly components["schemas"]["StreamReceipt"][];
-            /** Study */
-            readonly study: string;
-        };
-        /**
          * AttemptView
          * @description A session that holds or held a slot.
          */
@@ -1253,6 +1205,21 @@ export interface components {
             readonly step_index: number;
         };
         /**
+         * Receipt
+         * @description Proof that the form is stored; `duplicate` if it was stored before.
+         */
+        readonly Receipt: {
+            /** Duplicate */
+            readonly duplicate: boolean;
+            /** Receipt Id */
+            readonly receipt_id: string;
+            /**
+             * Stored At
+             * Format: date-time
+             */
+            readonly stored_at: string;
+        };
+        /**
          * ScoreView
          * @description A score with its name and the range its instrument states.
          */
@@ -1281,6 +1248,39 @@ export interface components {
             readonly sequence: readonly number[];
             /** Total */
             readonly total: number;
+        };
+        /**
+         * SessionReceipt
+         * @description What a session's record holds and what it lacks.
+         *
+         *     `complete` is true where `problems` is empty: nothing that was made is missing or damaged, the
+         *     event log's hash chain holds, and the stored completions follow from the stored contacts. A
+         *     session that still runs may lack what its headset has yet to send.
+         */
+        readonly SessionReceipt: {
+            /** Achieved Latency */
+            readonly achieved_latency: readonly components["schemas"]["LatencyReceipt"][];
+            readonly chain: components["schemas"]["ChainCheck"];
+            /** Chain Ok */
+            readonly chain_ok: boolean;
+            /** Complete */
+            readonly complete: boolean;
+            /** Completions */
+            readonly completions: readonly components["schemas"]["CompletionReceipt"][];
+            /** Problems */
+            readonly problems: readonly string[];
+            /** Product Version */
+            readonly product_version: string;
+            /** Session Id */
+            readonly session_id: string;
+            /** Simulated */
+            readonly simulated: boolean;
+            /** Status */
+            readonly status: string;
+            /** Streams */
+            readonly streams: readonly components["schemas"]["StreamReceipt"][];
+            /** Study */
+            readonly study: string;
         };
         /**
          * SessionSummary
@@ -2172,7 +2172,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["app__features__receipts__service__Receipt"];
+                    readonly "application/json": components["schemas"]["SessionReceipt"];
                 };
             };
             /** @description Validation Error */
@@ -2238,7 +2238,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["app__features__questionnaires__schemas__Receipt"];
+                    readonly "application/json": components["schemas"]["Receipt"];
                 };
             };
             /** @description Validation Error */
@@ -2727,7 +2727,7 @@ export interface operations {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["app__features__questionnaires__schemas__Receipt"];
+                    readonly "application/json": components["schemas"]["Receipt"];
                 };
             };
             /** @description Validation Error */

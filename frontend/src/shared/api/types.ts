@@ -160,7 +160,7 @@ export type TabletState = With<Schemas["TabletState"], { administration: Adminis
 
 export type Answer = string | number | boolean | null;
 export type Submission = Schemas["SubmissionRequest"];
-export type Receipt = Schemas["app__features__questionnaires__schemas__Receipt"];
+export type Receipt = Schemas["Receipt"];
 
 export type Dashboard = Schemas["DashboardView"];
 export type FigureSpec = Schemas["FigureView"];
