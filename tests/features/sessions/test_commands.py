@@ -7,6 +7,9 @@ from typing import Any
 import pytest
 from sqlalchemy import func, select
 
+from app.features.sessions.endpoints import _unblinding_left_out
+from app.features.sessions.engine.commands import Report
+from app.features.sessions.service import apply_command, session_by_id
 from app.models import SessionContent, StudySession
 from tests.features.lab import STUDY, Json, Lab, error, ok
 
@@ -230,10 +233,6 @@ def _stored(lab: Lab, session_id: str) -> str:
 
 
 def _report_started(lab: Lab, session_id: str) -> None:
-    from app.features.sessions.endpoints import _unblinding_left_out
-from app.features.sessions.engine.commands import Report
-    from app.features.sessions.service import apply_command, session_by_id
-
     with lab.database.writing() as db:
         session = session_by_id(db, session_id, lock=True)
         report = Report(what="started", phase_id=1, client_t_s=1.0, active_s=0.0)
