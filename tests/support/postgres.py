@@ -11,7 +11,7 @@ import signal
 import sys
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -94,7 +94,7 @@ def running_cluster() -> Cluster:
     folder = run_folder() / "postgres"
     with once("postgres") as mark:
         if mark:
-            keeper_pid = _start(folder)
+            keeper_pid = start_keeper(folder, SETTINGS)
             mark.write_text(json.dumps({"keeper_pid": keeper_pid}))
     return Cluster(folder)
 
@@ -102,17 +102,21 @@ def running_cluster() -> Cluster:
 def stop_cluster() -> None:
     """End the cluster of this run if there is one; the controller calls it last."""
     mark = run_folder() / "postgres.done"
-    if not mark.exists():
-        return
+    if mark.exists():
+        stop_keeper(json.loads(mark.read_text())["keeper_pid"], run_folder() / "postgres")
+
+
+def stop_keeper(keeper_pid: int, folder: Path) -> None:
+    """End the cluster in `folder` by its keeper."""
     try:
-        os.kill(json.loads(mark.read_text())["keeper_pid"], signal.SIGTERM)
+        os.kill(keeper_pid, signal.SIGTERM)
     except ProcessLookupError:
         return
-    _wait_for(run_folder() / "postgres" / "stopped", STOPS_WITHIN_S)
+    _wait_for(folder / "stopped", STOPS_WITHIN_S)
 
 
-def _start(folder: Path) -> int:
-    """Make and start a cluster in `folder`; returns the pid of its keeper."""
+def start_keeper(folder: Path, settings: Mapping[str, str]) -> int:
+    """Make and start a cluster in `folder`; returns the pid of its keeper, PostgreSQL's parent."""
     account = Account.for_postgres()
     folder.mkdir(mode=0o700)
     programs = folder / "programs"
@@ -130,8 +134,8 @@ def _start(folder: Path) -> int:
     )
     if made.returncode != 0:
         raise RuntimeError(f"initdb from {binaries} failed:\n{made.stdout}{made.stderr}")
-    settings = [f"--{name}={value}" for name, value in SETTINGS.items()]
-    server = [str(binaries / "postgres"), "-D", str(data), "-k", str(folder), *settings]
+    options = [f"--{name}={value}" for name, value in settings.items()]
+    server = [str(binaries / "postgres"), "-D", str(data), "-k", str(folder), *options]
     keeper = [str(owner_pid()), str(account.uid), str(account.gid), str(folder), *server]
     script = Path(__file__).with_name("postgres_keeper.py")
     # In a session of its own, so that Ctrl-C reaches the tests and not their database.
