@@ -1,22 +1,64 @@
-"""Fifty headsets at once: until when everything is safe and shown, and what it costs."""
+"""Fifty headsets at once: until when everything is safe and shown, and what it costs.
+
+Parts: `load` on SQLite, `load-postgresql` on a durable PostgreSQL, `knee` (how many sessions are
+too many), `backlog` (one comes back with ten minutes in its journal), `peers` (what others do with
+the same frames).
+"""
 
 import tempfile
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from tests.benchmarks.load.backlog import backlog_figures
+from tests.benchmarks.load.durable_postgres import durable_postgres
 from tests.benchmarks.load.figures import load_figures
-from tests.benchmarks.load.scenario import Load, run_load
-from tests.benchmarks.report import Report
+from tests.benchmarks.load.knee import STEP_S, knee_figures
+from tests.benchmarks.load.plans import Load
+from tests.benchmarks.load.scenario import run_load
+from tests.benchmarks.peers.figures import peer_figures
+from tests.benchmarks.report import Figure, Report
 
-PARTS = ("load",)
 DURATION_S = 600.0
+Part = Callable[[Path, float], Iterable[Figure]]
 
 
 def measure(parts: frozenset[str], duration_s: float = DURATION_S) -> Report:
-    """Measure the named parts, in a scratch folder."""
+    """Measure the named parts, in a scratch folder. Shorter parts take at most `duration_s`."""
     report = Report("telemetry")
     with tempfile.TemporaryDirectory(prefix="reembody-bench-") as scratch:
-        folder = Path(scratch)
-        if "load" in parts:
-            outcome = run_load(folder / "load", Load(duration_s=duration_s))
-            report.add(*load_figures("load", outcome))
+        for name, part in _PARTS.items():
+            if name in parts:
+                for figure in part(Path(scratch) / name, duration_s):
+                    report.add(figure)
     return report
+
+
+def _load(folder: Path, duration_s: float) -> Iterable[Figure]:
+    return load_figures("load", run_load(folder, Load(duration_s=duration_s)))
+
+
+def _load_postgresql(folder: Path, duration_s: float) -> Iterable[Figure]:
+    with durable_postgres() as store:
+        return load_figures("load-postgresql", run_load(folder, Load(duration_s=duration_s), store))
+
+
+def _knee(folder: Path, duration_s: float) -> Iterable[Figure]:
+    return knee_figures("knee", folder, min(STEP_S, duration_s))
+
+
+def _backlog(folder: Path, duration_s: float) -> Iterable[Figure]:
+    return backlog_figures("backlog", folder, duration_s)
+
+
+def _peers(folder: Path, duration_s: float) -> Iterable[Figure]:
+    return peer_figures("peers", folder, duration_s)
+
+
+_PARTS: dict[str, Part] = {
+    "load": _load,
+    "load-postgresql": _load_postgresql,
+    "knee": _knee,
+    "backlog": _backlog,
+    "peers": _peers,
+}
+PARTS = tuple(_PARTS)

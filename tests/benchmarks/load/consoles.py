@@ -29,6 +29,7 @@ class ConsolePlan:
     sessions: tuple[tuple[int, str], ...]
     duration_s: float
     news: str
+    views: str
 
     def as_json(self) -> str:
         """One line."""
@@ -44,7 +45,7 @@ class ConsolePlan:
 
 @dataclass
 class Seen:
-    """What a console saw: rows (session number, headset's clock s, arrived at s), and waits (s)."""
+    """News (session number, headset's clock s, arrived at s); views (asked at s, wait s); flat."""
 
     live: "array[float]"
     views: "array[float]"
@@ -81,7 +82,8 @@ async def run(plan: ConsolePlan) -> dict[str, Any]:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
     np.save(Path(plan.news), np.asarray(seen.live).reshape(-1, 3))
-    return {"views_s": seen.views.tolist(), "cpu_s": time.process_time() - cpu_s}
+    np.save(Path(plan.views), np.asarray(seen.views).reshape(-1, 2))
+    return {"cpu_s": time.process_time() - cpu_s}
 
 
 async def _follow(
@@ -115,7 +117,7 @@ async def _view(client: AsyncClient, at: int, session_id: str, begin_s: float, s
             response.raise_for_status()
         finally:
             # Who still waits at the end has waited for at least so long.
-            seen.views.append(time.monotonic() - asked_s)
+            seen.views.extend((asked_s, time.monotonic() - asked_s))
         due_s += VIEW_EVERY_S
 
 

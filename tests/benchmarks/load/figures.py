@@ -60,7 +60,7 @@ def consoles(part: str, outcome: Outcome) -> list[Figure]:
     if not outcome.load.consoles:
         return []
     ages_ms = live_age_ms(outcome)
-    views_ms = outcome.views_s * 1000
+    views_ms = outcome.views[:, 1] * 1000
     words = f"{outcome.load.consoles} consoles open"
     return [
         Figure(
@@ -126,20 +126,29 @@ def safety(part: str, outcome: Outcome) -> list[Figure]:
 
 
 def server(part: str, outcome: Outcome) -> list[Figure]:
-    """Processor and memory of the server."""
+    """Processor and memory of the server; a database of its own counts as a part of it."""
     watch, load = outcome.watch, outcome.load
     rss_mib, cores = watch.rss_mib(), watch.cpu_share()
     warm_up_s = min(60.0, load.duration_s / 3)
     late = rss_mib[int(warm_up_s) :]
     rate = samples_per_s(outcome)
+    others = sum(one.cpu_share() for one in outcome.beside.values())
     return [
         Figure(part, "joint samples", rate, "1/s"),
         Figure(part, "server CPU", 100 * cores, "% of a core"),
-        Figure(part, "joint samples per server core", rate / cores, "1/s"),
+        Figure(part, "joint samples per server core", rate / (cores + others), "1/s"),
         Figure(part, f"server memory after {warm_up_s:g} s", float(late[0]), "MiB"),
         Figure(part, "server memory at the end", float(late[-1]), "MiB"),
         Figure(part, "server memory slope", watch.rss_slope_mib_per_h(warm_up_s), "MiB/h"),
-        Figure(part, "write-ahead log max", watch.wal_max_mib(), "MiB"),
+        *(
+            [Figure(part, "write-ahead log max", watch.wal_max_mib(), "MiB")]
+            if watch.database is not None
+            else []
+        ),
+        *(
+            Figure(part, f"{name} CPU", 100 * one.cpu_share(), "% of a core")
+            for name, one in outcome.beside.items()
+        ),
     ]
 
 

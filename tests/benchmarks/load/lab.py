@@ -47,10 +47,11 @@ def call_phases(server: LiveServer, lab: Lab) -> None:
 
 
 def study_text() -> str:
-    """The shipped study with another beginning."""
+    """The shipped study with another beginning; who is cut off goes on by the journal."""
     text = (study_configs_dir() / "reembodiment-latency.yaml").read_text(encoding="utf-8")
     start, end = text.index("procedure:\n"), text.index("  block:\n")
     text = text[:start] + PROCEDURE + text[end:]
+    text = text.replace("on_disconnect: pause", "on_disconnect: continue", 1)
     return text.replace("key: reembodiment-latency", f"key: {STUDY}", 1)
 
 

@@ -20,17 +20,17 @@ class Plan(Protocol):
 
 @dataclass
 class Companion:
-    """A module of this folder in a process of its own."""
+    """A module in a process of its own."""
 
     process: "subprocess.Popen[str]"
     errors: Path
 
     @classmethod
     def start(cls, module: str, plan: Plan, errors: Path) -> Self:
-        """Start it and give it its plan."""
+        """Start `tests.benchmarks.MODULE` and give it its plan."""
         with errors.open("w") as told:
             process = subprocess.Popen(
-                [sys.executable, "-m", f"tests.benchmarks.load.{module}"],
+                [sys.executable, "-m", f"tests.benchmarks.{module}"],
                 cwd=REPOSITORY,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
@@ -59,6 +59,17 @@ class Companion:
             raise RuntimeError(f"exit code {self.process.returncode}; {self._last_words()}")
         told: dict[str, Any] = json.loads(text)
         return told
+
+    @property
+    def pid(self) -> int:
+        """Its process."""
+        return self.process.pid
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.end()
 
     def end(self) -> None:
         """Kill it if it still runs."""

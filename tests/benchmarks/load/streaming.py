@@ -22,7 +22,10 @@ STARTS_WITHIN_S = 30.0
 
 @dataclass
 class Streaming:
-    """Streams `movement` from frame `offset` on. `lag_s`: how late each message was made (s)."""
+    """Streams `movement` from frame `offset` on. `lag_s`: how late each message was made (s).
+
+    `active_from_s`: how much of the phase had passed before, in a run that goes on with one.
+    """
 
     headset: Headset
     record: Record
@@ -30,8 +33,9 @@ class Streaming:
     offset: int
     contact_every_s: float | None
     digested: bool
+    active_from_s: float = 0.0
     lag_s: "array[float]" = field(default_factory=lambda: array("d"))
-    _phase_id: int = 0
+    phase_id: int = 0
 
     async def enter_phase(self) -> None:
         """Wait for the operator's phase and start its clock."""
@@ -43,9 +47,9 @@ class Streaming:
             if time.monotonic() > give_up_s:
                 raise TimeoutError(f"no phase was called for {self.record.session_id}")
             await asyncio.sleep(0.05)
-        self._phase_id = state.phase.phase_id
+        self.phase_id = state.phase.phase_id
         await self.headset.report(
-            PhaseReport(phase_id=self._phase_id, what="started", t_s=FIRST_T_S, active_s=0.0)
+            PhaseReport(phase_id=self.phase_id, what="started", t_s=FIRST_T_S, active_s=0.0)
         )
 
     async def run(self, begin_s: float, end_s: float) -> None:
@@ -59,14 +63,14 @@ class Streaming:
                 return
             await asyncio.sleep(max(0.0, due_s - time.monotonic()))
             self.lag_s.append(time.monotonic() - due_s)
-            await self._send(seq)
+            await self.send(seq)
             seq += FRAMES_PER_BATCH
             if self.contact_every_s is not None and seq / RATE_HZ > contact_s:
                 contact_s += self.contact_every_s
-                await self._touch(seq / RATE_HZ)
+                await self.touch(seq / RATE_HZ)
 
-    async def _send(self, seq: int) -> None:
-        """The next message of both streams."""
+    async def send(self, seq: int) -> None:
+        """Hand over the message of both streams that begins at `seq`."""
         at = (self.offset + seq) % LOOP_FRAMES
         here = slice(at, at + FRAMES_PER_BATCH)
         times_s = FIRST_T_S + (seq + np.arange(FRAMES_PER_BATCH)) / RATE_HZ
@@ -79,23 +83,23 @@ class Streaming:
             message = encode_batch(
                 name,
                 epoch=self.headset.epoch,
-                phase_id=self._phase_id,
+                phase_id=self.phase_id,
                 seq_first=seq,
                 times_s=times_s,
                 flags=flags,
                 values=loop[here],
-                active_s=seq / RATE_HZ,
+                active_s=self.active_from_s + seq / RATE_HZ,
                 closed_at_s=float(times_s[-1]),
             )
             await self.headset.hand(name, seq + FRAMES_PER_BATCH, message)
             if self.digested:
                 self.record.digests[name.value].take(times_s, flags, loop[here])
 
-    async def _touch(self, active_s: float) -> None:
+    async def touch(self, active_s: float) -> None:
         """Report that a hand touched a side."""
         await self.headset.report(
             ContactReport(
-                phase_id=self._phase_id,
+                phase_id=self.phase_id,
                 surface="hand/2/left",
                 surface_kind="side",
                 box=2,

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from heapq import merge
+from pathlib import Path
 from typing import Any, TypeVar
 
 from sqlalchemy import func, select
@@ -58,6 +59,18 @@ def verify(url: str, sessions: list[Mapping[str, Any]]) -> Verdict:
     finally:
         database.close()
     return verdict
+
+
+def database_bytes(url: str) -> int:
+    """What the database takes on the disk, after its server has stopped."""
+    database = open_database(url)
+    try:
+        with database.reading() as db:
+            if db.get_bind().dialect.name == "sqlite":
+                return Path(url.removeprefix("sqlite:///")).stat().st_size
+            return int(db.scalar(select(func.pg_database_size(func.current_database()))) or 0)
+    finally:
+        database.close()
 
 
 def _measure(database: Database, verdict: Verdict) -> None:
