@@ -1,0 +1,59 @@
+"""A headset whose frames stop for a while though its connection holds: the session goes on."""
+
+import asyncio
+from pathlib import Path
+
+from sqlalchemy import select
+
+from app.models import AlarmRow
+from app.rehearsal.cast import Cast
+from app.rehearsal.headset import Headset
+from tests.faults.record import record_of
+from tests.faults.relay import Relay
+from tests.faults.short_study import Watch
+from tests.faults.test_connections import FOOT, HAND, rehearse_with, sound, worn_while
+from tests.rehearsal.ledger import LedgerJournal
+from tests.support.server import LiveServer
+
+SILENT_S = 0.15
+"""Ten times as long for a client that runs faster than life."""
+ASLEEP_S = 10 * SILENT_S + 2.0
+
+
+def test_a_headset_that_falls_asleep_follows_the_pause_and_gets_its_whole_time(
+    tmp_path: Path,
+) -> None:
+    """In a hand and in a foot phase: both sides count the same active time, nothing is lost."""
+    ledger = LedgerJournal()
+
+    async def fall_asleep(cast: Cast, _: Relay) -> None:
+        for phase_id in (HAND, FOOT):
+            await Watch(cast).running(phase_id)
+            await asyncio.sleep(0.2)
+            await _hold_frames(cast.headset)
+
+    environment = {"REEMBODY_HEADSET_SILENT_S": str(SILENT_S)}
+    with LiveServer(tmp_path / "live", environment=environment) as server:
+        outcome = rehearse_with(server, worn_while(fall_asleep), ledger)
+        assert sound(server, outcome, ledger)
+        with record_of(server) as db:
+            rows = db.scalars(select(AlarmRow).where(AlarmRow.code == "silent"))
+            states = [row.state for row in rows]
+    for phase_id in (HAND, FOOT):
+        causes = {pause["cause"] for pause in outcome.pauses(phase_id)}
+        assert "headset_silent" in causes
+    assert states.count("raised") == states.count("cleared") >= 1
+
+
+async def _hold_frames(headset: Headset) -> None:
+    """Frames stop for a while; the socket, and what is said on it beside frames, does not."""
+    awake = asyncio.Event()
+    due = headset._sleep_until_due
+
+    async def sleep() -> None:
+        await awake.wait()
+
+    headset._sleep_until_due = sleep  # type: ignore[method-assign]
+    await asyncio.sleep(ASLEEP_S)
+    headset._sleep_until_due = due  # type: ignore[method-assign]
+    awake.set()

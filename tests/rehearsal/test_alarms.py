@@ -1,0 +1,29 @@
+"""A rehearsal at high speed: the watch finds nothing wrong with it, and its phases are judged."""
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.models import AlarmRow, PhaseQuality
+from tests.rehearsal.performed import PHASES, Performed
+
+TOLERATED = {"clock_uncertain", "jump"}
+"""A round trip takes long where the machine is busy, and a simulated participant who steps too wide
+sits down faster than anybody."""
+
+
+def test_sound_movement_raises_no_alarm(performed: Performed, db: Session) -> None:
+    """Twenty to forty times as fast as life."""
+    rows = db.scalars(select(AlarmRow).where(AlarmRow.session_id == performed.session_id))
+    assert {row.message for row in rows if row.code not in TOLERATED} == set()
+
+
+def test_every_phase_is_judged_and_sound(performed: Performed, db: Session) -> None:
+    """90 frames a second over the whole active time, without a fault in either stream."""
+    query = select(PhaseQuality).where(PhaseQuality.session_id == performed.session_id)
+    rows = list(db.scalars(query))
+    assert len(rows) == 2 * PHASES
+    for row in rows:
+        assert (row.gaps, row.non_unit, row.non_finite, row.backwards) == (0, 0, 0, 0)
+        assert (row.frozen_joints, row.jumps <= 4) == ([], True)
+        assert row.frame_rate_hz is not None
+        assert abs(row.frame_rate_hz - 90.0) < 1e-3
