@@ -9,7 +9,7 @@ from sqlalchemy import select
 from app.client.file_journal import FileJournal
 from app.client.journal import Journal
 from app.client.telemetry import TelemetryClient
-from app.features.receipts.service import Receipt, receipt_of
+from app.features.receipts.service import SessionReceipt, receipt_of
 from app.features.telemetry.frames import concatenate, iter_frames
 from app.models import TelemetryStream
 from app.wire import StreamName
@@ -34,7 +34,7 @@ async def send(headset: TelemetryClient, batches: int, first: int = 0) -> None:
         await headset.send_batch(StreamName.TARGET, (at + 1) * FRAMES, text)
 
 
-def receipt(server: LiveServer, session_id: str) -> Receipt:
+def receipt(server: LiveServer, session_id: str) -> SessionReceipt:
     """What the record proves."""
     with record_of(server) as db:
         return receipt_of(db, session_id)
