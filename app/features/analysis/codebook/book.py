@@ -14,6 +14,7 @@ from app.features.analysis.codebook.movement import (
     SAMPLES,
     STREAMS,
 )
+from app.features.analysis.codebook.quality import ALARMS, QUALITY
 from app.features.analysis.codebook.questionnaires import ANSWERS, SCORES
 from app.features.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
 from app.science.skeleton import JOINT_NAMES
@@ -27,6 +28,8 @@ TABLES: dict[str, str] = {
     "contacts": "One row per contact of a body part with a surface.",
     "completions": "One row per completed task.",
     "joint_errors": "One row per phase, reference, joint and axis.",
+    "quality": "One row per phase and stream: what is wrong with its frames.",
+    "alarms": "One row per alarm that was raised, and one per alarm that was cleared.",
     "clock_probes": "One row per exchange of clock readings between a headset and the server.",
     "clock_mapping": "One row per segment of a headset's clock, brought to the server's.",
     "events": "One row per event of a session's log: the audit trail.",
@@ -43,6 +46,8 @@ CODEBOOK: tuple[Column, ...] = (
     *CONTACTS,
     *COMPLETIONS,
     *JOINT_ERRORS,
+    *QUALITY,
+    *ALARMS,
     *CLOCK_PROBES,
     *CLOCK_MAPPING,
     *EVENTS,

@@ -13,6 +13,7 @@ from app.features.analysis.tables.context import KINDS
 from app.features.analysis.tables.events import events_table
 from app.features.analysis.tables.joint_errors import joint_errors_table
 from app.features.analysis.tables.phases import phases_table
+from app.features.analysis.tables.quality import alarms_table, quality_table
 from app.features.analysis.tables.questionnaires import answers_table, scores_table
 from app.features.analysis.tables.sessions import sessions_table
 from app.features.analysis.tables.tasks import completions_table, contacts_table
@@ -20,6 +21,7 @@ from app.features.analysis.tables.tasks import completions_table, contacts_table
 __all__ = [
     "KINDS",
     "Kind",
+    "alarms_table",
     "answers_table",
     "clock_mapping_table",
     "clock_probes_table",
@@ -28,6 +30,7 @@ __all__ = [
     "events_table",
     "joint_errors_table",
     "phases_table",
+    "quality_table",
     "scores_table",
     "sessions_table",
 ]
