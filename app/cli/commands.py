@@ -163,7 +163,7 @@ def restore(
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Put a backup in the place of everything that is there."""
-    from app.cli.backing_up import restore_from
+    from app.cli.restoring import restore_from
     from app.errors import ReembodyError
 
     try:

@@ -3,7 +3,6 @@
 Fault 28 of the matrix. Every revision there is takes part, also those that are added later.
 """
 
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +14,7 @@ import pytest
 
 from app.database import open_database
 from tests.faults.bench import Bench, PostgresBench, SqliteBench
+from tests.faults.figures import note
 from tests.faults.interrupted import (
     Found,
     Interrupted,
@@ -71,26 +71,20 @@ def undisturbed(bench: Bench, step: Step) -> Iterator[Known]:
 
 
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
-def test_a_step_stopped_at_a_statement_can_be_taken_again(
-    bench: Bench, step: Step, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_step_stopped_at_a_statement_can_be_taken_again(bench: Bench, step: Step) -> None:
     """Behind every statement and instead of the commit: the old schema; then the new one."""
     most = None if isinstance(bench, SqliteBench) else STOPS_ON_POSTGRES
-    stop_often(bench, step, most, capsys)
+    stop_often(bench, step, most)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
-def test_a_step_stopped_at_every_statement_on_postgresql(
-    step: Step, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_step_stopped_at_every_statement_on_postgresql(step: Step) -> None:
     """The same without leaving any out."""
-    stop_often(PostgresBench(running_cluster()), step, None, capsys)
+    stop_often(PostgresBench(running_cluster()), step, None)
 
 
-def stop_often(
-    bench: Bench, step: Step, most: int | None, capsys: pytest.CaptureFixture[str]
-) -> None:
+def stop_often(bench: Bench, step: Step, most: int | None) -> None:
     """Stop behind each statement, or behind so many of them evenly spread; the last always."""
     with undisturbed(bench, step) as known:
         stops = np.unique(np.linspace(1, known.changes, most or known.changes, dtype=int)).tolist()
@@ -102,17 +96,23 @@ def stop_often(
                 assert found(url) == known.old
                 upgrade(url, step[1])
                 assert found(url) == known.new
-    tell(
-        capsys,
-        bench,
-        f"{'-'.join(step)}: stopped at {len(stops)} of {known.changes} statements, unusable 0",
+    note(
+        28,
+        f"{engine_of(bench)}, {' to '.join(step)}",
+        "stopped at statements",
+        of_all(stops, known),
     )
+    note(28, f"{engine_of(bench)}, {' to '.join(step)}", "unusable", 0)
 
 
-def tell(capsys: pytest.CaptureFixture[str], bench: Bench, figure: str) -> None:
-    """Print a figure."""
-    with capsys.disabled():
-        sys.stdout.write(f"\n{type(bench).__name__.removesuffix('Bench')}, {figure}\n")
+def of_all(stops: list[int], known: Known) -> str:
+    """How many statements of how many."""
+    return f"{len(stops)} of {known.changes}"
+
+
+def engine_of(bench: Bench) -> str:
+    """Its name, for a figure."""
+    return type(bench).__name__.removesuffix("Bench")
 
 
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
@@ -129,21 +129,19 @@ def test_a_step_keeps_every_row(bench: Bench, step: Step) -> None:
             ]
 
 
-def test_a_killed_migration_can_be_taken_again(
-    bench: Bench, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_killed_migration_can_be_taken_again(bench: Bench) -> None:
     """SIGKILL at random moments of the way from the first revision to the newest."""
-    kill_often(bench, KILLS, capsys)
+    kill_often(bench, KILLS)
 
 
 @pytest.mark.long
 @pytest.mark.timeout(1200)
-def test_a_migration_killed_many_times(bench: Bench, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_migration_killed_many_times(bench: Bench) -> None:
     """The same at many more moments."""
-    kill_often(bench, MANY_KILLS, capsys)
+    kill_often(bench, MANY_KILLS)
 
 
-def kill_often(bench: Bench, kills: int, capsys: pytest.CaptureFixture[str]) -> None:
+def kill_often(bench: Bench, kills: int) -> None:
     """Start, kill, look, go on; the moments are drawn from a seed."""
     rng = np.random.default_rng(28)
     step = (STEPS[0][1], STEPS[-1][1])
@@ -158,4 +156,5 @@ def kill_often(bench: Bench, kills: int, capsys: pytest.CaptureFixture[str]) -> 
                 outcomes["old" if now == known.old else "new"] += 1
                 upgrade(url, step[1])
                 assert found(url) == known.new
-    tell(capsys, bench, f"killed {kills} times, found {outcomes}, unusable 0")
+    note(28, f"{engine_of(bench)}, killed", "schemas found", outcomes)
+    note(28, f"{engine_of(bench)}, killed", f"unusable of {kills}", 0)

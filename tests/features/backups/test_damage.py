@@ -1,7 +1,6 @@
 """A damaged backup is noticed before anything is touched."""
 
 import sqlite3
-import sys
 from contextlib import closing
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import pytest
 from app.database import Database, open_database
 from app.errors import InvalidInput
 from app.features.backups.reading import opened_backup
+from tests.faults.figures import note
 from tests.features.backups.lab import make, put_back
 from tests.support.filled import contents, fill
 from tests.support.sqlite import fresh_sqlite
@@ -53,22 +53,18 @@ def test_a_file_that_was_cut_off_is_refused(backup: Path, keep: int) -> None:
     assert refused(backup)
 
 
-def test_a_page_that_was_overwritten_is_noticed(
-    backup: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_page_that_was_overwritten_is_noticed(backup: Path) -> None:
     """With zeros or noise: refused, or nothing was in it."""
-    overwrite(backup, SOME_PAGES, capsys)
+    overwrite(backup, SOME_PAGES)
 
 
 @pytest.mark.long
-def test_every_page_that_was_overwritten_is_noticed(
-    backup: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_every_page_that_was_overwritten_is_noticed(backup: Path) -> None:
     """The same with all of them."""
-    overwrite(backup, EVERY_PAGE, capsys)
+    overwrite(backup, EVERY_PAGE)
 
 
-def overwrite(backup: Path, step: int, capsys: pytest.CaptureFixture[str]) -> None:
+def overwrite(backup: Path, step: int) -> None:
     """Overwrite one page after the other, each in a whole file."""
     rng = np.random.default_rng(6)
     data = backup.read_bytes()
@@ -83,27 +79,22 @@ def overwrite(backup: Path, step: int, capsys: pytest.CaptureFixture[str]) -> No
         else:
             # An index, or an unused page: the rows are all there.
             assert content(backup) == whole
-    with capsys.disabled():
-        sys.stdout.write(
-            f"\nbackup, page overwritten: refused {noticed} of {len(pages)}, "
-            f"the others hold every row; wrong rows taken 0\n"
-        )
+    note(29, "backup, page overwritten", "refused", f"{noticed} of {len(pages)}")
+    note(29, "backup, page overwritten", "wrong rows taken", 0)
 
 
-def test_a_flipped_bit_never_gets_through(backup: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_flipped_bit_never_gets_through(backup: Path) -> None:
     """Refused, or it was a bit that no row needs."""
-    flip_bits(backup, FLIPS, capsys)
+    flip_bits(backup, FLIPS)
 
 
 @pytest.mark.long
-def test_many_flipped_bits_never_get_through(
-    backup: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_many_flipped_bits_never_get_through(backup: Path) -> None:
     """The same with many more."""
-    flip_bits(backup, MANY_FLIPS, capsys)
+    flip_bits(backup, MANY_FLIPS)
 
 
-def flip_bits(backup: Path, flips: int, capsys: pytest.CaptureFixture[str]) -> None:
+def flip_bits(backup: Path, flips: int) -> None:
     """Flip one bit after the other, each in a whole file."""
     rng = np.random.default_rng(29)
     data = backup.read_bytes()
@@ -118,11 +109,8 @@ def flip_bits(backup: Path, flips: int, capsys: pytest.CaptureFixture[str]) -> N
             noticed += 1
         else:
             assert content(backup) == whole, (at, bit)
-    with capsys.disabled():
-        sys.stdout.write(
-            f"\nbackup, bit flipped: refused {noticed} of {flips}, the others were in bytes that "
-            f"no row needs; wrong rows taken 0\n"
-        )
+    note(29, "backup, bit flipped", "refused", f"{noticed} of {flips}")
+    note(29, "backup, bit flipped", "wrong rows taken", 0)
 
 
 @pytest.mark.parametrize(

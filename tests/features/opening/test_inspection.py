@@ -12,6 +12,7 @@ import pytest
 
 from app.features.opening import inspection
 from app.features.opening.inspection import damage_of, foreign_tables, is_open_elsewhere
+from tests.faults.figures import note
 from tests.features.opening.files import filled, flip, killed, log
 
 PAGE = 4096
@@ -59,21 +60,20 @@ def test_looking_changes_nothing(tmp_path: Path) -> None:
         assert (file.read_bytes(), log(file).read_bytes()) == before
 
 
-def test_a_page_of_noise_is_noticed(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_page_of_noise_is_noticed(file: Path) -> None:
     """Every page, in its turn."""
     found = dict(overwritten(file, noise=True))
-    with capsys.disabled():
-        sys.stdout.write(f"\npage of noise: {count(found)}\n")
+    note(6, "a page of noise", "noticed", count(found))
     assert [page for page, damage in found.items() if damage is None] == []
 
 
-def test_a_page_of_zeros_is_noticed(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_page_of_zeros_is_noticed(file: Path) -> None:
     """Every page but those that hold only the end of a long value: see the next test."""
     ends = ends_of_blobs(file)
     found = dict(overwritten(file, noise=False))
     unnoticed = {page for page, damage in found.items() if damage is None}
-    with capsys.disabled():
-        sys.stdout.write(f"\npage of zeros: {count(found)}, the others are ends of blobs\n")
+    note(6, "a page of zeros", "noticed", count(found))
+    note(6, "a page of zeros", "of the others: ends of long values", len(unnoticed & ends))
     assert unnoticed <= ends
 
 
@@ -168,4 +168,4 @@ def test_whoever_has_it_open_is_noticed(file: Path) -> None:
 def count(found: dict[int, str | None]) -> str:
     """How many of how many were noticed."""
     noticed = sum(damage is not None for damage in found.values())
-    return f"noticed {noticed} of {len(found)}"
+    return f"{noticed} of {len(found)}"
