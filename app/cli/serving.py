@@ -1,8 +1,10 @@
 """Starting the server on this machine."""
 
 import sys
+from typing import NoReturn
 
 import uvicorn
+from sqlalchemy.exc import DBAPIError
 
 from app.clock import Clock
 from app.errors import ReembodyError
@@ -48,10 +50,16 @@ def _prepare(settings: Settings, *, new_database: bool) -> None:
     try:
         kept = prepare_database(settings, Clock(), new_database=new_database)
     except ReembodyError as error:
-        print(f"reembody: {error.message}. {error.remedy}", file=sys.stderr)
-        raise SystemExit(UNUSABLE) from error
+        _give_up(f"{error.message}. {error.remedy}")
+    except DBAPIError as error:
+        _give_up(f"the database cannot be opened: {error.orig}")
     if kept is not None:
         print(f"Backup     {kept}, made before the database was migrated", flush=True)
+
+
+def _give_up(why: str) -> NoReturn:
+    print(f"reembody: {why}", file=sys.stderr)
+    raise SystemExit(UNUSABLE)
 
 
 def _where(settings: Settings) -> str:

@@ -34,11 +34,13 @@ def is_open_elsewhere(file: Path) -> bool:
         import fcntl
     except ImportError:
         return False
-    with file.open("rb+") as handle:
-        try:
+    try:
+        with file.open("rb+") as handle:
             fcntl.lockf(handle, fcntl.LOCK_EX | fcntl.LOCK_NB, _SHARED_SIZE, _SHARED_FIRST)
-        except BlockingIOError:
-            return True
+    except BlockingIOError:
+        return True
+    except OSError:  # not ours to write: working with it will say so
+        return False
     return False
 
 
