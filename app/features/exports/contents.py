@@ -17,6 +17,7 @@ from sqlalchemy.orm import Session
 from app.features.analysis.codebook import codebook_frame
 from app.features.analysis.tables import (
     Kind,
+    alarms_table,
     answers_table,
     clock_mapping_table,
     clock_probes_table,
@@ -25,6 +26,7 @@ from app.features.analysis.tables import (
     events_table,
     joint_errors_table,
     phases_table,
+    quality_table,
     scores_table,
     sessions_table,
 )
@@ -45,6 +47,8 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "completions": completions_table,
     "joint_errors": joint_errors_table,
     "events": events_table,
+    "quality": quality_table,
+    "alarms": alarms_table,
     "clock_probes": clock_probes_table,
     "clock_mapping": clock_mapping_table,
 }

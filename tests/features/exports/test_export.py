@@ -22,7 +22,7 @@ from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.features.movement_builders import moving_values, store_chunks
 
 TABLES = ("sessions", "phases", "answers", "scores", "contacts", "completions", "joint_errors")
-MORE = ("events", "clock_probes", "clock_mapping", "codebook")
+MORE = ("events", "quality", "alarms", "clock_probes", "clock_mapping", "codebook")
 FILES = {*(f"{name}.csv" for name in (*TABLES, *MORE)), "README.txt"}
 
 
