@@ -17,7 +17,7 @@ from typing import Any
 
 from alembic import command
 from alembic.script import ScriptDirectory
-from sqlalchemy import Connection, Engine, column, event, inspect, select, table
+from sqlalchemy import Connection, Engine, String, column, event, inspect, select, table
 
 from app.database import alembic_config, open_database
 from tests.support.filled import VERSION_TABLE, contents
@@ -62,7 +62,9 @@ def found(url: str) -> Found:
             look = inspect(connection)
             names = look.get_table_names()
             schema = {name: _in_words(connection, name) for name in names}
-            version = select(column("version_num")).select_from(table(VERSION_TABLE))
+            version: Select[tuple[str]] = select(column("version_num", String)).select_from(
+                table(VERSION_TABLE)
+            )
             revision = connection.scalar(version) if VERSION_TABLE in names else None
         schema.pop(VERSION_TABLE, None)
         return Found(revision, schema, contents(database.engine))
