@@ -62,9 +62,7 @@ def found(url: str) -> Found:
             look = inspect(connection)
             names = look.get_table_names()
             schema = {name: _in_words(connection, name) for name in names}
-            version: Select[tuple[str]] = select(column("version_num", String)).select_from(
-                table(VERSION_TABLE)
-            )
+            version = select(column("version_num", String)).select_from(table(VERSION_TABLE))
             revision = connection.scalar(version) if VERSION_TABLE in names else None
         schema.pop(VERSION_TABLE, None)
         return Found(revision, schema, contents(database.engine))
