@@ -4,7 +4,8 @@ SQLite reads the log up to the first frame whose checksum does not fit, and take
 where the power failed. If the disk damaged a frame further back, everything behind it is dropped
 just the same, without a word. The difference can be seen: a commit ends with a flush before the
 next one begins, so a power failure leaves at most one unfinished transaction behind that place.
-Damage leaves all the others.
+Damage leaves all the others. Only a frame whose checksum follows from that of the frame before it
+counts there: a file may have grown over sectors that were never written and hold anything.
 
 Format: https://www.sqlite.org/fileformat2.html, section 4, "The Write-Ahead Log".
 """
@@ -48,7 +49,7 @@ def inspect_log(path: Path) -> LogReport:
         head = file.read(HEADER)
         magic, _, page_size, _, *salt_and_sum = struct.unpack(">8I", head)
         order = ">" if magic & 1 else "<"
-        state = _Checksum(3).after(_words(head[:24], order)[None], (0, 0))[0]
+        state = _Checksum(3).each(_words(head[:24], order)[None], np.zeros((1, 2), np.uint32))[0]
         if magic not in MAGICS or list(state) != salt_and_sum[2:] or not _possible(page_size):
             return LogReport(header_fits=False, usable=0, commits_behind=0)
         return _frames(file, page_size, order, tuple(salt_and_sum[:2]), state)
@@ -59,23 +60,27 @@ def _possible(page_size: int) -> bool:
 
 
 def _frames(
-    file: BinaryIO, page_size: int, order: str, salts: tuple[int, ...], state: tuple[int, int]
+    file: BinaryIO, page_size: int, order: str, salts: tuple[int, ...], state: Words
 ) -> LogReport:
     length = FRAME_HEADER + page_size
     checksum = _Checksum((8 + page_size) // 8)
     usable, behind, before, fits = 0, 0, 0, True
+    last_sum = np.array([state], np.uint32)
     while block := file.read(length * FRAMES_AT_ONCE):
         frames = np.frombuffer(block, np.uint8)
         frames = frames[: len(block) // length * length].reshape(-1, length)
         heads = np.ascontiguousarray(frames[:, :FRAME_HEADER]).view(">u4").astype(np.uint32)
         own = (heads[:, 2] == salts[0]) & (heads[:, 3] == salts[1])
-        ends, good = own & (heads[:, 1] > 0), 0
-        if fits and len(frames):
-            covered = np.concatenate([frames[:, :8], frames[:, FRAME_HEADER:]], axis=1)
-            states = checksum.after(_words(covered.tobytes(), order, len(frames)), state)
-            right = own & (states == heads[:, 4:6]).all(axis=1)
+        # Follow each from the sum that the frame before it holds, right or not: as long as all are
+        # right that is the sum which SQLite keeps.
+        sums_before = np.concatenate([last_sum, heads[:, 4:6]])
+        covered = np.concatenate([frames[:, :8], frames[:, FRAME_HEADER:]], axis=1)
+        sums = checksum.each(_words(covered.tobytes(), order, len(frames)), sums_before[:-1])
+        right, last_sum = own & (sums == heads[:, 4:6]).all(axis=1), sums_before[-1:]
+        ends, good = right & (heads[:, 1] > 0), 0
+        if fits:
             good = len(right) if right.all() else int(np.argmin(right))
-            fits, state = good == len(right), (int(states[-1, 0]), int(states[-1, 1]))
+            fits = good == len(right)
         if ends[:good].any():
             usable = before + int(np.flatnonzero(ends[:good])[-1]) + 1
         behind += int(ends[good:].sum())
@@ -103,19 +108,13 @@ class _Checksum:
             # What the words of a pair with so many pairs behind it add: M^k times ((1, 0), (1, 1)).
             weights.append(_times(power, ((1, 0), (1, 1))))
             power = _times(power, step)
-        self._power = power
+        self._power: Words = np.array(power, dtype=np.uint32)
         self._weights: Words = np.array(weights[::-1], dtype=np.uint32)
 
-    def after(self, blocks: Words, state: tuple[int, int]) -> NDArray[np.uint32]:
-        """The state (n, 2) after each of n blocks (n, pairs, 2)."""
+    def each(self, blocks: Words, before: Words) -> Words:
+        """The state (n, 2) after each of n blocks (n, pairs, 2) from the state (n, 2) before it."""
         added = np.einsum("npx,psx->ns", blocks, self._weights)
-        states = np.empty((len(blocks), 2), np.uint32)
-        s0, s1 = (int(one) for one in state)
-        for at, (a0, a1) in enumerate(added.tolist()):
-            (p00, p01), (p10, p11) = self._power
-            s0, s1 = (p00 * s0 + p01 * s1 + a0) % 2**32, (p10 * s0 + p11 * s1 + a1) % 2**32
-            states[at] = s0, s1
-        return states
+        return np.asarray(before @ self._power.T + added, np.uint32)
 
 
 _Matrix = tuple[tuple[int, int], tuple[int, int]]

@@ -67,6 +67,24 @@ def test_damage_is_told_from_a_torn_end(tmp_path: Path) -> None:
         assert report.usable == taken_by_sqlite(file, tmp_path / str(at)), place
 
 
+def test_sectors_that_were_never_written_are_no_damage(tmp_path: Path) -> None:
+    """Behind a torn end: headers with the log's salts, and anything for all the rest."""
+    file = killed(tmp_path / "some.sqlite", rows=ROWS)
+    whole = log(file).read_bytes()
+    frame = FRAME_HEADER + 4096
+    count = (len(whole) - HEADER) // frame
+    noise = np.random.default_rng(5).bytes(len(whole))
+    torn = bytearray(whole)
+    for number in range(count // 2, count):
+        start = HEADER + number * frame
+        torn[start : start + frame] = noise[start : start + frame]
+        torn[start + 8 : start + 16] = whole[16:24]
+    log(file).write_bytes(torn)
+    report = inspect_log(log(file))
+    assert not report.damaged
+    assert report.usable == taken_by_sqlite(file, tmp_path / "copy")
+
+
 def test_a_damaged_beginning_is_damage(tmp_path: Path) -> None:
     """SQLite would take the whole log for empty."""
     file = killed(tmp_path / "some.sqlite")
