@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from app.features.alarms.alarm import Condition
 from app.features.alarms.limits import WatchLimits
 
+QUIET_S = 2.0
 LATE_S = 1.0
 """A look that comes so much too late tells of the server's own pause, not of the headset's."""
 
@@ -35,6 +36,10 @@ class SilenceWatch:
     def heard(self, now_s: float) -> None:
         """A frame has come, here or on another socket of this session."""
         self._heard_s = max(self._heard_s, now_s)
+
+    def is_quiet(self, now_s: float) -> bool:
+        """Whether frames have ceased for a moment, wanted or not: figures of before are old."""
+        return now_s - self._heard_s > QUIET_S
 
     def look_up(self, now_s: float, *, reading: bool) -> None:
         """Note that the server is awake, and whether it reads."""

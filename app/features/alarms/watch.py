@@ -126,6 +126,8 @@ class QualityWatch:
         """The figures of the console's signal card; null where unknown."""
         target = self._newest.get(StreamName.TARGET)
         rate_hz = None if target is None else target.frame_rate_hz
+        if self.silence.is_quiet(now.monotonic_s):
+            rate_hz = 0.0 if self.recording else None
         usual_s = None if target is None else target.usual_s
         tallies = [watch.tally for watch in self._newest.values()]
         uncertainty_s = self.clock.uncertainty_s(now.monotonic_s)

@@ -1,7 +1,7 @@
 /** The console's reads of the server, each with the key under which it is kept. */
 import { sessions, studies } from "@shared/api/endpoints";
 import type { Kind } from "@shared/api/types";
-import { queryOptions } from "@tanstack/react-query";
+import { keepPreviousData, queryOptions } from "@tanstack/react-query";
 
 export const studiesQuery = queryOptions({ queryKey: ["studies"], queryFn: studies.list });
 
@@ -36,6 +36,14 @@ export const eventsQuery = (id: string, version: number) =>
   queryOptions({
     queryKey: ["sessions", id, "events", version],
     queryFn: () => sessions.events(id),
+  });
+
+/** `state` changes whenever an alarm begins or ends. */
+export const alarmsQuery = (id: string, state: string) =>
+  queryOptions({
+    queryKey: ["sessions", id, "alarms", state],
+    queryFn: () => sessions.alarms(id),
+    placeholderData: keepPreviousData,
   });
 
 export const codebookQuery = (key: string) =>

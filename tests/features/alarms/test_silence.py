@@ -111,3 +111,14 @@ def test_the_limit_is_an_argument() -> None:
     watched = Watched(limits=WatchLimits(silent_s=0.2, look_every_s=0.05))
     watched.wait(0.0, 0.25)
     assert watched.told == [("silent", "raised")]
+
+
+def test_a_headset_that_has_ceased_to_send_has_no_frame_rate() -> None:
+    """The figure of before would be a lie; where nothing is wanted, there is none to tell."""
+    watched = running()
+    assert watched.watch.signal(at(0.0))["frame_rate_hz"] == 0.0
+    ended_s = watched.play(TREMBLING.part(slice(0, 450)))
+    assert watched.watch.signal(at(ended_s))["frame_rate_hz"] == pytest.approx(90.0, abs=0.5)
+    assert watched.watch.signal(at(ended_s + 2.5))["frame_rate_hz"] == 0.0
+    watched.watch.follow(state(recording=False), at(ended_s + 3.0))
+    assert watched.watch.signal(at(ended_s + 3.0))["frame_rate_hz"] is None

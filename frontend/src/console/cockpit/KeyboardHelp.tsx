@@ -19,6 +19,7 @@ export function KeyboardHelp({ opened, onClose }: KeyboardHelpProps): JSX.Elemen
     ["R", t("keys.redo")],
     ["S", t("keys.skip")],
     ["L", t("keys.log")],
+    ["A", t("alarm.open")],
     ["?", t("keys.help")],
     ["Esc", t("keys.close")],
   ] as const;

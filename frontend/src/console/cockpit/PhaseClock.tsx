@@ -72,7 +72,13 @@ function stateKey(current: Current): Key {
   return current.resuming ? "phase.resuming" : `phase.${current.status}`;
 }
 
-const CAUSES = ["operator", "headset_lost", "server_restarted", "headset"] as const;
+const CAUSES = [
+  "operator",
+  "headset_lost",
+  "headset_silent",
+  "server_restarted",
+  "headset",
+] as const;
 
 function causeKey(reason: string | null): Key | null {
   const known = CAUSES.find((cause) => cause === reason);

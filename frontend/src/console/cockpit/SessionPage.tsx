@@ -6,7 +6,9 @@ import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/useTitle";
+import { AlarmDrawer } from "./AlarmDrawer";
 import { currentStep, primaryAction } from "./action";
+import { titleKey } from "./alarms";
 import classes from "./Cockpit.module.css";
 import { CommandFailure } from "./CommandFailure";
 import { CurrentStep } from "./CurrentStep";
@@ -20,8 +22,10 @@ import { PhaseTable } from "./PhaseTable";
 import { ReasonDialog } from "./ReasonDialog";
 import type { Reasoned } from "./reasons";
 import { ScoresPanel } from "./ScoresPanel";
+import { SignalStrip } from "./SignalStrip";
 import { TelemetryCard } from "./TelemetryCard";
 import { Timeline } from "./Timeline";
+import { useAlarms } from "./useAlarms";
 import { useKeys } from "./useKeys";
 import { useSession } from "./useSession";
 
@@ -46,8 +50,16 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
   const [log, logs] = useDisclosure();
   const [help, helps] = useDisclosure();
   const [entry, entries] = useDisclosure();
+  const [history, histories] = useDisclosure();
+  const alarms = useAlarms(session, live.store);
+  const worst = alarms.on[0];
   const ended = session.ended_at !== null;
-  useTitle(session.participant_code);
+  // Whoever looks at another tab still sees it.
+  useTitle(
+    worst?.severity === "critical"
+      ? `▲ ${t(titleKey(worst))} · ${session.participant_code}`
+      : session.participant_code,
+  );
   const ask = (type: Reasoned) => {
     if (session.allowed.includes(type)) setAsking(type);
   };
@@ -65,11 +77,13 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
     note: () => document.getElementById("note")?.focus(),
     log: logs.toggle,
     help: helps.toggle,
+    alarms: histories.toggle,
     step: `${session.current?.index} ${session.current?.status}`,
   });
   return (
     <div className={classes.cockpit}>
       <Header session={session} feed={live.feed} onLog={logs.open} onHelp={helps.open} />
+      <SignalStrip session={session} alarms={alarms} onHistory={histories.open} />
       <Timeline session={session} />
       <div className={classes.centre}>
         {session.simulated && (
@@ -87,6 +101,7 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
       </aside>
       <ReasonDialog type={asking} session={session} live={live} onClose={() => setAsking(null)} />
       <EventDrawer session={session} opened={log} onClose={logs.close} />
+      <AlarmDrawer session={session} opened={history} onClose={histories.close} />
       <KeyboardHelp opened={help} onClose={helps.close} />
       <OperatorEntry
         session={session}

@@ -20,7 +20,6 @@ export function TelemetryCard({ session, store }: TelemetryCardProps): JSX.Eleme
   if (session.status !== "active") return null;
   const telemetry = received?.telemetry;
   const figures = [
-    ["fps", telemetry?.fps ?? null, "fps"],
     ["completions", telemetry?.completions ?? phase?.completions ?? null, ""],
     ["contacts", telemetry?.side_contacts ?? phase?.side_contacts ?? null, ""],
     ["contactTime", phase?.side_contact_s ?? null, "s"],

@@ -2,7 +2,7 @@
  * The newest telemetry of one session. It arrives several times a second, so it lives outside the
  * page's state: only the parts that show it draw again.
  */
-import type { Telemetry } from "@shared/api/types";
+import type { LiveAlarm, Signal, Telemetry, TelemetryNews } from "@shared/api/types";
 import { type Milliseconds, milliseconds } from "@shared/units";
 import { useSyncExternalStore } from "react";
 
@@ -11,17 +11,30 @@ export interface Received {
   readonly at: Milliseconds;
 }
 
+/** How good the data are; told also while no frame comes. */
+export interface Quality {
+  readonly signal: Signal | null;
+  readonly alarms: readonly LiveAlarm[];
+  readonly at: Milliseconds;
+}
+
 export class TelemetryStore {
   #latest: Received | null = null;
+  #quality: Quality | null = null;
   readonly #listeners = new Set<() => void>();
 
-  readonly put = (news: Telemetry): void => {
-    const telemetry = withErrors(news, this.#latest?.telemetry);
-    this.#latest = { telemetry, at: milliseconds(performance.now()) };
+  readonly put = (news: TelemetryNews): void => {
+    const at = milliseconds(performance.now());
+    this.#quality = { signal: news.signal, alarms: news.alarms, at };
+    if (hasFigures(news)) {
+      this.#latest = { telemetry: withErrors(news, this.#latest?.telemetry), at };
+    }
     for (const listener of this.#listeners) listener();
   };
 
   readonly latest = (): Received | null => this.#latest;
+
+  readonly quality = (): Quality | null => this.#quality;
 
   readonly subscribe = (listener: () => void): (() => void) => {
     this.#listeners.add(listener);
@@ -31,6 +44,13 @@ export class TelemetryStore {
 
 export const useTelemetry = (store: TelemetryStore): Received | null =>
   useSyncExternalStore(store.subscribe, store.latest);
+
+export const useQuality = (store: TelemetryStore): Quality | null =>
+  useSyncExternalStore(store.subscribe, store.quality);
+
+/** News without frames say nothing of the clock: what was told of it before stays. */
+const hasFigures = (news: TelemetryNews): news is TelemetryNews & Telemetry =>
+  news.phase_id !== undefined;
 
 /**
  * Joint errors need both poses of one moment and are missing from messages that hold only one; the

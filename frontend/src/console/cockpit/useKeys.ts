@@ -9,6 +9,7 @@ export interface Keys {
   readonly note: () => void;
   readonly log: () => void;
   readonly help: () => void;
+  readonly alarms: () => void;
   /** Changes whenever the primary action means something else. */
   readonly step: string;
 }
@@ -24,6 +25,7 @@ const BINDINGS: Readonly<Record<string, Exclude<keyof Keys, "step">>> = {
   s: "skip",
   n: "note",
   l: "log",
+  a: "alarms",
   "?": "help",
 };
 

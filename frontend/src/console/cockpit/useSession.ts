@@ -2,7 +2,7 @@
 import { sessions } from "@shared/api/endpoints";
 import { isApiError } from "@shared/api/errors";
 import { type FeedState, openFeed } from "@shared/api/live";
-import type { Command, SessionView, Telemetry } from "@shared/api/types";
+import type { Command, SessionView, TelemetryNews } from "@shared/api/types";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
 import { sessionQuery } from "../queries";
@@ -36,7 +36,7 @@ export function useSession(id: string) {
         onState: setFeed,
         on: {
           session: (data) => accept(data as SessionView),
-          telemetry: (data) => store.put(data as Telemetry),
+          telemetry: (data) => store.put(data as TelemetryNews),
         },
       }),
     [id],

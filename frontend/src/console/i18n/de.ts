@@ -1,7 +1,9 @@
 /** The console's texts in German. */
+import { alarmsDe } from "./alarmTexts";
 import type { en } from "./en";
 
 export const de: Record<keyof typeof en, string> = {
+  ...alarmsDe,
   "app.name": "Reembody",
   "app.studies": "Studien",
   "app.logout": "Abmelden",
@@ -384,7 +386,6 @@ export const de: Record<keyof typeof en, string> = {
   "scores.empty": "Sie erscheinen hier, wenn ein Fragebogen beantwortet ist.",
   "scores.incomplete": "unvollständig",
   "live.title": "Headset, jetzt",
-  "live.fps": "Bildrate",
   "live.completions": "Aufgaben erledigt",
   "live.contacts": "Seitenkontakte",
   "live.contactTime": "Kontaktzeit",
@@ -445,6 +446,7 @@ export const de: Record<keyof typeof en, string> = {
   "pause.note": "Pause: {{reason}}",
   "cause.operator": "an der Konsole",
   "cause.headset_lost": "Verbindung zum Headset verloren",
+  "cause.headset_silent": "das Headset war stumm",
   "cause.server_restarted": "der Server wurde neu gestartet",
   "cause.headset": "am Headset",
   "redo.step": "{{number}}. {{name}}",

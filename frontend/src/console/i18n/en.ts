@@ -1,5 +1,8 @@
 /** The console's texts in English; `de.ts` has the same keys. */
+import { alarmsEn } from "./alarmTexts";
+
 export const en = {
+  ...alarmsEn,
   "app.name": "Reembody",
   "app.studies": "Studies",
   "app.logout": "Sign out",
@@ -377,7 +380,6 @@ export const en = {
   "scores.empty": "They appear here when a questionnaire is answered.",
   "scores.incomplete": "incomplete",
   "live.title": "Headset, now",
-  "live.fps": "Frame rate",
   "live.completions": "Tasks completed",
   "live.contacts": "Side contacts",
   "live.contactTime": "Contact time",
@@ -438,6 +440,7 @@ export const en = {
   "pause.note": "Pause: {{reason}}",
   "cause.operator": "by the console",
   "cause.headset_lost": "connection to the headset lost",
+  "cause.headset_silent": "the headset was silent",
   "cause.server_restarted": "the server was restarted",
   "cause.headset": "by the headset",
   "redo.step": "{{number}}. {{name}}",

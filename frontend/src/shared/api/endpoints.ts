@@ -4,6 +4,7 @@ import { answer, server } from "./request";
 import type {
   Account,
   Administration,
+  Alarm,
   CheckResult,
   CodebookColumn,
   Command,
@@ -77,6 +78,8 @@ export const sessions = {
     ),
   events: (id: string) =>
     answer<readonly SessionEvent[]>(server.GET("/api/sessions/{session_id}/events", session(id))),
+  alarms: (id: string) =>
+    answer<readonly Alarm[]>(server.GET("/api/sessions/{session_id}/alarms", session(id))),
   answers: (id: string) =>
     answer<readonly StoredAnswers[]>(server.GET("/api/sessions/{session_id}/answers", session(id))),
   pair: (id: string, device: Device) =>

@@ -22,6 +22,7 @@ export type Note = Schemas["NoteView"];
 export type AdministrationScores = Schemas["StoredScores"];
 export type Score = Schemas["ScoreView"];
 export type SessionEvent = Schemas["EventView"];
+export type Alarm = Schemas["AlarmView"];
 
 export type Kind = SessionSummary["kind"];
 export type SessionStatus = SessionSummary["status"];
@@ -114,6 +115,31 @@ export interface Telemetry {
   readonly completions?: number;
   readonly side_contacts?: number;
   readonly joint_error_deg?: Readonly<Record<string, number | null>>;
+}
+
+/** How good the headset's data are; null where it is not known. Counts begin with the phase. */
+export interface Signal {
+  readonly frame_rate_hz: number | null;
+  readonly usual_rate_hz: number | null;
+  readonly gaps: number;
+  readonly gap_s: number;
+  readonly frames_flagged: number;
+  readonly clock_uncertainty_ms: number | null;
+  readonly behind_s: number;
+}
+
+/** An alarm that is on, with its newest value. */
+export interface LiveAlarm extends Pick<Alarm, "code" | "severity" | "stream" | "message"> {
+  readonly value: number | null;
+  readonly unit: string | null;
+  readonly joints: readonly string[];
+  readonly since: string;
+}
+
+/** What the server tells of the headset: always how good its data are, and figures with frames. */
+export interface TelemetryNews extends Partial<Telemetry> {
+  readonly signal: Signal | null;
+  readonly alarms: readonly LiveAlarm[];
 }
 
 export type Pairing = Schemas["PairingView"];

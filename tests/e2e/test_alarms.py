@@ -1,0 +1,76 @@
+"""An alarm comes up at the console, is taken note of, goes away, and stays in the list."""
+
+import re
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.people import PATIENCE_MS, Experimenter
+from tests.features.headset.site import Headset, Site
+from tests.features.headset.streaming import PER_BATCH, Streamer, in_free_movement, materialised
+from tests.support.browser import ColorScheme
+from tests.wire.samples import RATE_HZ
+
+
+@contextmanager
+def streaming(headset: Headset, streamer: Streamer) -> Iterator[None]:
+    """Movement comes while the block lasts, and what the server says is heard."""
+    over = threading.Event()
+
+    def go_on() -> None:
+        while not over.wait(PER_BATCH / RATE_HZ):
+            streamer.send_batch()
+            streamer.probe()
+
+    thread = threading.Thread(target=go_on)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_an_alarm_comes_up_and_goes_away(
+    headset_site: Site,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+    scheme: ColorScheme,
+) -> None:
+    """The headset falls silent in a phase and wakes; nothing else on the page moves meanwhile."""
+    experimenter = Experimenter(page_factory((1280, 800), scheme), headset_site.server.url)
+    page, session_id = experimenter.page, materialised(headset_site)
+    experimenter.log_in()
+    page.goto(f"{headset_site.server.url}/#/sessions/{session_id}")
+    strip = page.get_by_label("Signal and alarms")
+    with headset_site.headset(headset_site.token(session_id)) as headset:
+        streamer = in_free_movement(headset_site, session_id, headset)
+        with streaming(headset, streamer):
+            expect(strip).to_contain_text("Movement arrives and is stored", timeout=PATIENCE_MS)
+            expect(strip).to_contain_text(re.compile(r"90 Hz"), timeout=PATIENCE_MS)
+            before = strip.bounding_box()
+        alarm = strip.get_by_role("alert")
+        expect(alarm).to_contain_text("Headset silent", timeout=PATIENCE_MS)
+        expect(alarm).to_contain_text("The phase is paused", timeout=PATIENCE_MS)
+        expect(page).to_have_title(re.compile("Headset silent"))
+        assert strip.bounding_box() == before
+        assert axe(page) == []
+        screenshot(page, f"alarm-silent-{scheme}")
+        page.reload()
+        expect(alarm).to_contain_text("Headset silent", timeout=PATIENCE_MS)
+        experimenter.press("Understood")
+        expect(alarm).to_contain_text("Headset silent")
+        assert axe(page) == []
+        with streaming(headset, streamer):
+            expect(strip).to_contain_text("No alarms", timeout=PATIENCE_MS)
+        page.keyboard.press("a")
+        drawer = page.get_by_role("dialog")
+        expect(drawer.get_by_role("row", name=re.compile("Headset silent"))).to_be_visible()
+        assert axe(page) == []
+        screenshot(page, f"alarm-history-{scheme}")
