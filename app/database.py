@@ -60,12 +60,20 @@ class WriteObserver(Protocol):
         """Changes are on disk."""
 
 
+@dataclass(eq=False)
+class CommitCount:
+    """How many transactions of this process have changed something."""
+
+    number: int = 0
+
+
 @dataclass(frozen=True)
 class Database:
     """An engine with its two ways in: `reading()` and `writing()`."""
 
     engine: Engine
     observer: WriteObserver | None = None
+    commits: CommitCount = field(default_factory=CommitCount)
     _write_lock: threading.Lock = field(default_factory=threading.Lock)
     _waiting_room: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(1000))
     _writers: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(WRITERS))
@@ -139,8 +147,10 @@ class Database:
         changes = session.in_transaction() and has_changes(session.connection())
         session.commit()
         # A commit without changes says nothing of the disk.
-        if changes and self.observer is not None:
-            self.observer.succeeded()
+        if changes:
+            self.commits.number += 1
+            if self.observer is not None:
+                self.observer.succeeded()
 
     @contextmanager
     def _observed(self) -> Iterator[None]:

@@ -21,11 +21,14 @@ UNUSABLE = 2
 def serve(
     port: Annotated[int | None, typer.Option(help="Port to listen on.")] = None,
     host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
+    new_database: Annotated[
+        bool, typer.Option("--new-database", help="Begin an empty one behind one in quarantine.")
+    ] = False,
 ) -> None:
     """Serve the product on this machine."""
     from app.cli.serving import serve_forever
 
-    serve_forever(host=host, port=port)
+    serve_forever(host=host, port=port, new_database=new_database)
 
 
 @app.command()
@@ -96,9 +99,12 @@ def token(
 ) -> None:
     """Print a bearer token for scripts."""
     from app.cli.tokens import new_token
+    from app.errors import ReembodyError
 
     try:
         print(new_token(account, hours))
+    except ReembodyError as error:
+        fail(f"{error.message}. {error.remedy}".strip())
     except LookupError as error:
         fail(str(error))
 

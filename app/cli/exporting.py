@@ -3,11 +3,10 @@
 import sys
 from pathlib import Path
 
+from app.cli.installation import opened_database
 from app.clock import Clock
-from app.database import migrate, open_database
 from app.features.analysis.tables import KINDS, Kind
 from app.features.exports.service import export_study, usual_kind
-from app.settings import Settings
 
 
 def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
@@ -17,17 +16,9 @@ def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
     standard error which file it is at. Raises ValueError for an unknown kind, ReembodyError for an
     unknown study or a folder that is not ours to replace, OSError where it cannot be written.
     """
-    url = Settings().resolved_database_url
-    migrate(url)
-    database = open_database(url)
-    try:
-        with database.reading() as db:
-            chosen = usual_kind(db, study) if kind is None else _known(kind)
-            done = export_study(
-                db, study, chosen, to, now=Clock().utc_now(), progress=_tell_progress
-            )
-    finally:
-        database.close()
+    with opened_database() as database, database.reading() as db:
+        chosen = usual_kind(db, study) if kind is None else _known(kind)
+        done = export_study(db, study, chosen, to, now=Clock().utc_now(), progress=_tell_progress)
     return f"{done.sessions} session(s) of kind {done.kind} in {done.files} files: {to}"
 
 

@@ -2,10 +2,9 @@
 
 import json
 
-from app.database import migrate, open_database
+from app.cli.installation import opened_database
 from app.features.receipts.service import receipt_of
 from app.features.receipts.text import receipt_text
-from app.settings import Settings
 
 
 def verify_session(session_id: str, *, as_json: bool) -> tuple[str, bool]:
@@ -13,13 +12,7 @@ def verify_session(session_id: str, *, as_json: bool) -> tuple[str, bool]:
 
     Reads beside a running server. Raises ReembodyError for an unknown session.
     """
-    url = Settings().resolved_database_url
-    migrate(url)
-    database = open_database(url)
-    try:
-        with database.reading() as db:
-            receipt = receipt_of(db, session_id)
-    finally:
-        database.close()
+    with opened_database() as database, database.reading() as db:
+        receipt = receipt_of(db, session_id)
     text = json.dumps(receipt.as_json(), indent=2) if as_json else receipt_text(receipt)
     return text, receipt.complete

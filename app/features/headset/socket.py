@@ -6,6 +6,7 @@ The token comes as a second subprotocol (`bearer.TOKEN`), so that it stands in n
 import asyncio
 import logging
 
+from sqlalchemy.exc import DBAPIError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, NotSignedIn, ReembodyError
@@ -18,6 +19,7 @@ from app.wire.messages import SUBPROTOCOL, Failure
 
 log = logging.getLogger(__name__)
 CLOSE_NOT_PAIRED = 4401
+CLOSE_TRY_AGAIN = 1013
 MOST_REASON_BYTES = 123
 
 
@@ -41,6 +43,10 @@ async def serve_headset(socket: WebSocket, context: AppContext, writer: Telemetr
             CLOSE_REFUSED,
             InvalidInput(str(error), remedy="See docs/protocol.md for the layout of a batch."),
         )
+    except DBAPIError:
+        # Nothing can be read or stored just now: the headset comes again by itself.
+        if socket.application_state is WebSocketState.CONNECTED:
+            await socket.close(CLOSE_TRY_AGAIN)
     except TimeoutError:
         await _close(
             socket, CLOSE_REFUSED, InvalidInput("no hello came", remedy="Send hello first.")

@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import AsyncIterator
-from datetime import datetime
 
 from fastapi import APIRouter
 from fastapi.sse import EventSourceResponse, ServerSentEvent
@@ -96,12 +95,10 @@ async def get_live(context: Context, tablet: PairedTablet) -> AsyncIterator[Serv
 
 def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
     """Note that the tablet is there, and draw its screen; None once it was unpaired."""
-    now: datetime = context.clock.utc_now()
-    with context.database.writing() as db:
+    with context.database.reading() as db:
         device = db.get(Device, device_id)
         if device is None or device.revoked_at is not None:
             return None
-        device.last_seen_at = now
-        context.hub.note_seen(device.id, now)
+        context.hub.note_seen(device.id, context.clock.utc_now())
         state = tablet_state(db, session_by_id(db, device.session_id))
     return ServerSentEvent(data=state, event="state", id=str(state.version))

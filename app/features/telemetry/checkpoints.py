@@ -2,9 +2,13 @@
 
 SQLite does this by itself, inside whichever commit makes the log long: that commit, and all the
 acknowledgements behind it, then wait for two more flushes. So the server's connections leave it to
-this class. It copies beside the writers (PASSIVE waits for nobody, and nobody waits for it), and
-only when the log has become long it takes the writing turn for the little that came meanwhile: the
-next commit then begins the log anew.
+this class. It copies beside the writers (PASSIVE waits for nobody, and nobody waits for it), then
+takes the writing turn for the little that came meanwhile: the next commit begins the log anew.
+
+A copy never starts on a log that is copied already: SQLite before 3.51.3 may damage the database if
+a commit begins the log anew at that very moment. So it is asked first, within the writing turn,
+whether anything was committed since the last complete copy; then the log holds something to copy
+until this class has copied it.
 """
 
 import time
@@ -14,8 +18,6 @@ from dataclasses import dataclass
 from app.database import Database
 
 EVERY_S = 2.0
-LONG_LOG_PAGES = 8192
-"""32 MiB of 4 KiB pages."""
 
 
 @dataclass
@@ -25,24 +27,30 @@ class Checkpointer:
     database: Database
     monotonic_s: Callable[[], float] = time.monotonic
     _next_s: float = 0.0
+    _copied_at: int = 0
 
     def turn(self) -> None:
         """Copy what has been written, if it is time to."""
         if not self.database.is_sqlite or self.monotonic_s() < self._next_s:
             return
-        if self._copy() >= LONG_LOG_PAGES:
-            with self.database.write_turn():
-                self._copy()
         self._next_s = self.monotonic_s() + EVERY_S
+        with self.database.write_turn():
+            nothing_new = self.database.commits.number == self._copied_at
+        if nothing_new:
+            return
+        self._copy()
+        with self.database.write_turn():
+            if self.database.commits.number != self._copied_at and self._copy():
+                self._copied_at = self.database.commits.number
 
-    def _copy(self) -> int:
-        """Copy without waiting for anybody; how many pages the log holds."""
+    def _copy(self) -> bool:
+        """Copy without waiting for anybody; whether nothing is left to copy."""
         connection = self.database.engine.raw_connection()
         try:
             cursor = connection.cursor()
             # Not through the engine's own execution: it would open a transaction first.
             cursor.execute("PRAGMA wal_checkpoint(PASSIVE)")
-            _, pages, _ = cursor.fetchone() or (0, 0, 0)
-            return int(pages)
+            busy, pages, copied = cursor.fetchone() or (0, 0, 0)
+            return not busy and pages == copied
         finally:
             connection.close()

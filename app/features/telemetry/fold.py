@@ -34,6 +34,10 @@ BATCHES = cast("Table", TelemetryBatch.__table__)
 CHUNKS = cast("Table", TelemetryChunk.__table__)
 
 
+class BatchesChanged(RuntimeError):
+    """What was to be folded is not what is stored any more; the next turn looks anew."""
+
+
 class Waiting(NamedTuple):
     """A batch as it lies in its table, with its decoded content."""
 
@@ -182,10 +186,13 @@ def _chunk(piece: Sequence[Waiting]) -> dict[str, Any]:
 
 
 def _replace(db: Session, chunks: Sequence[dict[str, Any]]) -> None:
-    """Store chunks and delete the batches they hold."""
+    """Store chunks and delete the batches they hold; nothing, if these are no longer there.
+
+    A backup may have been restored since they were read.
+    """
     columns = CHUNKS.c.keys()
     db.execute(insert(CHUNKS), [{name: chunk[name] for name in columns} for chunk in chunks])
-    db.execute(
+    deleted = db.connection().execute(
         _DELETE,
         [
             {
@@ -196,3 +203,6 @@ def _replace(db: Session, chunks: Sequence[dict[str, Any]]) -> None:
             for chunk in chunks
         ],
     )
+    expected = sum(chunk["batches"] for chunk in chunks)
+    if deleted.rowcount != expected:
+        raise BatchesChanged(f"{deleted.rowcount} of {expected} batches were there to be folded")

@@ -12,13 +12,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import DBAPIError
 
 from app.features.alarms.alarm import Change
 from app.features.context import AppContext
 from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.reports import store_report
+from app.features.trouble import explain
 from app.wire import BatchHeader, FrameFlags
 from app.wire.messages import Probed, Produced, Report
 
@@ -127,8 +128,8 @@ class TelemetryWriter:
         while True:
             try:
                 self._store(arrivals)
-            except OperationalError:
-                log.exception("telemetry cannot be written; nothing is acknowledged")
+            except DBAPIError:
+                # The database's observer has told of it already.
                 if self._stopping:
                     return
                 time.sleep(RETRY_S)
@@ -139,9 +140,9 @@ class TelemetryWriter:
         """Commit all together; if a message is at fault, session by session."""
         try:
             self._commit(arrivals)
-        except OperationalError:
-            raise
         except Exception as error:
+            if explain(error) is not None:
+                raise  # the storage is at fault, not a message
             sessions = {arrival.session_id for arrival in arrivals}
             if len(sessions) > 1:
                 for session_id in sorted(sessions):
