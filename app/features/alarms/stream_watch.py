@@ -203,7 +203,7 @@ class StreamWatch:
         unit: str | None = None,
         joints: tuple[str, ...] = (),
     ) -> Condition:
-        timed = times_s[np.isfinite(times_s)]
+        timed = times_s[np.abs(times_s) <= self.limits.quality.latest_s]
         client_t_s = float(timed[0]) if len(timed) else None
         return Condition(code, message, self.stream, value, unit, client_t_s, joints)
 

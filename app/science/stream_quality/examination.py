@@ -11,7 +11,7 @@ from app.science.stream_quality.freezing import changes, stillness
 from app.science.stream_quality.jumping import jumps
 from app.science.stream_quality.limits import USUAL, QualityError, QualityLimits
 from app.science.stream_quality.memory import LastPose, Memory
-from app.science.stream_quality.pacing import Pacing, pace
+from app.science.stream_quality.pacing import Pacing, is_timed, pace
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.floating[Any]]
@@ -68,13 +68,14 @@ def examine(
     _require_shapes(times_s, rotations, positions_m)
     non_finite, non_unit = _broken(times_s, rotations, positions_m, limits)
     pacing = pace(times_s, limits, usual_s, before)
-    sound = np.flatnonzero(~(non_finite | non_unit))
+    timed = is_timed(times_s, limits)
+    sound = np.flatnonzero(timed & ~(non_finite | non_unit))
     turned = np.zeros((len(times_s), JOINT_COUNT), np.bool_)
     frozen = np.zeros_like(turned)
     shifted = np.zeros(len(times_s), np.bool_)
     # One sum from the very first frame on, so that cutting a recording rounds nothing differently.
     watched_s = np.cumsum(np.concatenate(([before.watched_s], pacing.watched_s)))[1:]
-    after = _paced(before, times_s, watched_s)
+    after = _paced(before, times_s[timed], watched_s)
     if len(sound):
         whole = len(sound) == len(times_s)
         usable = slice(None) if whole else sound
@@ -136,11 +137,10 @@ def _jumped(
 
 
 def _paced(before: Memory, times_s: NDArray[np.float64], watched_s: NDArray[np.float64]) -> Memory:
-    """What is known after the span if none of its poses is usable."""
-    timed = times_s[np.isfinite(times_s)]
+    """What is known after the span if none of its poses is usable, from the times that are some."""
     return replace(
         before,
-        time_s=float(timed[-1]) if len(timed) else before.time_s,
+        time_s=float(times_s[-1]) if len(times_s) else before.time_s,
         watched_s=float(watched_s[-1]) if len(watched_s) else before.watched_s,
     )
 

@@ -29,6 +29,7 @@ def jumps(
     # Beyond half a turn every rotation is within reach.
     half_turn = np.minimum(0.5 * limits.turn_rad_per_s * passed_s, 0.5 * np.pi)
     turned = np.abs(cosine) < np.cos(half_turn)[:, np.newaxis]
-    step_m = positions_m[1:] - positions_m[:-1]
-    moved_m = np.sqrt(np.einsum("nk,nk->n", step_m, step_m))
-    return turned, moved_m > limits.root_m_per_s * passed_s
+    with np.errstate(over="ignore", invalid="ignore"):  # a place may be any number
+        step_m = positions_m[1:] - positions_m[:-1]
+        moved_m = np.sqrt(np.einsum("nk,nk->n", step_m, step_m))
+        return turned, moved_m > limits.root_m_per_s * passed_s

@@ -29,7 +29,9 @@ class QualityLimits:
     tracks, or that a solver lets rest now and then, have not been lively. `may_rest` joints rest on
     the floor with the foot they belong to and are left out.
 
-    Rotation: a quaternion whose length is off 1 by more than `unit_tolerance` is none.
+    Rotation: a quaternion whose length is off 1 by more than `unit_tolerance` is none. Time: what
+    lies further from zero than `latest_s`, thirty years, is no reading of a clock, and stands for
+    nothing.
     """
 
     gap_frames: float = 2.5
@@ -43,6 +45,7 @@ class QualityLimits:
     known_s: float = 2.0
     may_rest: tuple[int, ...] = TOES
     unit_tolerance: float = 1e-3
+    latest_s: float = 1e9
 
 
 USUAL = QualityLimits()

@@ -26,12 +26,17 @@ class Pacing:
     usual_s: float
 
 
+def is_timed(times_s: NDArray[np.float64], limits: QualityLimits) -> NDArray[np.bool_]:
+    """Frames (n,) whose time can be one."""
+    return np.asarray(np.abs(times_s) <= limits.latest_s)  # NaN is not
+
+
 def pace(
     times_s: NDArray[np.float64], limits: QualityLimits, usual_s: float | None, before: Memory
 ) -> Pacing:
     """Judge times (n,); `usual_s` None takes the median interval of this span."""
     interval_s = np.full(len(times_s), np.nan)
-    timed = np.isfinite(times_s)
+    timed = is_timed(times_s, limits)
     first = np.nan if before.time_s is None else before.time_s
     interval_s[timed] = np.diff(times_s[timed], prepend=first)
     forward = interval_s > 0.0

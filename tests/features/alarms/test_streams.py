@@ -1,5 +1,7 @@
 """What is found in the frames while they come."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -142,3 +144,17 @@ def test_a_run_that_went_before_does_not_mix_with_the_newer_one() -> None:
         )
         watched.changes += watched.watch.batch(batch(MINUTE, first, epoch=1), at(0))
     assert watched.told == []
+
+
+def test_whatever_comes_is_told_in_numbers() -> None:
+    """Frames may hold anything; what the console hears is valid JSON."""
+    rng = np.random.default_rng(3)
+    odd = MINUTE.part(slice(0, 900)).copy()
+    late = rng.random(len(odd)) < 0.2
+    odd.times_s[late] = rng.choice([1e308, -1e308, np.nan, np.inf], int(late.sum()))
+    odd.positions_m[rng.random(len(odd)) < 0.1] = 3e38
+    watched = Watched()
+    watched.play(odd)
+    told = [(one.condition.value, one.condition.client_t_s) for one in watched.changes]
+    json.dumps([watched.watch.signal(at(10.0)), told], allow_nan=False)
+    assert told

@@ -121,3 +121,23 @@ def test_arrays_that_do_not_belong_together_are_refused(shape: tuple[int, ...]) 
         examine(np.zeros(5), np.zeros((5, 22, 4)), np.zeros((4, 3)))
     with pytest.raises(QualityError, match="does not fit"):
         assess(np.zeros(5), np.zeros((5, 22, 4)), np.zeros((5, 3)), counted=np.ones(4, np.bool_))
+
+
+@given(seed=st.integers(0, 10_000))
+@settings(max_examples=60, deadline=None)
+def test_whatever_comes_can_be_judged(seed: int) -> None:
+    """Any bits at all: no error, no warning, and figures that are numbers."""
+    rng = np.random.default_rng(seed)
+    odd = generated().part(slice(0, 200)).copy()
+    places = rng.random(odd.rotations.shape) < 0.02
+    noise = rng.integers(0, 2**32, odd.rotations.shape, dtype=np.uint32).view(np.float32)
+    odd.rotations[places] = noise[places]
+    far = rng.random(len(odd)) < 0.1
+    odd.positions_m[far] = rng.choice([3e38, -3e38, np.nan, np.inf], (int(far.sum()), 3))
+    late = rng.random(len(odd)) < 0.1
+    odd.times_s[late] = rng.choice([1e308, -1e308, np.nan, np.inf, -np.inf, 1e9], int(late.sum()))
+    found = quality(odd)
+    figures = (found.span_s, found.gap_s, found.longest_gap_s, *found.frozen_s)
+    assert np.isfinite(figures).all()
+    assert found.frame_rate_hz is None or np.isfinite(found.frame_rate_hz)
+    assert found.span_s >= found.gap_s >= found.longest_gap_s >= 0.0
