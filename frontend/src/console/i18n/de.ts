@@ -208,8 +208,19 @@ export const de: Record<keyof typeof en, string> = {
     "Gelenkfehler je Phase, Gelenk und Achse in Grad: Mittel, RMS, 95. Perzentil, Maximum.",
   "export.file.events": "events.csv",
   "export.about.events": "Das Ereignisprotokoll jeder Sitzung, mit dem Hash, der es verkettet.",
+  "export.file.quality": "quality.csv",
+  "export.about.quality":
+    "Eine Zeile je Aufgabe und Strom: Bildrate, Lücken, Sprünge, starre Gelenke, ungültige Werte.",
+  "export.file.alarms": "alarms.csv",
+  "export.about.alarms": "Jeder Alarm einer Sitzung: wann er begann und wann er endete.",
+  "export.file.clocks": "clock_probes.csv, clock_mapping.csv",
+  "export.about.clocks":
+    "Die Uhr des Headsets neben der des Servers: rohe Ablesungen, daraus Versatz, Drift und Unsicherheit.",
   "export.file.samples": "samples/*.csv",
   "export.about.samples": "Eine breite Datei je Sitzung: Ziel- und Ist-Haltung über die Zeit.",
+  "export.file.receipts": "receipts/*.json",
+  "export.about.receipts":
+    "Eine je Sitzung: wie viele Bilder entstanden, gespeichert sind und fehlen, mit dem Nachweis.",
   "export.file.codebook": "codebook.csv",
   "export.about.codebook": "Jede Spalte: Bedeutung, Einheit, gültige Werte.",
   "protocol.frozen":

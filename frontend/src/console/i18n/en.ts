@@ -206,8 +206,19 @@ export const en = {
     "Joint error per phase, joint and axis in degrees: mean, RMS, 95th percentile, maximum.",
   "export.file.events": "events.csv",
   "export.about.events": "The event log of every session, with the hash that chains it.",
+  "export.file.quality": "quality.csv",
+  "export.about.quality":
+    "One row per phase and stream: frame rate, gaps, jumps, frozen joints, values that are none.",
+  "export.file.alarms": "alarms.csv",
+  "export.about.alarms": "Every alarm of a session, when it was raised and when it was cleared.",
+  "export.file.clocks": "clock_probes.csv, clock_mapping.csv",
+  "export.about.clocks":
+    "The headset's clock beside the server's: raw readings, and offset, drift and uncertainty from them.",
   "export.file.samples": "samples/*.csv",
   "export.about.samples": "One wide file per session: target and actual pose over time.",
+  "export.file.receipts": "receipts/*.json",
+  "export.about.receipts":
+    "One per session: how many frames were made, are stored and are missing, with the proof.",
   "export.file.codebook": "codebook.csv",
   "export.about.codebook": "Every column: meaning, unit, valid values.",
   "protocol.frozen":

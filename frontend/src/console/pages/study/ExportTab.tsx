@@ -25,7 +25,11 @@ const FILES = [
   "contacts",
   "jointErrors",
   "events",
+  "quality",
+  "alarms",
+  "clocks",
   "samples",
+  "receipts",
   "codebook",
 ] as const;
 
