@@ -21,7 +21,9 @@ BACKLOG_FRAMES = 54_000
 """Ten minutes of one stream."""
 
 
-@pytest.mark.parametrize(("mode", "stream_s"), [("worker", 10), ("page", 4)])
+@pytest.mark.parametrize(
+    ("mode", "stream_s"), [("worker", 5), pytest.param("page", 10, marks=pytest.mark.long)]
+)
 def test_what_is_streamed_arrives_bit_by_bit(
     wear: Wear, headset_site: Site, mode: Mode, stream_s: int
 ) -> None:
@@ -65,6 +67,7 @@ def test_a_server_that_is_killed_gets_everything_once(wear: Wear, headset_site: 
     assert (found.stored, found.sound) == (found.sent, True)
 
 
+@pytest.mark.long
 def test_ten_minutes_offline_are_drained(wear: Wear, headset_site: Site) -> None:
     """54,000 frames of each stream wait on disk, not in the browser's memory, and all arrive."""
     headset = wear(mode="page")

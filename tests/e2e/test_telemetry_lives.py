@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Browser, BrowserContext
 
 from app.models import TelemetryStream
@@ -39,6 +40,7 @@ def test_a_page_that_is_left_takes_its_journal_to_disk(
     check_both_lives(next_life(headset, context), headset_site, first, certain)
 
 
+@pytest.mark.long
 def test_a_page_that_crashes_delivers_under_its_old_number(
     wear: Wear, headset_site: Site, new_context: ContextFactory
 ) -> None:
