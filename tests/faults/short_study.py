@@ -46,6 +46,10 @@ class Watch:
                 return
             await asyncio.sleep(LOOK_EVERY_S)
 
+    async def paused(self, phase_id: int) -> None:
+        """Until its clock was stopped."""
+        await self.phase(phase_id, lambda order: order.status == "paused")
+
     async def running(self, phase_id: int) -> None:
         """Until its clock runs."""
         await self.phase(phase_id, lambda order: order.status == "running")

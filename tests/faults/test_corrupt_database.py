@@ -77,7 +77,12 @@ def refusal(server: LiveServer) -> str:
 
 @pytest.mark.parametrize(
     ("damage", "how_it_ends"),
-    [(garble, "stop"), (cut, "stop"), (overwrite, "stop"), (damage_log, "kill")],
+    [
+        pytest.param(garble, "stop", marks=pytest.mark.long),
+        pytest.param(cut, "stop", marks=pytest.mark.long),
+        (overwrite, "stop"),
+        (damage_log, "kill"),
+    ],
 )
 def test_it_is_put_away_and_a_backup_brings_everything_back(
     tmp_path: Path, damage: Callable[[LiveServer], None], how_it_ends: str
