@@ -79,7 +79,16 @@ def stages(*, long: bool) -> list[Stage]:
         npm_stage("frontend lint", "lint"),
         npm_stage("frontend tests", "test"),
         pytest_stage(
-            "tests", "-n", "2", "-m", "not browser", "--ignore", "tests/house", *also_long
+            "tests",
+            "-n",
+            "2",
+            "--dist",
+            "worksteal",
+            "-m",
+            "not browser",
+            "--ignore",
+            "tests/house",
+            *also_long,
         ),
         pytest_stage("browser tests", "-m", "browser", *also_long),
         pytest_stage("house checks", "tests/house", *also_long),
