@@ -3,6 +3,7 @@
 import json
 
 from app.cli.installation import opened_database
+from app.errors import NotFound
 from app.features.receipts.service import receipt_of
 from app.features.receipts.text import receipt_text
 
@@ -13,6 +14,13 @@ def verify_session(session_id: str, *, as_json: bool) -> tuple[str, bool]:
     Reads beside a running server. Raises ReembodyError for an unknown session.
     """
     with opened_database() as database, database.reading() as db:
-        receipt = receipt_of(db, session_id)
+        try:
+            receipt = receipt_of(db, session_id)
+        except NotFound as error:
+            raise NotFound(
+                f"there is no session {session_id!r}",
+                value=session_id,
+                remedy="Its id stands at the end of the address of its page, and in sessions.csv.",
+            ) from error
     text = json.dumps(receipt.as_json(), indent=2) if as_json else receipt_text(receipt)
     return text, receipt.complete
