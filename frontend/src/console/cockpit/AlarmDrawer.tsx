@@ -1,5 +1,4 @@
 /** Every alarm of the session, the newest first, with its times: taking note of one removes none. */
-import { Drawer } from "@mantine/core";
 import type { Alarm, SessionView } from "@shared/api/types";
 import { duration, timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
@@ -11,6 +10,7 @@ import { alarmsQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { amount, fromRecord, stateOf, titleKey } from "./alarms";
 import classes from "./Panels.module.css";
+import { RecordDrawer } from "./RecordDrawer";
 import strip from "./SignalStrip.module.css";
 
 interface AlarmDrawerProps {
@@ -22,16 +22,9 @@ interface AlarmDrawerProps {
 export function AlarmDrawer({ session, opened, onClose }: AlarmDrawerProps): JSX.Element {
   const { t } = useTexts();
   return (
-    <Drawer
-      opened={opened}
-      onClose={onClose}
-      position="right"
-      size="lg"
-      title={t("alarm.history")}
-      closeButtonProps={{ "aria-label": t("action.close") }}
-    >
-      {opened && <History session={session} />}
-    </Drawer>
+    <RecordDrawer title={t("alarm.history")} opened={opened} onClose={onClose}>
+      <History session={session} />
+    </RecordDrawer>
   );
 }
 

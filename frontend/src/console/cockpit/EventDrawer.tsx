@@ -1,5 +1,4 @@
 /** The session's own record, event by event, as the server appended it. */
-import { Drawer } from "@mantine/core";
 import type { SessionEvent, SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
 import { useQuery } from "@tanstack/react-query";
@@ -8,6 +7,7 @@ import { useTexts } from "../i18n";
 import { eventsQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import classes from "./Panels.module.css";
+import { RecordDrawer } from "./RecordDrawer";
 
 interface EventDrawerProps {
   readonly session: SessionView;
@@ -18,16 +18,9 @@ interface EventDrawerProps {
 export function EventDrawer({ session, opened, onClose }: EventDrawerProps): JSX.Element {
   const { t } = useTexts();
   return (
-    <Drawer
-      opened={opened}
-      onClose={onClose}
-      position="right"
-      size="lg"
-      title={t("log.title")}
-      closeButtonProps={{ "aria-label": t("action.close") }}
-    >
-      {opened && <Events session={session} />}
-    </Drawer>
+    <RecordDrawer title={t("log.title")} opened={opened} onClose={onClose}>
+      <Events session={session} />
+    </RecordDrawer>
   );
 }
 

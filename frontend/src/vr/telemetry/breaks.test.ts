@@ -1,115 +1,96 @@
-import { afterEach, beforeEach, describe, expect, it } from "vitest";
-import type { DirectClient } from "./directClient";
-import type { Limits } from "./limits";
-import { FakeServer } from "./testing/fakeServer";
+import { describe, expect, it } from "vitest";
+import { testBed } from "./testing/bed";
 import { standing } from "./testing/frames";
 import { MemoryBlocks } from "./testing/memoryBlocks";
-import { eventually, openedClient, produce, seqs } from "./testing/rig";
+import { eventually, produce, seqs } from "./testing/rig";
 import { batchBytes } from "./wire/batch";
 
-let server: FakeServer;
-let client: DirectClient | null;
-
-beforeEach(() => {
-  server = new FakeServer();
-  client = null;
-});
-
-afterEach(async () => {
-  await client?.close();
-});
-
-async function opened(
-  ...more: [disk?: MemoryBlocks, limits?: Partial<Limits>]
-): Promise<DirectClient> {
-  client = await openedClient(server, ...more);
-  return client;
-}
+const bed = testBed();
 
 describe("a connection that breaks", () => {
   it("comes back as the same run, and what was not stored is sent again, once", async () => {
-    const telemetry = await opened();
-    server.acknowledges = false;
+    const telemetry = await bed.opened();
+    bed.server.acknowledges = false;
     await produce(telemetry, 5);
-    server.breaks();
+    bed.server.breaks();
     await eventually(() => !telemetry.status.connected);
     await produce(telemetry, 5);
-    server.acknowledges = true;
+    bed.server.acknowledges = true;
     await telemetry.drained();
-    expect(server.of("hello").at(-1)?.epoch).toBe(1);
-    expect(server.storedOf("target", 1)).toEqual(seqs("target", 1, 60));
-    expect(server.storedOf("reports", 1)).toEqual(seqs("reports", 1, 2));
+    expect(bed.server.of("hello").at(-1)?.epoch).toBe(1);
+    expect(bed.server.storedOf("target", 1)).toEqual(seqs("target", 1, 60));
+    expect(bed.server.storedOf("reports", 1)).toEqual(seqs("reports", 1, 2));
   });
 
   it("is tried again and again while nobody answers", async () => {
-    const telemetry = await opened();
-    server.isUp = false;
-    server.breaks();
-    await eventually(() => server.sockets.length > 5);
-    server.isUp = true;
+    const telemetry = await bed.opened();
+    bed.server.isUp = false;
+    bed.server.breaks();
+    await eventually(() => bed.server.sockets.length > 5);
+    bed.server.isUp = true;
     await eventually(() => telemetry.status.connected);
   });
 
   it("costs nothing in memory: what waits lies on disk, and comes back from there in order", async () => {
     const disk = new MemoryBlocks();
-    const telemetry = await opened(disk, { blockBytes: 5000, memoryBytes: 20_000 });
-    server.isUp = false;
-    server.breaks();
+    const telemetry = await bed.opened(disk, { blockBytes: 5000, memoryBytes: 20_000 });
+    bed.server.isUp = false;
+    bed.server.breaks();
     await produce(telemetry, 50);
     await telemetry.flush();
     expect([...disk.entries.values()].flat()).toHaveLength(101);
-    server.isUp = true;
+    bed.server.isUp = true;
     await telemetry.drained();
-    expect(server.storedOf("target", 1)).toEqual(seqs("target", 1, 300));
+    expect(bed.server.storedOf("target", 1)).toEqual(seqs("target", 1, 300));
   });
 
   it("that says nothing any more counts as broken", async () => {
-    const telemetry = await opened(undefined, { silenceS: 0.05, probeEveryS: 0.01 });
-    server.answersProbes = false;
-    await eventually(() => server.sockets.length > 1);
-    server.answersProbes = true;
+    const telemetry = await bed.opened(undefined, { silenceS: 0.05, probeEveryS: 0.01 });
+    bed.server.answersProbes = false;
+    await eventually(() => bed.server.sockets.length > 1);
+    bed.server.answersProbes = true;
     await eventually(() => telemetry.status.connected);
   });
 
   it("that takes nothing does not fill the memory of the browser", async () => {
-    const telemetry = await opened(undefined, { bufferedBytes: 10_000 });
-    server.socket.isStuck = true;
+    const telemetry = await bed.opened(undefined, { bufferedBytes: 10_000 });
+    bed.server.socket.isStuck = true;
     await produce(telemetry, 50);
     await telemetry.flush();
-    expect(server.socket.bufferedAmount).toBeLessThan(10_000 + batchBytes(6));
-    server.breaks();
+    expect(bed.server.socket.bufferedAmount).toBeLessThan(10_000 + batchBytes(6));
+    bed.server.breaks();
     await telemetry.drained();
-    expect(server.storedOf("actual", 1)).toEqual(seqs("actual", 1, 300));
-    expect(server.resends, "what the network lost was left out at first").toBe(0);
+    expect(bed.server.storedOf("actual", 1)).toEqual(seqs("actual", 1, 300));
+    expect(bed.server.resends, "what the network lost was left out at first").toBe(0);
   });
 });
 
 describe("a browser's disk", () => {
   it("that cannot be read for a moment holds the sending up, and no more", async () => {
     const disk = new MemoryBlocks();
-    const telemetry = await opened(disk);
-    server.isUp = false;
-    server.breaks();
+    const telemetry = await bed.opened(disk);
+    bed.server.isUp = false;
+    bed.server.breaks();
     await produce(telemetry, 5);
     await telemetry.flush();
     disk.unreadable = new DOMException("not now", "UnknownError");
-    server.isUp = true;
+    bed.server.isUp = true;
     await eventually(() => disk.failedReads > 0);
     expect(telemetry.status.failure).toBe(null);
     disk.unreadable = null;
     await telemetry.drained();
-    expect(server.storedOf("target", 1)).toEqual(seqs("target", 1, 30));
+    expect(bed.server.storedOf("target", 1)).toEqual(seqs("target", 1, 30));
   });
 
   it("that has lost the journal is a failure, with what to do about it", async () => {
     const disk = new MemoryBlocks();
-    const telemetry = await opened(disk);
-    server.isUp = false;
-    server.breaks();
+    const telemetry = await bed.opened(disk);
+    bed.server.isUp = false;
+    bed.server.breaks();
     await produce(telemetry, 5);
     await telemetry.flush();
     disk.entries.clear();
-    server.isUp = true;
+    bed.server.isUp = true;
     await expect(telemetry.drained()).rejects.toThrow("lost 11 messages");
     expect(telemetry.status.failure?.code).toBe("journal_lost");
   });
@@ -117,22 +98,22 @@ describe("a browser's disk", () => {
 
 describe("a hole", () => {
   it("is filled from the journal", async () => {
-    const telemetry = await opened();
-    server.acknowledges = false;
+    const telemetry = await bed.opened();
+    bed.server.acknowledges = false;
     await produce(telemetry, 4);
-    await eventually(() => server.storedOf("reports", 1).length === 1);
-    server.positions.set("target/1", 6);
-    server.say({ type: "resend", stream: "target", epoch: 1, next_seq: 6 });
-    server.acknowledges = true;
+    await eventually(() => bed.server.storedOf("reports", 1).length === 1);
+    bed.server.positions.set("target/1", 6);
+    bed.server.say({ type: "resend", stream: "target", epoch: 1, next_seq: 6 });
+    bed.server.acknowledges = true;
     await telemetry.drained();
-    expect(server.positions.get("target/1")).toBe(24);
+    expect(bed.server.positions.get("target/1")).toBe(24);
   });
 
   it("that the journal cannot fill is a failure, not an endless loop", async () => {
-    const telemetry = await opened();
+    const telemetry = await bed.opened();
     await produce(telemetry, 4);
     await telemetry.drained();
-    server.positions.set("target/1", 6);
+    bed.server.positions.set("target/1", 6);
     const sending = setInterval(() => {
       telemetry.sendFrames("target", standing(1)).catch(() => clearInterval(sending));
     }, 1);

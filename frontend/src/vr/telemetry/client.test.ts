@@ -1,7 +1,6 @@
-import { afterEach, beforeEach, describe, expect, it } from "vitest";
+import { describe, expect, it } from "vitest";
 import type { Level, Status } from "./client";
-import type { DirectClient } from "./directClient";
-import type { Limits } from "./limits";
+import { testBed } from "./testing/bed";
 import { FakeServer, stateOf } from "./testing/fakeServer";
 import { standing } from "./testing/frames";
 import { MemoryBlocks } from "./testing/memoryBlocks";
@@ -15,46 +14,34 @@ import {
 } from "./testing/rig";
 import { batchBytes } from "./wire/batch";
 
-let server: FakeServer;
-let client: DirectClient | null;
-
-beforeEach(() => {
-  server = new FakeServer();
-  client = null;
-});
-
-afterEach(async () => {
-  await client?.close();
-});
-
-async function opened(
-  ...more: [disk?: MemoryBlocks, limits?: Partial<Limits>]
-): Promise<DirectClient> {
-  client = await openedClient(server, ...more);
-  return client;
-}
+const bed = testBed();
 
 describe("a client", () => {
   it("greets, takes its number, and offers the token as a subprotocol", async () => {
-    const telemetry = await opened();
-    expect(server.heard[0]).toEqual({ type: "hello", protocol: 1, client: "test", epoch: null });
-    expect(server.socket.protocols).toEqual(["reembody.v1", "bearer.TOKEN"]);
+    const telemetry = await bed.opened();
+    expect(bed.server.heard[0]).toEqual({
+      type: "hello",
+      protocol: 1,
+      client: "test",
+      epoch: null,
+    });
+    expect(bed.server.socket.protocols).toEqual(["reembody.v1", "bearer.TOKEN"]);
     expect([telemetry.epoch, telemetry.state.version]).toEqual([1, 1]);
     expect(telemetry.status.connected).toBe(true);
   });
 
   it("numbers frames and reports from 0, and is drained when all of them are stored", async () => {
-    const telemetry = await opened();
+    const telemetry = await bed.opened();
     await produce(telemetry, 10);
     await telemetry.drained();
     for (const stream of ["target", "actual"])
-      expect(server.storedOf(stream, 1)).toEqual(seqs(stream, 1, 60));
-    expect(server.storedOf("reports", 1)).toEqual(seqs("reports", 1, 1));
+      expect(bed.server.storedOf(stream, 1)).toEqual(seqs(stream, 1, 60));
+    expect(bed.server.storedOf("reports", 1)).toEqual(seqs("reports", 1, 1));
     expect([telemetry.status.journaledMessages, telemetry.settled]).toEqual([0, true]);
   });
 
   it("keeps the order of calls that nobody waits for", async () => {
-    const telemetry = await opened();
+    const telemetry = await bed.opened();
     const sending = [
       telemetry.sendFrames("target", standing(6)),
       telemetry.report(MATERIALISED),
@@ -62,7 +49,7 @@ describe("a client", () => {
     ];
     await Promise.all(sending);
     await telemetry.drained();
-    expect(server.stored).toEqual([
+    expect(bed.server.stored).toEqual([
       ...seqs("target", 1, 6),
       "reports/1/0",
       ...seqs("target", 1, 9).slice(6),
@@ -70,32 +57,32 @@ describe("a client", () => {
   });
 
   it("tells new states and what the server says of its data", async () => {
-    const telemetry = await opened();
+    const telemetry = await bed.opened();
     const versions: number[] = [];
     const notices: string[] = [];
     telemetry.onState((state) => versions.push(state.version));
     telemetry.onNotice((notice) => notices.push(notice.type));
-    server.say(stateOf(2));
-    server.say({ type: "refused", epoch: 1, seq: 0, message: "m", remedy: "r" });
-    server.say({ type: "weather", message: "a newer server says more" });
-    server.say(stateOf(3));
+    bed.server.say(stateOf(2));
+    bed.server.say({ type: "refused", epoch: 1, seq: 0, message: "m", remedy: "r" });
+    bed.server.say({ type: "weather", message: "a newer server says more" });
+    bed.server.say(stateOf(3));
     await eventually(() => versions.length === 2);
     expect([versions, notices, telemetry.state.version]).toEqual([[2, 3], ["refused"], 3]);
   });
 
   it("is not settled while a report of it is under way", async () => {
-    const telemetry = await opened();
-    server.acknowledges = false;
+    const telemetry = await bed.opened();
+    bed.server.acknowledges = false;
     await telemetry.report(MATERIALISED);
     expect(telemetry.settled).toBe(false);
-    await eventually(() => server.stored.length === 1);
+    await eventually(() => bed.server.stored.length === 1);
     expect(telemetry.settled).toBe(false);
-    server.acknowledge();
+    bed.server.acknowledge();
     await eventually(() => telemetry.settled);
   });
 
   it("refuses what the server would refuse, and goes on with the same number", async () => {
-    const telemetry = await opened();
+    const telemetry = await bed.opened();
     await expect(telemetry.report({ kind: "materialised", t_s: Number.NaN })).rejects.toThrow(
       "t_s",
     );
@@ -104,44 +91,46 @@ describe("a client", () => {
     await expect(telemetry.sendFrames("target", standing(513))).rejects.toThrow("at most 512");
     await produce(telemetry, 1);
     await telemetry.drained();
-    expect(server.stored).toHaveLength(13);
+    expect(bed.server.stored).toHaveLength(13);
   });
 });
 
 describe("a full journal", () => {
   it("holds the producer, says so, and lets it go on; nothing is lost", async () => {
-    const telemetry = await opened(undefined, { journalBytes: 10 * batchBytes(6) });
+    const telemetry = await bed.opened(undefined, { journalBytes: 10 * batchBytes(6) });
     const levels = new Set<Level>();
     telemetry.onStatus((status: Status) => levels.add(status.level));
-    server.isUp = false;
-    server.breaks();
+    bed.server.isUp = false;
+    bed.server.breaks();
     const producing = produce(telemetry, 20);
     await eventually(() => telemetry.status.level === "full");
     expect(telemetry.status.waitingCalls).toBe(1);
-    server.isUp = true;
+    bed.server.isUp = true;
     await producing;
     await telemetry.drained();
     expect(levels).toContain("full");
     expect(telemetry.status.level).toBe("clear");
-    expect(server.storedOf("target", 1)).toEqual(seqs("target", 1, 120));
+    expect(bed.server.storedOf("target", 1)).toEqual(seqs("target", 1, 120));
   });
 
   it("counts what waits as produced: the server learns of it", async () => {
     const disk = new MemoryBlocks();
-    const telemetry = await opened(disk, { journalBytes: 1 });
-    server.acknowledges = false;
+    const telemetry = await bed.opened(disk, { journalBytes: 1 });
+    bed.server.acknowledges = false;
     await telemetry.sendFrames("target", standing(6));
     void telemetry.sendFrames("target", standing(6)).catch(() => undefined);
-    await eventually(() => server.of("produced").at(-1)?.streams !== undefined);
-    await eventually(() => JSON.stringify(server.of("produced").at(-1)).includes('"target":12'));
+    await eventually(() => bed.server.of("produced").at(-1)?.streams !== undefined);
+    await eventually(() =>
+      JSON.stringify(bed.server.of("produced").at(-1)).includes('"target":12'),
+    );
   });
 
   it("lets nobody wait for ever: a failure rejects, and so does closing", async () => {
-    const telemetry = await opened(undefined, { journalBytes: 1 });
-    server.acknowledges = false;
+    const telemetry = await bed.opened(undefined, { journalBytes: 1 });
+    bed.server.acknowledges = false;
     await telemetry.sendFrames("target", standing(6));
     const refused = telemetry.sendFrames("target", standing(6));
-    server.socket.breaks(4401, "replaced");
+    bed.server.socket.breaks(4401, "replaced");
     await expect(refused).rejects.toThrow("replaced");
     const other = await openedClient(new FakeServer(), new MemoryBlocks(), { memoryBytes: 1 });
     await other.sendFrames("target", standing(6));
@@ -151,8 +140,8 @@ describe("a full journal", () => {
   });
 
   it("is behind before it is full", async () => {
-    const telemetry = await opened(undefined, { behindAfterS: 0.01 });
-    server.acknowledges = false;
+    const telemetry = await bed.opened(undefined, { behindAfterS: 0.01 });
+    bed.server.acknowledges = false;
     await telemetry.sendFrames("target", standing(6));
     await eventually(() => telemetry.status.level === "behind");
     expect(telemetry.status.oldestUnackedS).toBeGreaterThan(0.01);
@@ -162,20 +151,20 @@ describe("a full journal", () => {
 describe("closing", () => {
   it("tells how far the run has come, and leaves the rest in the journal", async () => {
     const disk = new MemoryBlocks();
-    const telemetry = await opened(disk, { producedEveryS: 60 });
-    server.acknowledges = false;
+    const telemetry = await bed.opened(disk, { producedEveryS: 60 });
+    bed.server.acknowledges = false;
     await produce(telemetry, 2);
     await telemetry.close();
-    expect(server.of("produced").at(-1)).toMatchObject({ streams: { target: 12, actual: 12 } });
+    expect(bed.server.of("produced").at(-1)).toMatchObject({ streams: { target: 12, actual: 12 } });
     expect([...disk.entries.values()].flat()).toHaveLength(5);
     await expect(telemetry.report(MATERIALISED)).rejects.toThrow("closed");
   });
 
   it("ends the waiting for a server that is not there", async () => {
-    server.isUp = false;
-    client = await startedClient(server);
-    const opening = client.opened();
-    await client.close();
+    bed.server.isUp = false;
+    bed.client = await startedClient(bed.server);
+    const opening = bed.client.opened();
+    await bed.client.close();
     await expect(opening).rejects.toThrow("closed");
   });
 });
