@@ -56,6 +56,7 @@ async def _hold_frames(headset: Headset, noticed: Coroutine[Any, Any, None]) -> 
     async def sleep() -> None:
         await awake.wait()
 
+    # The simulated headset has no switch for this, and needs none outside of this test.
     headset._sleep_until_due = sleep  # type: ignore[method-assign]
     async with asyncio.timeout(NOTICED_WITHIN_S):
         await noticed
