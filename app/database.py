@@ -17,18 +17,16 @@ from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
-from alembic import command
-from alembic.config import Config
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
 from sqlalchemy import Engine, MetaData, create_engine, event, make_url
 from sqlalchemy.exc import DatabaseError
 from sqlalchemy.orm import DeclarativeBase, Session
+from sqlalchemy.pool import NullPool
 
 from app.errors import NotDurable
-from app.resources import migrations_dir
 from app.sqlite import BUSY_TIMEOUT_S, SqliteBegin, has_changes, prepare_connection
 
 NAMING_CONVENTION = {
@@ -166,17 +164,23 @@ class Database:
         self.engine.dispose()
 
 
-def make_engine(url: str) -> Engine:
-    """An engine for `sqlite:///FILE` or `postgresql://...`, set up for durable commits."""
+def make_engine(url: str, *, pooled: bool = True) -> Engine:
+    """An engine for `sqlite:///FILE` or `postgresql://...`, set up for durable commits.
+
+    Not `pooled`, it opens a connection for every use.
+    """
     parsed = make_url(url)
     if parsed.drivername in {"postgresql", "postgres"}:
         parsed = parsed.set(drivername="postgresql+psycopg")
+    pool: dict[str, Any] = {} if pooled else {"poolclass": NullPool}
     if parsed.get_backend_name() != "sqlite":
-        return create_engine(parsed, pool_size=10, max_overflow=20, pool_pre_ping=True)
+        if pooled:
+            pool = {"pool_size": 10, "max_overflow": 20, "pool_pre_ping": True}
+        return create_engine(parsed, **pool)
     if parsed.database:
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
-    # Without a file there is one connection for all, and so no pool to size.
-    pool = {"pool_size": 20, "max_overflow": 40} if parsed.database else {}
+        # Without a file there is one connection for all, and so no pool to size.
+        pool = pool or {"pool_size": 20, "max_overflow": 40}
     engine = create_engine(
         parsed,
         connect_args={"timeout": BUSY_TIMEOUT_S, "check_same_thread": False},
@@ -190,16 +194,3 @@ def make_engine(url: str) -> Engine:
 def open_database(url: str, observer: WriteObserver | None = None) -> Database:
     """Open `url` without touching its schema."""
     return Database(make_engine(url), observer)
-
-
-def alembic_config(url: str) -> Config:
-    """Alembic's configuration for `url`, pointing at the migrations that ship with the product."""
-    config = Config()
-    config.set_main_option("script_location", str(migrations_dir()))
-    config.attributes["url"] = url
-    return config
-
-
-def migrate(url: str) -> None:
-    """Bring the schema of `url` to the newest version, from whatever version it has."""
-    command.upgrade(alembic_config(url), "head")

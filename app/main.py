@@ -21,6 +21,7 @@ from app.features.rate_limit import RateLimiter
 from app.features.sessions.recovery import stop_running_clocks
 from app.features.storage_health import StorageHealth
 from app.features.studies.service import add_shipped
+from app.features.telemetry.encoder import Encoder
 from app.features.telemetry.fold import Folder
 from app.features.telemetry.summaries import Summariser
 from app.features.telemetry.writer import TelemetryWriter
@@ -58,7 +59,7 @@ def create_app(
     )
     summariser = Summariser(context)
     writer = TelemetryWriter(context, summariser.phase_ended)
-    folder = Folder(context)
+    folder = Folder(context, Encoder(settings.resolved_database_url))
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:

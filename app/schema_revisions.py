@@ -1,4 +1,4 @@
-"""Which schemas this program knows, and which one a database has.
+"""Which schemas this program knows, which one a database has, and how it gets the newest.
 
 A revision is the name of the newest migration that was applied. A database may be older than the
 program (it is migrated), or newer: then it was used by a newer program, and an older one would not
@@ -7,12 +7,27 @@ understand what it finds.
 
 from functools import lru_cache
 
+from alembic import command
+from alembic.config import Config
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, column, inspect, select, table
 
-from app.database import alembic_config
+from app.resources import migrations_dir
 
 VERSION_TABLE = "alembic_version"
+
+
+def alembic_config(url: str) -> Config:
+    """Alembic's configuration for `url`, pointing at the migrations that ship with the product."""
+    config = Config()
+    config.set_main_option("script_location", str(migrations_dir()))
+    config.attributes["url"] = url
+    return config
+
+
+def migrate(url: str) -> None:
+    """Bring the schema of `url` to the newest version, from whatever version it has."""
+    command.upgrade(alembic_config(url), "head")
 
 
 @lru_cache(maxsize=1)

@@ -133,6 +133,11 @@ class Hub:
         """When frames came last, on whichever socket; minus infinity before the first."""
         return self._heard_s.get(session_id, float("-inf"))
 
+    @property
+    def any_headset_connected(self) -> bool:
+        """Whether any headset's socket is open now."""
+        return bool(self._headsets)
+
     def headset_connected(self, session_id: str) -> bool:
         """Whether a headset's socket is open now."""
         with self._lock:

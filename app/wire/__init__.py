@@ -12,7 +12,7 @@ from app.wire.batch import (
     decode_header,
     encode_batch,
 )
-from app.wire.quality import FrameFlags, flag_frames
+from app.wire.quality import FrameFlags, flag_batches, flag_frames
 
 __all__ = [
     "BODY_JOINTS",
@@ -26,5 +26,6 @@ __all__ = [
     "decode_batch",
     "decode_header",
     "encode_batch",
+    "flag_batches",
     "flag_frames",
 ]

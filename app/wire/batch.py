@@ -24,8 +24,8 @@ The frames of the target and the actual stream that show the same moment carry t
 import struct
 import zlib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,8 +56,7 @@ class MalformedBatchError(ValueError):
     """The bytes are not a batch; nothing of them was taken."""
 
 
-@dataclass(frozen=True)
-class BatchHeader:
+class BatchHeader(NamedTuple):
     """The first 64 bytes, checked against the length of the message."""
 
     stream: StreamName
@@ -76,8 +75,7 @@ class BatchHeader:
         return self.seq_first + self.frame_count
 
 
-@dataclass(frozen=True)
-class Batch:
+class Batch(NamedTuple):
     """A decoded batch: `times_s` (n,), `flags` (n,), `values` (n, w) are views on the message."""
 
     header: BatchHeader

@@ -7,8 +7,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from app.database import Database, migrate, open_database
+from app.database import Database, open_database
 from app.features.exports.service import export_study
+from app.schema_revisions import migrate
 from app.wire import StreamName
 from tests.benchmarks.headsets import FRAMES_PER_BATCH, movement
 from tests.benchmarks.report import Figure

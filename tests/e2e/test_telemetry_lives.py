@@ -15,6 +15,7 @@ from tests.e2e.telemetry_bench import (
     FRAMES_PER_BATCH,
     Headset,
     Made,
+    Mode,
     Wear,
     reconciled,
 )
@@ -25,16 +26,23 @@ MANY = 6000
 """More frames than a page makes before it is killed."""
 
 
+@pytest.mark.parametrize(("mode", "flush_every_s"), [("page", 600.0), ("worker", 0.25)])
 def test_a_page_that_is_left_takes_its_journal_to_disk(
-    wear: Wear, headset_site: Site, new_context: ContextFactory
+    wear: Wear,
+    headset_site: Site,
+    new_context: ContextFactory,
+    mode: Mode,
+    flush_every_s: float,
 ) -> None:
-    """A reload or a closed tab does not wait for the journal's turn, and loses nothing."""
+    """A client of the page writes its journal at once; one in a worker has done so by its turn."""
     context = new_context()
-    headset = wear(context, flushEveryS=600)
+    headset = wear(context, mode=mode, flushEveryS=flush_every_s)
     first = headset.open()
     headset_site.server.kill()
     headset.produce(30, speed=None)
     certain = headset.made
+    if mode == "worker":
+        time.sleep(8 * flush_every_s)
     headset.page.goto("about:blank")
     headset_site.server.start()
     check_both_lives(next_life(headset, context), headset_site, first, certain)

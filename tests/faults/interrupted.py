@@ -19,7 +19,8 @@ from alembic import command
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, Engine, String, column, event, inspect, select, table
 
-from app.database import alembic_config, open_database
+from app.database import open_database
+from app.schema_revisions import alembic_config
 from tests.support.filled import VERSION_TABLE, contents
 
 READING = {"SELECT", "PRAGMA", "SHOW", "SET", "BEGIN"}

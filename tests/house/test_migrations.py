@@ -2,7 +2,7 @@
 
 from alembic import command
 
-from app.database import alembic_config
+from app.schema_revisions import alembic_config
 
 
 def test_migrations_lead_to_the_models(database_url: str) -> None:

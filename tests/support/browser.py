@@ -133,8 +133,15 @@ def take_screenshot(page: Page, folder: Path, name: str) -> Path:
     return path
 
 
+MOVEMENTS_DONE = """() => Promise.all(document.getAnimations()
+    .filter((one) => Number.isFinite(one.effect?.getComputedTiming().endTime))
+    .map((one) => one.finished.catch(() => undefined)))"""
+
+
 def accessibility_violations(page: Page) -> list[str]:
     """What axe-core calls serious or critical on the page as it is now, one line each."""
+    # A drawer that is still coming in is paler than it will be.
+    page.evaluate(MOVEMENTS_DONE)
     # Evaluated, not added as an element, so that the page's content security policy stays on.
     page.evaluate(axe_script().read_text(encoding="utf-8"))
     result = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")

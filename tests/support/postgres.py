@@ -74,7 +74,7 @@ def migrated_cluster() -> Cluster:
     cluster = running_cluster()
     with once("postgres-template") as mark:
         if mark:
-            from app.database import migrate
+            from app.schema_revisions import migrate
 
             cluster.execute("CREATE DATABASE {}", TEMPLATE)
             migrate(cluster.url(TEMPLATE))

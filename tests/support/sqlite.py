@@ -18,7 +18,7 @@ def _template() -> Path:
     template = run_folder() / "template.sqlite"
     with once("sqlite-template") as mark:
         if mark:
-            from app.database import migrate
+            from app.schema_revisions import migrate
 
             migrate(f"sqlite:///{template}")
             # Everything into the one file that is copied.

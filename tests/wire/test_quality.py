@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from app.wire import flag_frames
-from tests.wire.samples import bits, every_odd_float, standing
+from app.wire import decode_batch, flag_batches, flag_frames
+from tests.wire.samples import bits, every_odd_float, message, standing
 
 TIMES_S = np.array([0.0, 0.1, 0.2])
 HEAD_W = 3 + 4 * 5
@@ -56,3 +58,20 @@ def test_judging_changes_nothing() -> None:
     flags = flag_frames(np.zeros(len(values)), values)
     assert flags.bad.all()
     assert np.array_equal(bits(values), before)
+
+
+@given(counts=st.lists(st.integers(1, 700), max_size=12))
+def test_many_batches_are_judged_like_each_alone(counts: list[int]) -> None:
+    """Every frame gets its own flags, wherever the batches are put together."""
+    batches = []
+    for number, count in enumerate(counts):
+        values = standing(count)
+        values[number % count, HEAD_W] = np.nan
+        values[-1, 3] *= 1.5
+        batches.append(decode_batch(message(values)))
+    together = list(flag_batches(batches))
+    assert len(together) == len(counts)
+    for batch, flags in zip(batches, together, strict=True):
+        alone = flag_frames(batch.times_s, batch.values)
+        assert np.array_equal(flags.non_finite, alone.non_finite)
+        assert np.array_equal(flags.non_unit, alone.non_unit)

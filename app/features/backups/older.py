@@ -9,11 +9,10 @@ from pathlib import Path
 
 from sqlalchemy.exc import DBAPIError
 
-from app.database import migrate
 from app.errors import InvalidInput, NotDurable
 from app.features.backups.reading import Backup, digests, opened_copy
 from app.features.backups.shapes import shapes_of
-from app.schema_revisions import known_revisions, newest_revision
+from app.schema_revisions import known_revisions, migrate, newest_revision
 
 
 @contextmanager

@@ -18,7 +18,6 @@ from sqlalchemy import Connection
 from sqlalchemy.exc import DBAPIError
 
 from app import __version__
-from app.database import alembic_config
 from app.errors import Conflict, InvalidInput, NotDurable, NotFound
 from app.features.backups.digest import Digester, TableDigest
 from app.features.backups.manifest import Manifest, write_manifest
@@ -26,7 +25,7 @@ from app.features.backups.progress import Progress, silent
 from app.features.backups.reading import opened_backup, opened_copy
 from app.features.backups.rows import read_rows, sqlite_insert
 from app.features.backups.shapes import TableShape, shapes_of
-from app.schema_revisions import known_revisions, revision_of
+from app.schema_revisions import alembic_config, known_revisions, revision_of
 
 SPARE_BYTES = 64 * 1024 * 1024
 """What a backup leaves free on its disk, which may be the one that the server writes to."""

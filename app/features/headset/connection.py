@@ -29,7 +29,7 @@ from app.features.telemetry.writer import (
     ProbeContent,
     TelemetryWriter,
 )
-from app.wire import decode_batch, flag_frames
+from app.wire import decode_batch
 from app.wire.messages import (
     PROTOCOL_VERSION,
     Ack,
@@ -145,10 +145,9 @@ class HeadsetConnection:
     async def _take_batch(self, message: bytes) -> None:
         batch = decode_batch(message)
         self._require_epoch(batch.header.epoch)
-        flags = flag_frames(batch.times_s, batch.values)
-        await self._store(BatchContent(batch.header, message, flags))
+        await self._store(BatchContent(batch, message))
         # The live view does not wait for the commit.
-        self.lookout.batch(batch, flags)
+        self.lookout.batch(batch)
 
     async def _take_text(self, text: str) -> None:
         received_ns = self.context.clock.monotonic_ns()
@@ -205,8 +204,10 @@ class HeadsetConnection:
 
     async def _follow(self, subscription: Subscription) -> None:
         """Send the session's state on every change; close when the pairing was revoked."""
+        # Not the same for all: else those that came together would all ask at once, for ever.
+        pairing_checked_s = 10.0 + int(self.session_id[:4], 16) / 0x2000
         while True:
-            news = await subscription.next(timeout_s=10.0)
+            news = await subscription.next(timeout_s=pairing_checked_s)
             if not news:
                 await asyncio.to_thread(self._require_pairing)
             if "session" in news:

@@ -16,7 +16,7 @@ from app.features.context import AppContext
 from app.features.telemetry.live import LiveTelemetry
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.writer import AlarmContent, Content, LossContent
-from app.wire import Batch, FrameFlags
+from app.wire import Batch
 from app.wire.messages import HeadsetState, Probed, Produced, Report, Welcome
 
 NEWS_EVERY_S = 1.0
@@ -44,11 +44,11 @@ class Lookout:
         clock = self.context.clock
         return Moment(clock.monotonic_ns() / 1e9, clock.utc_now())
 
-    def batch(self, batch: Batch, flags: FrameFlags) -> None:
+    def batch(self, batch: Batch) -> None:
         """Frames have come and were handed over to the writer."""
         now = self._now()
         self.context.hub.note_frames(self.session_id, now.monotonic_s)
-        self.live.take(batch, flags)
+        self.live.take(batch)
         changes = self.watch.batch(batch, now)
         self._store(changes)
         if self._has_listeners():
@@ -70,6 +70,7 @@ class Lookout:
 
     def delivered(self, outcome: Outcome, *, waiting: bool) -> None:
         """Something is on disk; other messages are `waiting`, or none."""
+        self.live.flagged(outcome.frames_flagged)
         self.watch.backlog.stored(outcome.positions.values())
         self.watch.backlog.answered(self._now().monotonic_s, waiting=waiting)
 

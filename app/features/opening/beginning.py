@@ -4,7 +4,7 @@ import os
 import tempfile
 from pathlib import Path
 
-from app.database import migrate
+from app.schema_revisions import migrate
 
 
 def begin(file: Path) -> None:

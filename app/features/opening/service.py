@@ -6,13 +6,13 @@ from sqlalchemy import Connection, func, inspect, make_url, select, table
 
 from app import __version__
 from app.clock import Clock
-from app.database import Database, migrate, open_database
+from app.database import Database, open_database
 from app.errors import Conflict, NotFound
 from app.features.backups.service import ENDING, back_up, stamped
 from app.features.opening.beginning import begin
 from app.features.opening.inspection import damage_of, foreign_tables, is_open_elsewhere
 from app.features.opening.quarantine import Quarantine
-from app.schema_revisions import known_revisions, newest_revision, revision_of
+from app.schema_revisions import known_revisions, migrate, newest_revision, revision_of
 from app.settings import Settings
 
 

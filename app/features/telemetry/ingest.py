@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, cast
 
-from sqlalchemy import Table, insert, select
+from sqlalchemy import Table, select
 from sqlalchemy.orm import Session
 
 from app.features.alarms.alarm import Change
@@ -24,6 +24,7 @@ from app.features.sessions.service import (
 )
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.positions import Positions, certain_active_s
+from app.features.telemetry.rows import insert_rows
 from app.models import ClockProbe, Phase, TelemetryBatch
 from app.models.types import new_id
 from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
@@ -54,7 +55,7 @@ class Intake:
         """Write what has gathered."""
         self.positions.flush()
         for table, rows in self._rows.items():
-            self.db.execute(insert(table), rows)
+            insert_rows(self.db, table, rows)
         self._rows.clear()
 
     def gather(self, table: Table, row: dict[str, Any]) -> None:
@@ -96,6 +97,7 @@ class Intake:
             at.frames_flagged += bad
             at.phase_id, at.active_s = header.phase_id, header.active_s
             if bad:
+                told.frames_flagged += bad
                 told.notices.append(_flag(header, flags, skip))
         told.stored_up_to(at)
 

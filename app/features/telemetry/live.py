@@ -7,7 +7,7 @@ import numpy as np
 
 from app.science.skeleton import JOINT_NAMES
 from app.science.tasks import side_unit
-from app.wire import Batch, FrameFlags, StreamName
+from app.wire import Batch, StreamName
 from app.wire.messages import CompletionReport, ContactReport, Report
 
 PERIOD_S = 0.2
@@ -44,14 +44,17 @@ class LiveTelemetry:
             self._side_contacts += 1
         self._red_until_s[side] = max(self._red_until_s.get(side, -1.0), contact.end_active_s)
 
-    def take(self, batch: Batch, flags: FrameFlags) -> None:
+    def flagged(self, frames: int) -> None:
+        """So many frames that were stored hold something broken."""
+        self._flagged += frames
+
+    def take(self, batch: Batch) -> None:
         """Take note of frames."""
         header = batch.header
         if header.phase_id != self._phase_id:
             self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
             self._red_until_s = {}
         self._newest[header.stream] = batch
-        self._flagged += int(flags.bad.sum())
         if header.stream is StreamName.TARGET:
             self._frames += header.frame_count
 

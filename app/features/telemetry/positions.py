@@ -5,9 +5,10 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, cast
 
-from sqlalchemy import Table, bindparam, func, insert, select, update
+from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
+from app.features.telemetry.rows import insert_rows
 from app.models import TelemetryStream
 from app.wire.messages import REPORT_STREAM, StreamPosition
 
@@ -15,6 +16,7 @@ Key = tuple[str, str, int]
 """Session, stream, epoch."""
 TABLE = cast("Table", TelemetryStream.__table__)
 MOVING = ("next_seq", "produced", "frames_stored", "frames_flagged", "phase_id", "active_s")
+_MOVED = (*MOVING, "last_at")
 
 
 @dataclass
@@ -28,7 +30,6 @@ class Position:
     frames_flagged: int = 0
     phase_id: int = 0
     active_s: float = 0.0
-    is_new: bool = True
     is_changed: bool = False
 
     def stored(self, frames: int) -> None:
@@ -65,7 +66,7 @@ class Positions:
         for row in self.db.execute(select(TABLE).where(TABLE.c.session_id.in_(asked))).mappings():
             key = (row["session_id"], row["stream"], row["epoch"])
             values = {name: row[name] for name in MOVING}
-            self._held[key] = Position(key, **values, is_new=False)
+            self._held[key] = Position(key, **values)
 
     def at(self, session_id: str, stream: str, epoch: int) -> Position:
         """A stream's position, 0 at its first message."""
@@ -76,32 +77,17 @@ class Positions:
     def flush(self) -> None:
         """Write what has moved, so that queries of this transaction see it."""
         moved = [one for one in self._held.values() if one.is_changed]
-        fresh = [self._row(one) for one in moved if one.is_new]
-        known = [self._row(one) for one in moved if not one.is_new]
-        if fresh:
-            self.db.execute(insert(TABLE), [{**row, "first_at": self.now} for row in fresh])
-        if known:
-            self.db.execute(_UPDATE, [_as_parameters(row) for row in known])
+        if moved:
+            insert_rows(self.db, TABLE, [self._row(one) for one in moved], moving=_MOVED)
         for one in moved:
-            one.is_new = one.is_changed = False
+            one.is_changed = False
 
     def _row(self, position: Position) -> dict[str, Any]:
+        """Its row; of one that is there already only what moves is taken."""
         session_id, stream, epoch = position.key
+        key = {"session_id": session_id, "stream": stream, "epoch": epoch}
         moving = {name: getattr(position, name) for name in MOVING}
-        at = {"session_id": session_id, "stream": stream, "epoch": epoch, "last_at": self.now}
-        return {**at, **moving}
-
-
-_KEY = ("session_id", "stream", "epoch")
-_UPDATE = (
-    update(TABLE)
-    .where(*(TABLE.c[name] == bindparam(f"key_{name}") for name in _KEY))
-    .values({name: bindparam(f"new_{name}") for name in (*MOVING, "last_at")})
-)
-
-
-def _as_parameters(row: dict[str, Any]) -> dict[str, Any]:
-    return {f"{'key' if name in _KEY else 'new'}_{name}": value for name, value in row.items()}
+        return {**key, **moving, "first_at": self.now, "last_at": self.now}
 
 
 def positions_of(db: Session, session_id: str) -> tuple[StreamPosition, ...]:

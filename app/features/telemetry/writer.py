@@ -8,9 +8,9 @@ database itself cannot write, nothing is acknowledged and everything waits.
 import logging
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from sqlalchemy.exc import DBAPIError
 
@@ -20,7 +20,7 @@ from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.reports import store_report
 from app.features.trouble import explain
-from app.wire import BatchHeader, FrameFlags
+from app.wire import Batch, FrameFlags, flag_batches
 from app.wire.messages import Probed, Produced, Report
 
 log = logging.getLogger(__name__)
@@ -37,8 +37,7 @@ class Sender(Protocol):
         """The message cannot be stored, ever; close."""
 
 
-@dataclass(frozen=True)
-class Arrival:
+class Arrival(NamedTuple):
     """A message of a session waiting to be stored."""
 
     session_id: str
@@ -46,13 +45,11 @@ class Arrival:
     content: "Content"
 
 
-@dataclass(frozen=True)
-class BatchContent:
-    """A checked batch and its raw bytes."""
+class BatchContent(NamedTuple):
+    """A decoded batch and its raw bytes."""
 
-    header: BatchHeader
+    batch: Batch
     message: bytes
-    flags: FrameFlags
 
 
 @dataclass(frozen=True)
@@ -154,13 +151,16 @@ class TelemetryWriter:
 
     def _commit(self, arrivals: Sequence[Arrival]) -> None:
         outcomes: dict[int, tuple[Sender, Outcome]] = {}
+        flags = flag_batches(
+            [one.content.batch for one in arrivals if isinstance(one.content, BatchContent)]
+        )
         ended: list[tuple[str, int]] = []
         with self.context.database.writing() as db:
             intake = Intake(db, self.context, self.context.clock.utc_now())
             intake.positions.fetch(arrival.session_id for arrival in arrivals)
             for arrival in arrivals:
                 _, outcome = outcomes.setdefault(id(arrival.sender), (arrival.sender, Outcome()))
-                _store_one(intake, arrival, outcome)
+                _store_one(intake, arrival, flags, outcome)
                 outcome.messages += not isinstance(arrival.content, LossContent | AlarmContent)
                 ended += [(arrival.session_id, phase) for phase in outcome.phases_ended]
                 outcome.phases_ended.clear()
@@ -171,11 +171,14 @@ class TelemetryWriter:
             self.on_phase_ended(session_id, phase_id)
 
 
-def _store_one(intake: Intake, arrival: Arrival, outcome: Outcome) -> None:
+def _store_one(
+    intake: Intake, arrival: Arrival, flags: Iterator[FrameFlags], outcome: Outcome
+) -> None:
+    """Store a message; `flags` gives those of the batches, in their order."""
     session_id = arrival.session_id
     match arrival.content:
-        case BatchContent(header, message, flags):
-            intake.store_batch(session_id, header, message, flags, outcome)
+        case BatchContent(batch, message):
+            intake.store_batch(session_id, batch.header, message, next(flags), outcome)
         case Report() as report:
             store_report(intake, session_id, report, outcome)
         case ProbeContent(epoch, probe):

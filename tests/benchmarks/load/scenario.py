@@ -4,6 +4,7 @@ import time
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -33,9 +34,10 @@ class Store:
 
 @dataclass(frozen=True)
 class Course:
-    """A load that is over: when it began (monotonic s), what its processes told."""
+    """A load that is over: when it began (monotonic s) and ended, what its processes told."""
 
     begin_s: float
+    ended_at: datetime
     told: dict[str, dict[str, Any]]
     consoles_cpu_s: float
     watch: Watch
@@ -108,9 +110,10 @@ def run_course(
                 for name, pid in (store.processes or {}).items()
             }
             time.sleep(load.duration_s)
+            ended_at = datetime.now(UTC)
         told = {name: one.result() for name, one in these.generators.items()}
         seen = {} if these.consoles is None else these.consoles.result()
-    return Course(begin_s, told, seen.get("cpu_s", 0.0), watch, beside)
+    return Course(begin_s, ended_at, told, seen.get("cpu_s", 0.0), watch, beside)
 
 
 def outcome_of(
@@ -132,7 +135,7 @@ def outcome_of(
         consoles_cpu_s=course.consoles_cpu_s,
         watch=course.watch,
         beside=course.beside,
-        verdict=verify(url, sessions),
+        verdict=verify(url, sessions, course.ended_at),
         database_bytes=database_bytes(url),
     )
 

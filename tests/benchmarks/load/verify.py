@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from heapq import merge
 from pathlib import Path
 from typing import Any, TypeVar
@@ -27,7 +28,7 @@ class Verdict:
 
     `lost` were acknowledged and are not stored, `duplicated` are stored more than once, `surplus`
     were never handed over. `digested`, `differing`: streams that were compared bit by bit. `alarms`
-    that the server raised.
+    that the server raised while the load lasted.
     """
 
     handed: int = 0
@@ -44,12 +45,17 @@ class Verdict:
     chunk_frames: int = 0
 
 
-def verify(url: str, sessions: list[Mapping[str, Any]]) -> Verdict:
-    """Compare every stream's rows with what was acknowledged, and the digested ones bit by bit."""
+def verify(
+    url: str, sessions: list[Mapping[str, Any]], ended_at: datetime | None = None
+) -> Verdict:
+    """Compare every stream's rows with what was acknowledged, and the digested ones bit by bit.
+
+    `ended_at`: when the load ended, which is an alarm of its own.
+    """
     verdict = Verdict()
     database = open_database(url)
     try:
-        _measure(database, verdict)
+        _measure(database, verdict, ended_at)
         for told in sessions:
             for stream in (*StreamName, REPORT_STREAM):
                 _count(database, told, str(stream), verdict)
@@ -73,12 +79,14 @@ def database_bytes(url: str) -> int:
         database.close()
 
 
-def _measure(database: Database, verdict: Verdict) -> None:
+def _measure(database: Database, verdict: Verdict, ended_at: datetime | None) -> None:
     with database.reading() as db:
         size = func.sum(func.length(TelemetryChunk.data))
         found = db.execute(select(size, func.sum(TelemetryChunk.frame_count))).one()
         verdict.chunk_bytes, verdict.chunk_frames = found[0] or 0, found[1] or 0
         raised = select(func.count()).where(AlarmRow.state == "raised")
+        if ended_at is not None:
+            raised = raised.where(AlarmRow.at < ended_at)
         verdict.alarms = db.scalar(raised) or 0
         verdict.batches_left = db.scalar(select(func.count()).select_from(TelemetryBatch)) or 0
 

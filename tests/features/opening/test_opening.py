@@ -11,7 +11,7 @@ import pytest
 from sqlalchemy import text
 
 from app.clock import Clock
-from app.database import migrate, open_database
+from app.database import open_database
 from app.errors import Conflict, NotDurable, NotFound
 from app.features.backups.reading import opened_backup
 from app.features.opening.service import (
@@ -19,6 +19,7 @@ from app.features.opening.service import (
     existing_database,
     prepare_database,
 )
+from app.schema_revisions import migrate
 from app.settings import Settings
 from tests.faults.bench import Bench, PostgresBench, SqliteBench
 from tests.faults.interrupted import Found, found, steps, upgrade

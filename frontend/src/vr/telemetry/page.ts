@@ -44,6 +44,9 @@ export async function openTelemetryInWorker(
   return client;
 }
 
+/** The first comes earlier, the second also where nobody is asked. */
+const LEAVING = ["beforeunload", "pagehide"] as const;
+
 /** A client whose worker ends with it. */
 class PageClient extends WorkerClient {
   onClosed: () => void = () => undefined;
@@ -54,16 +57,22 @@ class PageClient extends WorkerClient {
   }
 }
 
-/** Bring the journal to disk when the page is hidden or left; returns what ends the watching. */
+/**
+ * Bring the journal to disk when the page is hidden or left; returns what ends the watching.
+ *
+ * A client of the page itself has then asked for everything before the page goes. One in a worker
+ * must still be told, and browsers end it without waiting: so it is told as early as possible, and
+ * what it has made within `flushEveryS` may be lost.
+ */
 export function flushWhenLeft(client: TelemetryClient): () => void {
   const flush = () => void client.flush().catch(() => undefined);
   const flushIfHidden = () => {
     if (document.visibilityState === "hidden") flush();
   };
   document.addEventListener("visibilitychange", flushIfHidden);
-  window.addEventListener("pagehide", flush);
+  for (const leaving of LEAVING) window.addEventListener(leaving, flush);
   return () => {
     document.removeEventListener("visibilitychange", flushIfHidden);
-    window.removeEventListener("pagehide", flush);
+    for (const leaving of LEAVING) window.removeEventListener(leaving, flush);
   };
 }
