@@ -46,7 +46,8 @@ from app.wire.messages import (
 )
 
 log = logging.getLogger(__name__)
-MAX_IN_FLIGHT = 256
+MAX_IN_FLIGHT = 64
+"""Two seconds of messages; more would let one who brings a backlog hold up all the others."""
 HELLO_DEADLINE_S = 10.0
 Told = TypeVar("Told")
 CLOSE_REFUSED = 4400

@@ -5,6 +5,7 @@ cut to its new part, what skips ahead is asked for again: so resending is always
 never come about in silence.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any, cast
@@ -46,7 +47,7 @@ class Intake:
     now: datetime
     positions: Positions = field(init=False)
     _rows: dict[Table, list[dict[str, Any]]] = field(default_factory=dict)
-    _phases: dict[str, frozenset[int]] = field(default_factory=dict)
+    _phases: dict[str, set[int]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.positions = Positions(self.db, self.now)
@@ -62,11 +63,19 @@ class Intake:
         """Insert a row with the others of its table."""
         self._rows.setdefault(table, []).append(row)
 
+    def fetch_phases(self, session_ids: Iterable[str]) -> None:
+        """Read the phases of these sessions, once a transaction: none begins in it."""
+        asked = sorted(set(session_ids) - self._phases.keys())
+        if not asked:
+            return
+        self._phases.update({session_id: set() for session_id in asked})
+        known = select(Phase.session_id, Phase.phase_id).where(Phase.session_id.in_(asked))
+        for session_id, phase_id in self.db.execute(known):
+            self._phases[session_id].add(phase_id)
+
     def has_phase(self, session_id: str, phase_id: int) -> bool:
-        """Whether the session has this phase; asked once a transaction, as none begins in it."""
-        if session_id not in self._phases:
-            known = self.db.scalars(select(Phase.phase_id).where(Phase.session_id == session_id))
-            self._phases[session_id] = frozenset(known)
+        """Whether the session has this phase."""
+        self.fetch_phases([session_id])
         return phase_id in self._phases[session_id]
 
     def store_batch(

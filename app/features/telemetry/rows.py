@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain
 from typing import Any
 
 from sqlalchemy import Dialect, Table
@@ -9,7 +10,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 LARGEST = 64
-"""Rows in one statement; numbers of rows are cut into powers of two, so that few texts suffice."""
+"""Rows in a statement for SQLite; their number is cut into powers of two: few texts suffice."""
 Names = tuple[str, ...]
 
 
@@ -21,23 +22,24 @@ def insert_rows(
     A row that is there already, by its primary key, gets the new values of the columns `moving`;
     without them it is an error.
 
-    Python's SQLite driver lets go of the interpreter for every row that it hands over singly, and
-    has to wait for it again. So there rows go many to a statement.
+    Drivers have a price for every row that they are handed singly; Python's SQLite driver also lets
+    go of the interpreter each time, and has to wait for it again. So SQLite gets many rows in one
+    statement, and PostgreSQL, whose driver takes long to read a long statement, gets columns.
     """
     connection = db.connection()
-    if connection.dialect.name != "sqlite":
-        connection.execute(_insert(table, moving), [dict(row) for row in rows])
-        return
     names = tuple(column.name for column in table.c if column.name in rows[0])
-    processors = _processors(table, names, connection.dialect)
+    columns = [
+        [row[name] if process is None else process(row[name]) for row in rows]
+        for name, process in _processors(table, names, connection.dialect)
+    ]
+    if connection.dialect.name == "postgresql":
+        connection.exec_driver_sql(_from_arrays(table, names, moving), tuple(columns))
+        return
     at = 0
     for count in _powers(len(rows)):
-        values = tuple(
-            row[name] if process is None else process(row[name])
-            for row in rows[at : at + count]
-            for name, process in processors
-        )
-        connection.exec_driver_sql(_text(table, names, moving, count), values)
+        part = (column[at : at + count] for column in columns)
+        values = chain.from_iterable(zip(*part, strict=True))
+        connection.exec_driver_sql(_from_rows(table, names, moving, count), tuple(values))
         at += count
 
 
@@ -48,29 +50,33 @@ def _powers(count: int) -> Iterator[int]:
         count -= power
 
 
-@lru_cache
-def _insert(table: Table, moving: Names) -> postgresql.Insert:
-    statement = postgresql.insert(table)
-    if not moving:
-        return statement
-    return statement.on_conflict_do_update(
-        constraint=table.primary_key, set_={name: statement.excluded[name] for name in moving}
-    )
-
-
 @lru_cache(maxsize=256)
-def _text(table: Table, names: Names, moving: Names, rows: int) -> str:
-    """The statement for so many rows; `names` are in the order of the table."""
+def _from_rows(table: Table, names: Names, moving: Names, rows: int) -> str:
+    """For SQLite: the statement for so many rows, with a parameter for every value."""
+    row = f"({', '.join('?' * len(names))})"
+    return _statement(table, names, moving, f"VALUES {', '.join([row] * rows)}")
+
+
+@lru_cache(maxsize=64)
+def _from_arrays(table: Table, names: Names, moving: Names) -> str:
+    """For PostgreSQL: one statement for any number, with a binary array for every column."""
+    dialect = postgresql.dialect()  # type: ignore[no-untyped-call]  # SQLAlchemy has no type for it
+    types = (table.c[name].type.compile(dialect) for name in names)
+    arrays = ", ".join(f"%b::{type_}[]" for type_ in types)
+    return _statement(table, names, moving, f"SELECT * FROM unnest({arrays})")  # noqa: S608
+
+
+def _statement(table: Table, names: Names, moving: Names, source: str) -> str:
+    """Both databases say it with the same words, but for where the rows come from."""
     statement = sqlite.insert(table).values(dict.fromkeys(names))
     if moving:
         statement = statement.on_conflict_do_update(
             index_elements=list(table.primary_key),
             set_={name: statement.excluded[name] for name in moving},
         )
+    # Compiling all rows would take long, and the writer holds the lock meanwhile.
     text = str(statement.compile(dialect=sqlite.dialect()))
-    # Compiling them all would take long, and the writer holds the lock meanwhile.
-    row = f"({', '.join('?' * len(names))})"
-    return text.replace(f"VALUES {row}", f"VALUES {', '.join([row] * rows)}")
+    return text.replace(f"VALUES ({', '.join('?' * len(names))})", source)
 
 
 @lru_cache(maxsize=64)

@@ -158,6 +158,9 @@ class TelemetryWriter:
         with self.context.database.writing() as db:
             intake = Intake(db, self.context, self.context.clock.utc_now())
             intake.positions.fetch(arrival.session_id for arrival in arrivals)
+            intake.fetch_phases(
+                arrival.session_id for arrival in arrivals if isinstance(arrival.content, Report)
+            )
             for arrival in arrivals:
                 _, outcome = outcomes.setdefault(id(arrival.sender), (arrival.sender, Outcome()))
                 _store_one(intake, arrival, flags, outcome)

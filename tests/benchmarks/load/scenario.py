@@ -34,10 +34,10 @@ class Store:
 
 @dataclass(frozen=True)
 class Course:
-    """A load that is over: when it began (monotonic s) and ended, what its processes told."""
+    """A load that is over: when it began (monotonic s), from when to when, what was told."""
 
     begin_s: float
-    ended_at: datetime
+    lasted: tuple[datetime, datetime]
     told: dict[str, dict[str, Any]]
     consoles_cpu_s: float
     watch: Watch
@@ -103,6 +103,7 @@ def run_course(
         for one in (*these.everybody(), *guests):
             one.begin(begin_s)
         time.sleep(max(0.0, begin_s - time.monotonic()))
+        begun_at = datetime.now(UTC)
         with ExitStack() as stack:
             watch = stack.enter_context(Watch(server.pid, file))
             beside = {
@@ -110,10 +111,10 @@ def run_course(
                 for name, pid in (store.processes or {}).items()
             }
             time.sleep(load.duration_s)
-            ended_at = datetime.now(UTC)
+            lasted = (begun_at, datetime.now(UTC))
         told = {name: one.result() for name, one in these.generators.items()}
         seen = {} if these.consoles is None else these.consoles.result()
-    return Course(begin_s, ended_at, told, seen.get("cpu_s", 0.0), watch, beside)
+    return Course(begin_s, lasted, told, seen.get("cpu_s", 0.0), watch, beside)
 
 
 def outcome_of(
@@ -135,7 +136,7 @@ def outcome_of(
         consoles_cpu_s=course.consoles_cpu_s,
         watch=course.watch,
         beside=course.beside,
-        verdict=verify(url, sessions, course.ended_at),
+        verdict=verify(url, sessions, course.lasted),
         database_bytes=database_bytes(url),
     )
 

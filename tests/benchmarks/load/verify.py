@@ -46,16 +46,17 @@ class Verdict:
 
 
 def verify(
-    url: str, sessions: list[Mapping[str, Any]], ended_at: datetime | None = None
+    url: str, sessions: list[Mapping[str, Any]], lasted: tuple[datetime, datetime] | None = None
 ) -> Verdict:
     """Compare every stream's rows with what was acknowledged, and the digested ones bit by bit.
 
-    `ended_at`: when the load ended, which is an alarm of its own.
+    `lasted`: when the load began and ended. Headsets that wait for each other before, and leave
+    afterwards, raise alarms too.
     """
     verdict = Verdict()
     database = open_database(url)
     try:
-        _measure(database, verdict, ended_at)
+        _measure(database, verdict, lasted)
         for told in sessions:
             for stream in (*StreamName, REPORT_STREAM):
                 _count(database, told, str(stream), verdict)
@@ -79,14 +80,16 @@ def database_bytes(url: str) -> int:
         database.close()
 
 
-def _measure(database: Database, verdict: Verdict, ended_at: datetime | None) -> None:
+def _measure(
+    database: Database, verdict: Verdict, lasted: tuple[datetime, datetime] | None
+) -> None:
     with database.reading() as db:
         size = func.sum(func.length(TelemetryChunk.data))
         found = db.execute(select(size, func.sum(TelemetryChunk.frame_count))).one()
         verdict.chunk_bytes, verdict.chunk_frames = found[0] or 0, found[1] or 0
         raised = select(func.count()).where(AlarmRow.state == "raised")
-        if ended_at is not None:
-            raised = raised.where(AlarmRow.at < ended_at)
+        if lasted is not None:
+            raised = raised.where(AlarmRow.at.between(*lasted))
         verdict.alarms = db.scalar(raised) or 0
         verdict.batches_left = db.scalar(select(func.count()).select_from(TelemetryBatch)) or 0
 
