@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Generic, TypeVar
+from typing import Generic, TypeVar, cast
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -59,13 +59,31 @@ def load_study(text: str, *, instruments: Mapping[str, Instrument]) -> LoadedStu
 def load_instrument(text: str) -> LoadedInstrument:
     """Read an instrument file (YAML). Raises ConfigError with every problem of the file."""
     instrument = _validated(_INSTRUMENT, read_source(text), [])
-    canonical = canonical_json(_INSTRUMENT.adapter.dump_python(instrument, mode="json"))
+    canonical = canonical_json(_canonical(instrument))
     return LoadedInstrument(instrument, sha256_of(canonical), canonical)
 
 
 def parse_study_json(canonical_json: str) -> StudyProtocol:
     """The study that was stored as canonical JSON. Raises ConfigError if it is not one."""
     return _parsed(_STUDY, canonical_json)
+
+
+def _canonical(instrument: Instrument) -> dict[str, Plain]:
+    """Its content, defaults written out; without what was added later where that is not used.
+
+    So the hash of an instrument that is stored somewhere does not change with a release.
+    """
+    tree: dict[str, Plain] = _INSTRUMENT.adapter.dump_python(instrument, mode="json")
+    items = cast("list[dict[str, Plain]]", tree["items"])
+    scales = [item["scale"] for item in items if item["scale"] is not None]
+    tree["items"] = [
+        {key: value for key, value in item.items() if key != "scale" or value is not None}
+        for item in items
+    ]
+    for scale in cast("list[dict[str, Plain]]", [*scales, tree["scale"] or {}]):
+        if scale.get("step") == 1:
+            del scale["step"]
+    return tree
 
 
 def parse_instrument_json(canonical_json: str) -> Instrument:

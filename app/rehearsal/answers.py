@@ -22,27 +22,34 @@ def fill_in(
     likert = [item for item in instrument["items"] if item["type"] == "likert"]
     answers: dict[str, Any] = {}
     if likert:
-        scale = instrument["scale"]
         aspects = _aspects(instrument)
-        answers |= simulated_answers(
+        scales = {item["key"]: item.get("scale") or instrument["scale"] for item in likert}
+        drawn = simulated_answers(
             [
                 SimulatedItem(
-                    item["key"],
+                    key,
                     scale["minimum"],
                     scale["maximum"],
-                    aspects.get(item["key"], Aspect.OWNERSHIP),
+                    aspects.get(key, Aspect.OWNERSHIP),
                 )
-                for item in likert
+                for key, scale in scales.items()
             ],
             {item["key"]: -1 if item["reverse_keyed"] else 1 for item in likert},
             latency_ms or 0.0,
             limb or "hand",
             rng,
         )
+        answers |= {key: _on_step(value, scales[key]) for key, value in drawn.items()}
     for item in instrument["items"]:
         if item["type"] != "likert":
             answers[item["key"]] = _answer(item, person, rng)
     return answers
+
+
+def _on_step(value: int, scale: dict[str, Any]) -> int:
+    """The step of a scale that is nearest."""
+    low, step = int(scale["minimum"]), int(scale.get("step", 1))
+    return low + step * round((value - low) / step)
 
 
 def _aspects(instrument: dict[str, Any]) -> dict[str, Aspect]:

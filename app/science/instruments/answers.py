@@ -65,8 +65,11 @@ def fits(instrument: Instrument, item: Item, value: object) -> bool:
         return isinstance(value, bool | np.bool_)
     if isinstance(value, bool) or not isinstance(value, _NUMBERS) or not math.isfinite(value):
         return False
-    low, high = _limits(instrument, item)
     number = float(value)
+    scale = instrument.scale_of(item)
+    if scale is not None:
+        return number.is_integer() and int(number) in scale.steps
+    low, high = _limits(item)
     return (item.type == "number" or number.is_integer()) and low <= number <= high
 
 
@@ -78,7 +81,11 @@ def valid_answers(instrument: Instrument, item: Item) -> str:
         return "one of " + ", ".join(choice.key for choice in item.choices)
     if item.type == "boolean":
         return "true or false"
-    low, high = _limits(instrument, item)
+    scale = instrument.scale_of(item)
+    if scale is not None:
+        stepped = "" if scale.step == 1 else f" in steps of {scale.step}"
+        return f"a whole number from {scale.minimum} to {scale.maximum}{stepped}"
+    low, high = _limits(item)
     words = "a number" if item.type == "number" else "a whole number"
     if math.isfinite(low) and math.isfinite(high):
         words += f" from {low:g} to {high:g}"
@@ -106,9 +113,7 @@ def as_number(
     return float(value)  # type: ignore[arg-type]  # `fits` has shown that it is a number
 
 
-def _limits(instrument: Instrument, item: Item) -> tuple[float, float]:
-    if item.type == "likert" and instrument.scale is not None:
-        return instrument.scale.minimum, instrument.scale.maximum
+def _limits(item: Item) -> tuple[float, float]:
     low = -math.inf if item.minimum is None else item.minimum
     high = math.inf if item.maximum is None else item.maximum
     return low, high

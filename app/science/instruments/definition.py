@@ -12,6 +12,7 @@ from app.science.instruments.errors import (
 )
 from app.science.instruments.formula import parse_formula
 from app.science.instruments.item_definition import item_problems
+from app.science.instruments.scale_definition import scale_problems
 from app.science.instruments.texts import text_problems, texts_of
 from app.science.instruments.tokens import FUNCTIONS
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 _KEY = re.compile(r"[a-z][a-z0-9_]{0,39}")
 _LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Z]{2})?")
 _KEY_REMEDY = "Use lower-case letters, digits and _, beginning with a letter, at most 40 in all."
-_MAX_SCALE_STEPS = 101
 
 
 def check_definition(instrument: "Instrument") -> None:
@@ -30,7 +30,7 @@ def check_definition(instrument: "Instrument") -> None:
         *_basics(instrument),
         *_keys(instrument),
         *_items(instrument),
-        *_scale(instrument),
+        *scale_problems(instrument.scale, ("scale",)),
         *_last(instrument),
         *_formulas(instrument),
         *_texts(instrument),
@@ -96,30 +96,9 @@ def _keys(instrument: "Instrument") -> Iterator[DefinitionProblem]:
 
 def _items(instrument: "Instrument") -> Iterator[DefinitionProblem]:
     for index, item in enumerate(instrument.items):
-        yield from item_problems(item, ("items", index), has_scale=instrument.scale is not None)
-
-
-def _scale(instrument: "Instrument") -> Iterator[DefinitionProblem]:
-    scale = instrument.scale
-    if scale is None:
-        return
-    steps = scale.maximum - scale.minimum + 1
-    if not 2 <= steps <= _MAX_SCALE_STEPS:
-        yield DefinitionProblem(
-            ("scale", "maximum"),
-            f"A scale from {scale.minimum} to {scale.maximum} has {max(steps, 0)} steps.",
-            scale.maximum,
-            f"2 to {_MAX_SCALE_STEPS} steps",
-            "Make maximum larger than minimum.",
-        )
-    elif len(scale.labels) not in (0, 2, steps):
-        yield DefinitionProblem(
-            ("scale", "labels"),
-            f"There are {len(scale.labels)} labels for {steps} steps.",
-            len(scale.labels),
-            f"{steps} labels, 2 (for both ends) or none",
-            "Give one label for each step from lowest to highest, or only those of both ends.",
-        )
+        has_scale = instrument.scale_of(item) is not None
+        yield from item_problems(item, ("items", index), has_scale=has_scale)
+        yield from scale_problems(item.scale, ("items", index, "scale"))
 
 
 def _last(instrument: "Instrument") -> Iterator[DefinitionProblem]:

@@ -22,9 +22,9 @@ def item_problems(item: "Item", path: _Path, *, has_scale: bool) -> Iterator[Def
     if item.type == "likert" and not has_scale:
         yield DefinitionProblem(
             (*path, "type"),
-            "A likert item needs the instrument's scale, and there is none.",
+            "A likert item needs a scale, its own or the instrument's, and there is none.",
             item.type,
-            remedy="Add a scale to the instrument, or give the item another type.",
+            remedy="Add a scale to the instrument or the item, or give the item another type.",
         )
     length = item.max_length
     if length is not None and not 1 <= length <= MAX_TEXT_LENGTH:
@@ -47,6 +47,7 @@ def _misplaced(item: "Item", path: _Path) -> Iterator[DefinitionProblem]:
         ("choices", bool(item.choices), ("choice",)),
         ("max_length", item.max_length is not None, ("text",)),
         ("reverse_keyed", item.reverse_keyed, ("likert",)),
+        ("scale", item.scale is not None, ("likert",)),
     )
     for field, given, types in fields:
         if given and item.type not in types:

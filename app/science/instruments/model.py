@@ -1,9 +1,9 @@
 """A questionnaire with its scoring, as values: what is asked, how, and what it adds up to.
 
-An *instrument* is a list of *items*. Likert items share the instrument's *scale*; other items carry
-their own type and range. Before scoring, `recode` is applied to every number ("x - 4" turns 1..7
-into -3..+3), then each *score* is a formula over items and earlier scores. A score has no value as
-soon as one of its items has none.
+An *instrument* is a list of *items*. Likert items share the instrument's *scale* or have one of
+their own; other items carry their own type and range. Before scoring, `recode` is applied to every
+number ("x - 4" turns 1..7 into -3..+3), then each *score* is a formula over items and earlier
+scores. A score has no value as soon as one of its items has none.
 
 Texts are given in every language the instrument declares: `{"en": ..., "de": ...}`.
 """
@@ -38,12 +38,33 @@ class Choice:
 
 
 @dataclass(frozen=True)
+class Scale:
+    """The scale of likert items: whole numbers, with labels from lowest to highest.
+
+    `step`: from one to the next. `labels`: one for each step, or two for both ends, or none.
+    """
+
+    __pydantic_config__: ClassVar[dict[str, object]] = _STRICT
+
+    minimum: int
+    maximum: int
+    labels: tuple[Text, ...]
+    step: int = 1
+
+    @property
+    def steps(self) -> range:
+        """Every possible answer, from lowest to highest; empty if `step` is not positive."""
+        return range(self.minimum, self.maximum + 1, self.step) if self.step > 0 else range(0)
+
+
+@dataclass(frozen=True)
 class Item:
     """One question.
 
-    `minimum`, `maximum`: limits of integer and number items, in `unit`. `max_length`: characters of
-    a text answer. `reverse_keyed`: agreement speaks against what the item's scale measures (used
-    for reliability, never by the formulas). `note`: where the item comes from.
+    `minimum`, `maximum`: limits of integer and number items, in `unit`. `scale`: of a likert item,
+    in place of the instrument's. `max_length`: characters of a text answer. `reverse_keyed`:
+    agreement speaks against what the item's scale measures (used for reliability, never by the
+    formulas). `note`: where the item comes from.
     """
 
     __pydantic_config__: ClassVar[dict[str, object]] = _STRICT
@@ -59,25 +80,12 @@ class Item:
     max_length: int | None = None
     reverse_keyed: bool = False
     note: str | None = None
+    scale: Scale | None = None
 
     @property
     def is_numeric(self) -> bool:
         """Whether a formula can use the item; a yes counts 1 and a no 0."""
         return self.type in ("likert", "integer", "number", "boolean")
-
-
-@dataclass(frozen=True)
-class Scale:
-    """The scale of all likert items: whole numbers, with labels from lowest to highest.
-
-    `labels`: one for each step, or two for both ends, or none.
-    """
-
-    __pydantic_config__: ClassVar[dict[str, object]] = _STRICT
-
-    minimum: int
-    maximum: int
-    labels: tuple[Text, ...]
 
 
 @dataclass(frozen=True)
@@ -137,6 +145,10 @@ class Instrument:
     def by_key(self) -> dict[str, Item]:
         """Items by their key."""
         return {item.key: item for item in self.items}
+
+    def scale_of(self, item: Item) -> Scale | None:
+        """The scale on which a likert item is answered; None for other items."""
+        return (item.scale or self.scale) if item.type == "likert" else None
 
     @cached_property
     def formulas(self) -> dict[str, Node]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from app.science.instruments.errors import DefinitionProblem
 
 if TYPE_CHECKING:
-    from app.science.instruments.model import Instrument, Text
+    from app.science.instruments.model import Instrument, Scale, Text
 
 _Path = tuple[str | int, ...]
 
@@ -39,8 +39,12 @@ def texts_of(instrument: "Instrument") -> "Iterator[tuple[_Path, Text]]":
         yield ("items", at, "text"), item.text
         for number, choice in enumerate(item.choices):
             yield ("items", at, "choices", number, "label"), choice.label
-    if instrument.scale is not None:
-        for at, label in enumerate(instrument.scale.labels):
-            yield ("scale", "labels", at), label
+        yield from _labels(item.scale, ("items", at, "scale"))
+    yield from _labels(instrument.scale, ("scale",))
     for at, score in enumerate(instrument.scores):
         yield ("scores", at, "label"), score.label
+
+
+def _labels(scale: "Scale | None", path: _Path) -> "Iterator[tuple[_Path, Text]]":
+    for at, label in enumerate(() if scale is None else scale.labels):
+        yield (*path, "labels", at), label

@@ -106,3 +106,14 @@ def test_an_instrument_that_does_not_shuffle_keeps_its_order() -> None:
 
 
 EXPECTED_START = ("q2", "q11", "q8", "q10", "q14")
+
+
+def test_an_item_with_a_scale_of_its_own_takes_its_steps_only() -> None:
+    """Multiples of five from 0 to 100, said in words; the others keep the instrument's scale."""
+    tlx = shipped("raw_tlx")
+    answers: dict[str, object] = dict.fromkeys(tlx.by_key, 50)
+    assert validate_answers(tlx, answers) == ()
+    for value in (-5, 105, 52, 2.5):
+        (problem,) = validate_answers(tlx, {**answers, "performance": value})
+        assert problem.item == "performance"
+        assert problem.valid == "a whole number from 0 to 100 in steps of 5"

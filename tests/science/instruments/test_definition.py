@@ -48,6 +48,23 @@ def likert(key: str) -> Item:
         ({"scale": Scale(7, 1, ())}, ("scale", "maximum"), "steps"),
         ({"scale": Scale(1, 7, (ONE,) * 3)}, ("scale", "labels"), "3 labels"),
         ({"scale": None}, ("items", 0, "type"), "scale"),
+        ({"scale": Scale(0, 100, (), step=0)}, ("scale", "step"), "whole number"),
+        ({"scale": Scale(0, 100, (), step=30)}, ("scale", "step"), "do not reach 100"),
+        (
+            {"items": (Item("q1", ONE, "likert", scale=Scale(3, 3, ())),), "scores": ()},
+            ("items", 0, "scale", "maximum"),
+            "1 steps",
+        ),
+        (
+            {"items": (Item("q1", ONE, "text", scale=Scale(1, 7, ())),), "scores": ()},
+            ("items", 0, "scale"),
+            "no meaning",
+        ),
+        (
+            {"items": (Item("q1", ONE, "likert", scale=Scale(1, 2, (ONE, {}))),), "scores": ()},
+            ("items", 0, "scale", "labels", 1, "en"),
+            "no wording",
+        ),
     ],
 )
 def test_contradictions_are_refused_at_their_place(

@@ -83,10 +83,16 @@ export interface StudyProtocol {
     readonly replicates: number;
     readonly seed: number;
     readonly when_full: string;
+    /** Of the design "explicit". */
+    readonly sequences?: readonly (readonly string[])[];
   };
   readonly procedure: {
     readonly before: readonly SetupStep[];
-    readonly block: { readonly limb_order: string; readonly phases: readonly TaskPhase[] };
+    readonly block: {
+      readonly limb_order: string;
+      readonly phases: readonly TaskPhase[];
+      readonly after?: readonly SetupStep[];
+    };
     readonly after: readonly SetupStep[];
   };
   readonly on_disconnect: string;
@@ -142,6 +148,14 @@ export interface TelemetryNews extends Partial<Telemetry> {
   readonly alarms: readonly LiveAlarm[];
 }
 
+/** Whether the record can be written: told when a page begins to listen, and when it changes. */
+export interface StorageNews {
+  readonly status: "ok" | "failing";
+  readonly since: string | null;
+  readonly reason: string | null;
+  readonly low_disk: boolean;
+}
+
 export type Pairing = Schemas["PairingView"];
 
 export type ItemType = "likert" | "integer" | "number" | "text" | "boolean" | "choice";
@@ -156,6 +170,8 @@ export interface Item {
   readonly max_length?: number | null;
   readonly unit?: string | null;
   readonly choices?: readonly Choice[];
+  /** In place of the instrument's. */
+  readonly scale?: Scale | null;
 }
 
 export interface Choice {
@@ -168,6 +184,7 @@ export interface Scale {
   readonly maximum: number;
   /** One label for each step, or two for both ends, or none. */
   readonly labels: readonly Text[];
+  readonly step?: number;
 }
 
 export interface Instrument {

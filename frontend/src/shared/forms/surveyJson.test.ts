@@ -35,6 +35,19 @@ describe("an instrument as a SurveyJS form", () => {
     expect([question.minRateDescription, question.maxRateDescription]).toEqual(["low", "high"]);
   });
 
+  it("gives an item its own scale, in its own steps", () => {
+    const labels = [{ en: "perfect" }, { en: "failure" }];
+    const own = { minimum: 0, maximum: 100, step: 25, labels };
+    const items = instrument.items.map((item) =>
+      item.key === "calm" ? { ...item, scale: own } : item,
+    );
+    const json = surveyJson({ ...administration, instrument: { ...instrument, items } }, options);
+    const question = new Model(json).getQuestionByName("calm");
+    const values = question.rateValues.map(({ value }: { value: number }) => value);
+    expect(values).toEqual([0, 25, 50, 75, 100]);
+    expect(question.minRateDescription).toBe("perfect");
+  });
+
   it("does not go on without the required answers, and says so in our words", () => {
     const form = model();
     expect(form.validate()).toBe(false);

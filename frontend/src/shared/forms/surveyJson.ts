@@ -55,7 +55,7 @@ function element(item: Item, instrument: Instrument, options: FormOptions): Json
     title: isRequired(item) || mayOmit ? text : `${text} (${words.optional})`,
     isRequired: isRequired(item) && !mayOmit,
     requiredErrorText: words.required,
-    ...kindOf(item, instrument.scale ?? null, options),
+    ...kindOf(item, item.scale ?? instrument.scale ?? null, options),
   };
 }
 
@@ -95,8 +95,9 @@ const choice = (one: Choice, language: string): Json => ({
 
 /** Every step is written out where it has a label of its own; else the ends are. */
 function rating(scale: Scale | null, language: string): Json {
-  const { minimum, maximum, labels } = scale ?? { minimum: 1, maximum: 7, labels: [] };
-  const steps = Array.from({ length: maximum - minimum + 1 }, (_, index) => minimum + index);
+  const { minimum, maximum, labels, step = 1 } = scale ?? { minimum: 1, maximum: 7, labels: [] };
+  const count = Math.floor((maximum - minimum) / step) + 1;
+  const steps = Array.from({ length: count }, (_, index) => minimum + step * index);
   const written = labels.map((label) => inLanguage(label, language));
   const ends =
     written.length === 2 ? { minRateDescription: written[0], maxRateDescription: written[1] } : {};
