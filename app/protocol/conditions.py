@@ -68,14 +68,21 @@ Conditions = Annotated[tuple[Condition, ...], Field(min_length=1), AfterValidato
 
 
 class Orders(Strict):
-    """Counterbalancing: how many times each order is used, and what happens afterwards.
+    """Counterbalancing: which orders there are, how many times each is used, and what comes then.
 
+    `design`: "all_permutations" (n! orders), "williams" (n orders for an even number of conditions,
+    2n for an odd one: each condition equally often at each position, each ordered pair of
+    neighbours equally often), or "explicit": those listed in `sequences`, by the conditions' keys.
     `replicates`: initial blocks of the ledger; one block holds every order once. `seed`: decides
     how the rows are mixed within each block. `when_full`: "grow" adds whole blocks, "closed" takes
     nobody more.
     """
 
-    design: Literal["all_permutations"]
+    design: Literal["all_permutations", "williams", "explicit"]
     replicates: Annotated[int, Field(ge=1, le=1000)]
     seed: Annotated[int, Field(ge=0)]
     when_full: Literal["grow", "closed"]
+    # Left out of the content where there is none, so that the hash of other designs stays.
+    sequences: Annotated[
+        tuple[tuple[Key, ...], ...] | None, Field(exclude_if=lambda value: value is None)
+    ] = None

@@ -30,6 +30,7 @@ def cross_problems(
     yield from _references(tree, instruments, languages)
     yield from _titles(tree, languages)
     yield from _rows(tree)
+    yield from _sequences(tree)
 
 
 def _texts(tree: Plain, schema: Schema, languages: list[str]) -> Iterator[DefinitionProblem]:
@@ -59,6 +60,7 @@ def _steps(tree: dict[str, Plain]) -> Iterator[tuple[Path, dict[str, Plain]]]:
     places: tuple[tuple[Path, Plain], ...] = (
         (("procedure", "before"), procedure.get("before")),
         (("procedure", "block", "phases"), _dict(procedure.get("block")).get("phases")),
+        (("procedure", "block", "after"), _dict(procedure.get("block")).get("after")),
         (("procedure", "after"), procedure.get("after")),
     )
     for path, steps in places:
@@ -139,8 +141,44 @@ def _rows(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
             f"All orders of {n_conditions} conditions are {rows} rows for each replicate.",
             n_conditions,
             f"at most {MAX_PERMUTED} conditions ({math.factorial(MAX_PERMUTED)} rows)",
-            "Use fewer conditions.",
+            "Use fewer conditions, or the design williams, which needs few rows.",
         )
+
+
+def _sequences(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
+    """An explicit list holds orders of all conditions; the other designs have none."""
+    orders = _dict(tree.get("orders"))
+    listed = orders.get("sequences")
+    if (orders.get("design") == "explicit") != (listed is not None):
+        yield DefinitionProblem(
+            ("orders", "sequences"),
+            "Orders are listed for the design explicit, and for no other.",
+            orders.get("design"),
+            "a list of orders with the design explicit, none otherwise",
+            "Give the orders as lists of condition keys, or leave them out.",
+        )
+    keys = sorted(str(_dict(one).get("key")) for one in _list(tree.get("conditions")))
+    if isinstance(listed, list) and not listed:
+        yield DefinitionProblem(
+            ("orders", "sequences"), "No order is listed.", [], ">= 1 order", "List an order."
+        )
+    for at, sequence in enumerate(_list(listed)):
+        if sequence in _list(listed)[:at]:
+            yield DefinitionProblem(
+                ("orders", "sequences", at),
+                "This order is listed twice.",
+                sequence,
+                "every order once",
+                "List it once; replicates say how often every order is used.",
+            )
+        if sorted(map(str, _list(sequence))) != keys:
+            yield DefinitionProblem(
+                ("orders", "sequences", at),
+                "An order must hold every condition once.",
+                sequence,
+                keys,
+                "Name each condition's key once.",
+            )
 
 
 def _dict(value: Plain) -> dict[str, Plain]:

@@ -1,9 +1,10 @@
-"""Counterbalancing: every order of the conditions, and the rows of the ledger that hold them.
+"""Counterbalancing: the orders of the conditions, and the rows of the ledger that hold them.
 
-All n! orders together are balanced by construction: each condition stands equally often at each
-position, and each ordered pair of neighbours occurs equally often. A *block* of the ledger holds
-every order once; its rows are mixed, so that nobody can tell which order comes next. Blocks are
-drawn independently from the study's seed: adding one never changes those that exist.
+All n! orders together are balanced by construction, and so are the few of a Williams design: each
+condition stands equally often at each position, and each ordered pair of neighbours occurs equally
+often. An explicit list is as balanced as who wrote it. A *block* of the ledger holds every order
+once; its rows are mixed, so that nobody can tell which order comes next. Blocks are drawn
+independently from the study's seed: adding one never changes those that exist.
 """
 
 from itertools import permutations
@@ -12,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.protocol.study import StudyProtocol
+from app.science.williams import williams
 
 Sequence = tuple[str, ...]
 """One order of the conditions, by their keys."""
@@ -25,12 +27,19 @@ class LedgerRow(NamedTuple):
 
 
 def sequences(protocol: StudyProtocol) -> tuple[Sequence, ...]:
-    """All n! orders, sorted by the place of their conditions in the study file."""
-    return tuple(permutations(condition.key for condition in protocol.conditions))
+    """Every order of the study's design; permutations as their conditions stand in the file."""
+    keys = [condition.key for condition in protocol.conditions]
+    match protocol.orders.design:
+        case "all_permutations":
+            return tuple(permutations(keys))
+        case "williams":
+            return tuple(tuple(keys[at] for at in row) for row in williams(len(keys)))
+        case "explicit":
+            return protocol.orders.sequences or ()
 
 
 def ledger_block(protocol: StudyProtocol, block_index: int) -> tuple[LedgerRow, ...]:
-    """The n! rows of one block, in the order in which they are given out.
+    """The rows of one block, in the order in which they are given out.
 
     `block_index` counts from 0 and is the replicate less one. The rows depend on nothing but the
     conditions' keys, the seed and the index (PCG64 seeded with SeedSequence([seed, block_index])).

@@ -1,7 +1,8 @@
 """From a study and one order of its conditions to the steps of a session.
 
 The plan is what a session walks through: setup steps, then for each condition its phases, each
-followed by its questionnaire, then the closing steps. It never changes during a session.
+followed by its questionnaire, and the block's own forms, then the closing steps. It never changes
+during a session.
 """
 
 from collections.abc import Iterator, Sequence
@@ -40,8 +41,9 @@ class Step:
     """One step of a session.
 
     `index` counts from 0; `key` is unique ("form.demographics", "block2.hand",
-    "block2.hand.karas2020"). `block` counts from 1 and, like `condition`, is None outside the
-    blocks. `latency_ms` is also set for free movement. `text` names a text of the study.
+    "block2.hand.karas2020", "block2.fms"). `block` counts from 1 and, like `condition`, is None
+    outside the blocks. `latency_ms` is also set for free movement. `text` names a text of the
+    study.
     """
 
     index: int
@@ -81,7 +83,18 @@ def compile_plan(
         turned = block % 2 == (1 if block_limb_flip else 0)
         if protocol.procedure.block.limb_order == "alternate" and turned:
             phases = phases[::-1]
-        steps.extend(_block(block, protocol.condition(key), phases))
+        condition = protocol.condition(key)
+        steps.extend(_block(block, condition, phases))
+        steps.extend(
+            replace(
+                _simple(step),
+                key=f"block{block}.{step.instrument}",
+                block=block,
+                condition=condition.key,
+                latency_ms=condition.latency_ms,
+            )
+            for step in protocol.procedure.block.after
+        )
     steps.extend(_simple(step) for step in protocol.procedure.after)
     return tuple(_numbered(steps))
 

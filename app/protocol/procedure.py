@@ -110,10 +110,13 @@ class Block(Strict):
     """The phases of one condition.
 
     `limb_order`: "fixed" as listed; "alternate" turns the order round in every other block.
+    `after`: what is filled in at the end of every block, such as a sickness scale.
     """
 
     limb_order: Literal["fixed", "alternate"]
     phases: Annotated[tuple[TaskPhase, ...], Field(min_length=1), AfterValidator(_each_limb_once)]
+    # Left out of the content where there is none, so that the hash of other studies stays.
+    after: Annotated[tuple[FormStep, ...], Field(exclude_if=lambda steps: not steps)] = ()
 
 
 class Procedure(Strict):

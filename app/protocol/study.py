@@ -93,8 +93,10 @@ class StudyProtocol(Strict):
         """Keys of all instruments the study asks, in order of first use."""
         steps = (*self.procedure.before, *self.procedure.after)
         forms = [step.instrument for step in steps if isinstance(step, FormStep)]
-        asked = [phase.questionnaire for phase in self.procedure.block.phases]
-        return tuple(dict.fromkeys([*forms, *asked]))
+        block = self.procedure.block
+        asked = [phase.questionnaire for phase in block.phases]
+        ended = [step.instrument for step in block.after]
+        return tuple(dict.fromkeys([*forms, *asked, *ended]))
 
     @property
     def design_hash(self) -> str:

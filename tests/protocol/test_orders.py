@@ -6,18 +6,30 @@ from itertools import pairwise
 import pytest
 
 from app.protocol import StudyProtocol, ledger_block, sequences
-from tests.protocol.helpers import loaded, study, with_levels
+from tests.protocol.helpers import loaded, problems, study, with_levels
 
 STUDY = study()
 LARGE = loaded(with_levels(4)).protocol
 
 
-@pytest.mark.parametrize("protocol", [STUDY, LARGE], ids=["3 levels", "4 levels"])
+def williams_study(n: int) -> StudyProtocol:
+    """The shipped study with n conditions in a Williams design."""
+    return loaded(with_levels(n).replace("design: all_permutations", "design: williams")).protocol
+
+
+BALANCED = {
+    "3 levels": STUDY,
+    "4 levels": LARGE,
+    **{f"williams {n}": williams_study(n) for n in (2, 3, 4, 5, 8, 9)},
+}
+
+
+@pytest.mark.parametrize("protocol", BALANCED.values(), ids=BALANCED.keys())
 class TestBalance:
     """What a block of the ledger promises, whatever its index."""
 
     def test_a_block_holds_every_order_once(self, protocol: StudyProtocol) -> None:
-        """n conditions make n! rows, all different."""
+        """As many rows as the design has orders, all different."""
         for index in range(5):
             rows = [row.sequence for row in ledger_block(protocol, index)]
             assert sorted(rows) == sorted(sequences(protocol))
@@ -78,3 +90,53 @@ def test_blocks_count_from_zero() -> None:
     """There is no block before the first."""
     with pytest.raises(ValueError, match="count from 0"):
         ledger_block(STUDY, -1)
+
+
+@pytest.mark.parametrize(("n", "rows"), [(2, 2), (3, 6), (4, 4), (5, 10), (8, 8), (9, 18)])
+def test_a_williams_design_needs_few_rows(n: int, rows: int) -> None:
+    """n rows for an even number of conditions, 2n for an odd one."""
+    assert len(ledger_block(williams_study(n), 0)) == rows
+
+
+def test_for_three_conditions_williams_is_all_permutations() -> None:
+    """The same six orders."""
+    keys = [row.sequence for row in ledger_block(williams_study(3), 0)]
+    assert sorted(keys) == sorted(sequences(loaded(with_levels(3)).protocol))
+
+
+def explicit(*orders: str) -> str:
+    """The shipped study with two conditions and listed orders."""
+    listed = "".join(f"    - [{order}]\n" for order in orders)
+    return with_levels(2).replace(
+        "design: all_permutations\n", f"design: explicit\n  sequences:\n{listed}"
+    )
+
+
+def test_listed_orders_are_used_as_they_are() -> None:
+    """Each once in a block, in whatever order the seed mixes them."""
+    protocol = loaded(explicit("c1, c0")).protocol
+    assert [row.sequence for row in ledger_block(protocol, 1)] == [("c1", "c0")]
+
+
+@pytest.mark.parametrize(
+    ("text", "path", "said"),
+    [
+        (explicit("c0, c0"), "orders.sequences[0]", "every condition once"),
+        (explicit("c0, c1", "c0"), "orders.sequences[1]", "every condition once"),
+        (explicit("c0, c1", "c0, c1"), "orders.sequences[1]", "twice"),
+        (explicit("c0, c1").replace("explicit", "williams"), "orders.sequences", "no other"),
+        (with_levels(2).replace("all_permutations", "explicit"), "orders.sequences", "no other"),
+    ],
+)
+def test_a_list_that_cannot_be_used_is_refused_at_its_place(
+    text: str, path: str, said: str
+) -> None:
+    """Missing, repeated or superfluous orders name their path."""
+    found = [one for one in problems(text) if one.path == path]
+    assert found
+    assert said in found[0].message
+
+
+def test_the_hash_of_a_study_without_a_list_stays() -> None:
+    """What other designs do not have is not part of their content."""
+    assert "sequences" not in loaded().canonical_json

@@ -4,7 +4,7 @@ import pytest
 
 from app.protocol import PlanError, compile_plan
 from app.science.tasks.layout import Limb
-from tests.protocol.helpers import study
+from tests.protocol.helpers import edited, loaded, problems, study
 
 STUDY = study()
 ORDER = ("latency_350", "latency_0", "latency_125")
@@ -92,3 +92,32 @@ def test_an_order_names_each_condition_once(order: tuple[str, ...]) -> None:
     """Anything else is no order of this study."""
     with pytest.raises(PlanError, match="exactly once"):
         compile_plan(STUDY, order)
+
+
+SICKNESS = (
+    "        text: foot_task\n  after:",
+    "        text: foot_task\n    after:\n      - {step: form, instrument: fms}\n  after:",
+)
+
+
+def test_a_block_can_end_with_forms_of_its_own() -> None:
+    """A sickness scale after every block knows its condition and belongs to no limb."""
+    protocol = study(SICKNESS)
+    steps = [step for step in compile_plan(protocol, ORDER) if step.instrument == "fms"]
+    assert [step.key for step in steps] == ["block1.fms", "block2.fms", "block3.fms"]
+    assert [(step.kind, step.condition, step.limb) for step in steps] == [
+        ("form", key, None) for key in ORDER
+    ]
+    assert protocol.instrument_keys == ("demographics", "karas2020", "fms")
+
+
+def test_the_hash_of_a_study_without_them_stays() -> None:
+    """Empty lists are not part of the content."""
+    assert '"after":[]' not in loaded().canonical_json
+
+
+def test_an_unknown_instrument_at_the_end_of_a_block_names_its_path() -> None:
+    """As anywhere else."""
+    old, new = SICKNESS
+    (problem,) = problems(edited((old, new.replace("fms", "fmz"))))
+    assert problem.path == "procedure.block.after[0].instrument"

@@ -121,7 +121,7 @@ def test_a_problem_points_at_its_line_and_value() -> None:
 def test_an_unknown_key_lists_the_valid_ones() -> None:
     """So that nobody has to look them up."""
     (problem,) = problems(edited(("when_full: grow", "full: grow\n  when_full: grow")))
-    assert problem.valid == ["design", "replicates", "seed", "when_full"]
+    assert problem.valid == ["design", "replicates", "seed", "sequences", "when_full"]
 
 
 def test_all_problems_come_at_once_in_the_order_of_the_file() -> None:

@@ -5,8 +5,9 @@ import { latency } from "@shared/format";
 import { inLanguage } from "@shared/text";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
-import { useTexts } from "../../i18n";
+import { type Key, useTexts } from "../../i18n";
 import classes from "./Overview.module.css";
+import { orderCount } from "./orderCount";
 import { Procedure } from "./Procedure";
 
 export function Overview({ study }: { readonly study: StudyDetail }): JSX.Element {
@@ -71,8 +72,9 @@ function Conditions({ protocol }: { readonly protocol: StudyProtocol }): JSX.Ele
 function Design({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
   const { orders, conditions, blinding, on_disconnect, procedure } = study.protocol;
-  const count = factorial(conditions.length);
+  const count = orderCount(orders, conditions.length);
   const facts: readonly (readonly [string, string])[] = [
+    [t("design.design"), t(DESIGNS[orders.design] ?? "design.explicit")],
     [
       t("design.orders"),
       t("design.ordersValue", {
@@ -106,4 +108,8 @@ function Design({ study }: { readonly study: StudyDetail }): JSX.Element {
   );
 }
 
-const factorial = (n: number): number => (n <= 1 ? 1 : n * factorial(n - 1));
+const DESIGNS: Readonly<Record<string, Key>> = {
+  all_permutations: "design.permutations",
+  williams: "design.williams",
+  explicit: "design.explicit",
+};

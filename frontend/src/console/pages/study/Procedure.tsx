@@ -24,6 +24,10 @@ export function Procedure({ protocol }: { readonly protocol: StudyProtocol }): J
             {block.phases.map((phase) => (
               <Phase key={phase.limb} phase={phase} />
             ))}
+            {(block.after ?? []).map((step, index) => (
+              // biome-ignore lint/suspicious/noArrayIndexKey: the steps of a protocol never change places
+              <SmallStep key={index} icon="form" name={stepNameKey(step.step)} />
+            ))}
           </ol>
         </div>
         <Part name={t("procedure.after")} kind="after" steps={after} />

@@ -2,6 +2,7 @@ import type { Ledger, Slot, StudyProtocol } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { offsetOfLine, place } from "../problemPlace";
 import { arrange, nextFree } from "./ledgerGrid";
+import { orderCount } from "./orderCount";
 import { ownTime } from "./ownTime";
 
 const ORDERS = [
@@ -80,6 +81,19 @@ describe("the time of a visit", () => {
       blinding: { operator: false },
     };
     expect(ownTime(protocol)).toBe(120 + 3 * 2 * 70);
+  });
+});
+
+describe("the orders of a design", () => {
+  const orders = { replicates: 1, seed: 1, when_full: "grow" };
+
+  it("are n! permutations, n or 2n rows of a Williams design, or those listed", () => {
+    const counts = (design: string) =>
+      [1, 2, 3, 4].map((n) => orderCount({ ...orders, design }, n));
+    expect(counts("all_permutations")).toEqual([1, 2, 6, 24]);
+    expect(counts("williams")).toEqual([1, 2, 6, 4]);
+    const sequences = [["a", "b"]];
+    expect(orderCount({ ...orders, design: "explicit", sequences }, 2)).toBe(1);
   });
 });
 
