@@ -180,7 +180,8 @@ def make_engine(url: str, *, pooled: bool = True) -> Engine:
     if parsed.database:
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
         # Without a file there is one connection for all, and so no pool to size.
-        pool = pool or {"pool_size": 20, "max_overflow": 40}
+        # The connection used last comes first: every one that is used keeps a cache of its own.
+        pool = pool or {"pool_size": 20, "max_overflow": 40, "pool_use_lifo": True}
     engine = create_engine(
         parsed,
         connect_args={"timeout": BUSY_TIMEOUT_S, "check_same_thread": False},

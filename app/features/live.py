@@ -138,6 +138,11 @@ class Hub:
         """Whether any headset's socket is open now."""
         return bool(self._headsets)
 
+    def sessions_with_headsets(self) -> tuple[str, ...]:
+        """The sessions that have a headset's socket open now."""
+        with self._lock:
+            return tuple(self._headsets)
+
     def headset_connected(self, session_id: str) -> bool:
         """Whether a headset's socket is open now."""
         with self._lock:

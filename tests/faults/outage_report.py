@@ -1,7 +1,11 @@
 """What must hold after an outage, and its figures."""
 
 from collections.abc import Sequence
+from datetime import datetime
 
+from sqlalchemy import select
+
+from app.models import AlarmRow
 from tests.faults.outage import Watch
 from tests.faults.record import record_of
 from tests.faults.streaming import StreamingHeadset
@@ -31,6 +35,21 @@ def check_outage(watch: Watch, found: Sequence[Reconciliation]) -> None:
         assert refusal["code"] == "not_durable", refusal
         assert watch.reason in refusal["message"], refusal
         assert refusal["remedy"], refusal
+
+
+def check_recorded(server: LiveServer, headsets: Sequence[StreamingHeadset], reason: str) -> None:
+    """The outage is on every connected session's record, as an alarm that came and went."""
+    with record_of(server) as db:
+        rows = db.scalars(select(AlarmRow).where(AlarmRow.code == "storage")).all()
+    for headset in headsets:
+        own = sorted((row for row in rows if row.session_id == headset.session_id), key=_at)
+        assert [row.state for row in own] == ["raised", "cleared"]
+        assert {row.message for row in own} == {reason}
+        assert (own[1].at - own[0].at).total_seconds() >= 1.0
+
+
+def _at(row: AlarmRow) -> datetime:
+    return row.at
 
 
 def outage_figures(name: str, watch: Watch, found: Sequence[Reconciliation]) -> str:

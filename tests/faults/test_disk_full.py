@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from tests.faults.outage import Outage
-from tests.faults.outage_report import check_outage, outage_figures, reconciled
+from tests.faults.outage_report import check_outage, check_recorded, outage_figures, reconciled
 from tests.faults.streaming import pair_headsets
 from tests.support.server import LiveServer
 
@@ -47,6 +47,7 @@ def test_a_server_that_may_not_write_says_so_and_goes_on_when_it_may(
     with capsys.disabled():
         sys.stdout.write(outage_figures("no file may grow", watch, found))
     check_outage(watch, found)
+    check_recorded(server, headsets, watch.reason)
 
 
 @pytest.mark.long

@@ -19,6 +19,7 @@ SEVERITIES: dict[str, Severity] = {
     "jump": "warning",
     "clock_unknown": "warning",
     "clock_uncertain": "info",
+    "storage": "critical",
 }
 """Every alarm there is. Critical: data are being lost now, or a phase stands."""
 

@@ -14,6 +14,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any
 
+from sqlalchemy import make_url
 from sqlalchemy.orm import Session
 
 from app.database import make_engine
@@ -89,8 +90,8 @@ def serve(line: "Connection[Any, Any]", url: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    # A connection for each question: the file may be another one by the next.
-    engine = make_engine(url, pooled=False)
+    # With a file, a connection for each question: it may be another file by the next.
+    engine = make_engine(url, pooled=make_url(url).get_backend_name() != "sqlite")
     with contextlib.suppress(EOFError, OSError):
         while True:
             line.send(_answer(Session(engine), line.recv()))

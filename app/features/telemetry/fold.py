@@ -21,7 +21,7 @@ from app.features.telemetry.rows import insert_rows
 from app.models import TelemetryChunk
 
 log = logging.getLogger(__name__)
-TURN_S = 0.1
+TURN_S = 0.2
 CHUNKS = cast("Table", TelemetryChunk.__table__)
 Chunks = list[dict[str, Any]]
 

@@ -14,7 +14,7 @@ from typing import NamedTuple, Protocol
 
 from sqlalchemy.exc import DBAPIError
 
-from app.features.alarms.alarm import Change
+from app.features.alarms.alarm import Change, Condition
 from app.features.context import AppContext
 from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
@@ -35,6 +35,16 @@ class Sender(Protocol):
 
     def fail(self, error: Exception) -> None:
         """The message cannot be stored, ever; close."""
+
+
+class Nobody:
+    """The sender of what the server itself puts on record."""
+
+    def deliver(self, outcome: Outcome) -> None:
+        """Nobody waits for it."""
+
+    def fail(self, error: Exception) -> None:
+        """It was logged."""
 
 
 class Arrival(NamedTuple):
@@ -131,7 +141,18 @@ class TelemetryWriter:
                     return
                 time.sleep(RETRY_S)
             else:
+                self._record_outages()
                 return
+
+    def _record_outages(self) -> None:
+        """Put on record, afterwards, that nothing could be stored: an alarm that came and went."""
+        for outage in self.context.storage.take_outages():
+            condition = Condition("storage", outage.reason)
+            raised = Change("raised", condition, outage.since)
+            cleared = Change("cleared", condition, outage.until)
+            for session_id in self.context.hub.sessions_with_headsets():
+                for change in (raised, cleared):
+                    self.submit(Arrival(session_id, Nobody(), AlarmContent(change)))
 
     def _store(self, arrivals: Sequence[Arrival]) -> None:
         """Commit all together; if a message is at fault, session by session."""

@@ -50,7 +50,7 @@ ALARMS: tuple[Column, ...] = (
         "code",
         "What is wrong.",
         "silent, disconnected, backlog, bad_values, frozen, low_frame_rate, gap, jump, "
-        "clock_unknown, clock_uncertain",
+        "clock_unknown, clock_uncertain, storage",
     ),
     _A.text("severity", "How urgent it is.", "info, warning, critical"),
     _A.text("state", "Whether it began or ended.", "raised, cleared"),

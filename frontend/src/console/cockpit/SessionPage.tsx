@@ -51,7 +51,7 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
   const [help, helps] = useDisclosure();
   const [entry, entries] = useDisclosure();
   const [history, histories] = useDisclosure();
-  const alarms = useAlarms(session, live.store);
+  const alarms = useAlarms(session, live.store, live.storage);
   const worst = alarms.on[0];
   const ended = session.ended_at !== null;
   // Whoever looks at another tab still sees it.

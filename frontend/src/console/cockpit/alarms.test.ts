@@ -1,4 +1,4 @@
-import type { Alarm, LiveAlarm, SessionView, TelemetryNews } from "@shared/api/types";
+import type { Alarm, LiveAlarm, SessionView, StorageNews, TelemetryNews } from "@shared/api/types";
 import { milliseconds } from "@shared/units";
 import { describe, expect, it } from "vitest";
 import { en } from "../i18n/en";
@@ -43,7 +43,7 @@ const recorded = (code: string, more: Partial<Alarm> = {}): Alarm => ({
 
 const quality = (alarms: readonly LiveAlarm[]) => ({ signal: null, alarms, at: milliseconds(0) });
 const shown = (alarm: LiveAlarm, view: SessionView = session) => {
-  const [only] = currentAlarms(view, quality([alarm]), milliseconds(0));
+  const [only] = currentAlarms(view, quality([alarm]), null, milliseconds(0));
   if (only === undefined) throw new Error("nothing is shown");
   return only;
 };
@@ -56,7 +56,9 @@ describe("the alarms that are on", () => {
       live("clock_uncertain", { severity: "info", since: "2026-03-02T09:00:00Z" }),
       live("silent", { severity: "critical", since: "2026-03-02T09:31:00Z" }),
     ];
-    const codes = currentAlarms(session, quality(alarms), milliseconds(10)).map(({ code }) => code);
+    const codes = currentAlarms(session, quality(alarms), null, milliseconds(10)).map(
+      ({ code }) => code,
+    );
     expect(codes).toEqual(["silent", "gap", "jump", "clock_uncertain"]);
   });
 
@@ -64,7 +66,7 @@ describe("the alarms that are on", () => {
     const view = { ...session, alarms: [recorded("disconnected")] };
     const news = quality([live("gap")]);
     const codes = (now: number, from: typeof news | null) =>
-      currentAlarms(view, from, milliseconds(now)).map(({ code }) => code);
+      currentAlarms(view, from, null, milliseconds(now)).map(({ code }) => code);
     expect(codes(2900, news)).toEqual(["gap"]);
     expect(codes(3100, news)).toEqual(["disconnected"]);
     expect(codes(0, null)).toEqual(["disconnected"]);
@@ -72,9 +74,20 @@ describe("the alarms that are on", () => {
 
   it("are the same alarm wherever they were heard of", () => {
     const view = { ...session, alarms: [recorded("gap", { stream: "target" })] };
-    const [told] = currentAlarms(session, quality([live("gap", { stream: "target" })]), at0);
-    const [read] = currentAlarms(view, null, at0);
+    const [told] = currentAlarms(session, quality([live("gap", { stream: "target" })]), null, at0);
+    const [read] = currentAlarms(view, null, null, at0);
     expect(told?.key).toBe(read?.key);
+  });
+
+  it("are joined by the server's own, which no headset and no record can tell", () => {
+    const codes = (news: Partial<StorageNews>) => {
+      const told = { status: "ok", since: null, reason: null, low_disk: false, ...news } as const;
+      const storage = { news: told, heardAt: "2026-03-02T09:30:00Z" };
+      return currentAlarms(session, quality([live("gap")]), storage, at0).map(({ code }) => code);
+    };
+    expect(codes({})).toEqual(["gap"]);
+    expect(codes({ status: "failing", low_disk: true })).toEqual(["storage", "gap"]);
+    expect(codes({ low_disk: true })).toContain("low_disk");
   });
 });
 
@@ -86,6 +99,7 @@ describe("the alarm that is shown", () => {
       live("jump", { since: "2026-03-02T09:30:05Z" }),
       live("silent", { severity: "critical" }),
     ]),
+    null,
     milliseconds(0),
   );
 

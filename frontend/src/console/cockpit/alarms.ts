@@ -3,6 +3,7 @@ import type { Alarm, LiveAlarm, SessionView } from "@shared/api/types";
 import { clockFace, number } from "@shared/format";
 import { type Milliseconds, seconds } from "@shared/units";
 import type { Key } from "../i18n";
+import { type Storage, storageAlarms } from "./storage";
 import type { Quality } from "./telemetryStore";
 
 /** An alarm as it is shown, whether it was told live or read with the session. */
@@ -26,11 +27,12 @@ export const NEWS_LAST: Milliseconds = 3000 as Milliseconds;
 export function currentAlarms(
   session: SessionView,
   quality: Quality | null,
+  storage: Storage | null,
   now: Milliseconds,
 ): readonly ShownAlarm[] {
   const fresh = quality !== null && now - quality.at < NEWS_LAST;
   const alarms = fresh ? quality.alarms.map(fromNews) : session.alarms.map(fromRecord);
-  return alarms.toSorted(
+  return [...alarms, ...storageAlarms(storage)].toSorted(
     (a, b) => urgency(b) - urgency(a) || Date.parse(b.since) - Date.parse(a.since),
   );
 }
@@ -77,6 +79,8 @@ const CODES = [
   "jump",
   "clock_unknown",
   "clock_uncertain",
+  "storage",
+  "low_disk",
 ] as const;
 
 type Code = (typeof CODES)[number];

@@ -3,6 +3,7 @@ import type { SessionView } from "@shared/api/types";
 import { milliseconds } from "@shared/units";
 import { useEffect, useState } from "react";
 import { currentAlarms, NEWS_LAST, type ShownAlarm } from "./alarms";
+import type { Storage } from "./storage";
 import { type Quality, type TelemetryStore, useQuality } from "./telemetryStore";
 
 export interface Alarms {
@@ -12,12 +13,16 @@ export interface Alarms {
   readonly see: (alarm: ShownAlarm) => void;
 }
 
-export function useAlarms(session: SessionView, store: TelemetryStore): Alarms {
+export function useAlarms(
+  session: SessionView,
+  store: TelemetryStore,
+  storage: Storage | null,
+): Alarms {
   const quality = useQuality(store);
   const [seen, setSeen] = useState<ReadonlySet<string>>(new Set());
   useAgain(quality);
   return {
-    on: currentAlarms(session, quality, milliseconds(performance.now())),
+    on: currentAlarms(session, quality, storage, milliseconds(performance.now())),
     quality,
     isSeen: (alarm) => seen.has(alarm.key),
     see: (alarm) => setSeen((before) => new Set([...before, alarm.key])),

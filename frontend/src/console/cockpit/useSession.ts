@@ -2,11 +2,12 @@
 import { sessions } from "@shared/api/endpoints";
 import { isApiError } from "@shared/api/errors";
 import { type FeedState, openFeed } from "@shared/api/live";
-import type { Command, SessionView, TelemetryNews } from "@shared/api/types";
+import type { Command, SessionView, StorageNews, TelemetryNews } from "@shared/api/types";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
 import { sessionQuery } from "../queries";
 import { type Change, changesBetween } from "./changes";
+import type { Storage } from "./storage";
 import { TelemetryStore } from "./telemetryStore";
 
 /** A command that came too late: another operator was first. */
@@ -21,6 +22,7 @@ export function useSession(id: string) {
   const queries = useQueryClient();
   const query = useQuery(sessionQuery(id));
   const store = useMemo(() => new TelemetryStore(), []);
+  const [storage, setStorage] = useState<Storage | null>(null);
   const [feed, setFeed] = useState<FeedState>("connecting");
   const [overtaken, setOvertaken] = useState<Overtaken | null>(null);
   const { queryKey } = sessionQuery(id);
@@ -37,6 +39,8 @@ export function useSession(id: string) {
         on: {
           session: (data) => accept(data as SessionView),
           telemetry: (data) => store.put(data as TelemetryNews),
+          storage: (data) =>
+            setStorage({ news: data as StorageNews, heardAt: new Date().toISOString() }),
         },
       }),
     [id],
@@ -65,6 +69,7 @@ export function useSession(id: string) {
   return {
     query,
     store,
+    storage,
     feed,
     send,
     sending: command.isPending,

@@ -46,6 +46,11 @@ export const alarmsEn = {
   "alarm.clock_unknown.do": "Check the network. Its times cannot be compared until then.",
   "alarm.clock_uncertain": "Headset's clock uncertain",
   "alarm.clock_uncertain.do": "The network is slow. Durations are not affected.",
+  "alarm.storage": "Nothing can be stored",
+  "alarm.storage.do":
+    "The server's disk is full or its database is locked. Headsets and tablets keep what they have.",
+  "alarm.low_disk": "Little space on the server's disk",
+  "alarm.low_disk.do": "Make space before the next session. Everything is still stored.",
   "alarm.other": "Something is wrong",
   "alarm.other.do": "See the list of alarms.",
   "alarm.stream.target": "tracking",
@@ -110,6 +115,11 @@ export const alarmsDe: Readonly<Record<keyof typeof alarmsEn, string>> = {
   "alarm.clock_unknown.do": "Netz prüfen. Bis dahin sind seine Zeiten nicht vergleichbar.",
   "alarm.clock_uncertain": "Uhr des Headsets ungenau",
   "alarm.clock_uncertain.do": "Das Netz ist langsam. Dauern sind nicht betroffen.",
+  "alarm.storage": "Nichts kann gespeichert werden",
+  "alarm.storage.do":
+    "Die Platte des Servers ist voll oder seine Datenbank gesperrt. Headsets und Tablets behalten, was sie haben.",
+  "alarm.low_disk": "Wenig Platz auf der Platte des Servers",
+  "alarm.low_disk.do": "Vor der nächsten Sitzung Platz schaffen. Noch wird alles gespeichert.",
   "alarm.other": "Etwas stimmt nicht",
   "alarm.other.do": "Siehe die Liste der Alarme.",
   "alarm.stream.target": "Tracking",
