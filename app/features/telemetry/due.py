@@ -26,6 +26,8 @@ STREAMS_PER_TURN = 20
 BATCHES_PER_STREAM = 150
 BATCHES = cast("Table", TelemetryBatch.__table__)
 KEY = ("session_id", "stream", "epoch")
+Chunks = list[dict[str, Any]]
+"""Rows of the table of chunks, each with `batches`: how many of them it stands for."""
 
 
 class Waiting(NamedTuple):
@@ -43,11 +45,8 @@ class Waiting(NamedTuple):
         return self.seq_first + self.frame_count
 
 
-def due_chunks(db: Session, now: datetime) -> list[dict[str, Any]]:
-    """The chunks of up to a turn's worth of streams: rows of their table, and `batches`.
-
-    `batches` is how many of them a chunk stands for.
-    """
+def due_chunks(db: Session, now: datetime) -> Chunks:
+    """The chunks of up to a turn's worth of streams."""
     return [chunk for key in _due(db, now) for chunk in _sound_chunks(db, key, now)]
 
 

@@ -18,9 +18,8 @@ from sqlalchemy import make_url
 from sqlalchemy.orm import Session
 
 from app.database import make_engine
-from app.features.telemetry.due import due_chunks
+from app.features.telemetry.due import Chunks, due_chunks
 
-Chunks = list[dict[str, Any]]
 NICENESS = 5
 """The server goes first where both want the processor: chunks can wait, acknowledgements not."""
 ENDS_WITHIN_S = 10.0

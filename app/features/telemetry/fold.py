@@ -5,17 +5,16 @@ A reader merges both, so it never matters when this runs.
 
 import logging
 import threading
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Any, cast
+from typing import cast
 
 from sqlalchemy import Table, bindparam, delete, select
 from sqlalchemy.orm import Session
 
 from app.features.context import AppContext
 from app.features.telemetry.checkpoints import Checkpointer
-from app.features.telemetry.due import BATCHES, DUE_AFTER, KEY, due_chunks
+from app.features.telemetry.due import BATCHES, DUE_AFTER, KEY, Chunks, due_chunks
 from app.features.telemetry.encoder import Encoder
 from app.features.telemetry.rows import insert_rows
 from app.models import TelemetryChunk
@@ -23,7 +22,6 @@ from app.models import TelemetryChunk
 log = logging.getLogger(__name__)
 TURN_S = 0.2
 CHUNKS = cast("Table", TelemetryChunk.__table__)
-Chunks = list[dict[str, Any]]
 
 
 class BatchesChanged(RuntimeError):
@@ -95,7 +93,7 @@ _DELETE = delete(BATCHES).where(
 )
 
 
-def _replace(db: Session, chunks: Sequence[dict[str, Any]]) -> None:
+def _replace(db: Session, chunks: Chunks) -> None:
     """Store chunks and delete the batches they hold; nothing, if these are no longer there.
 
     A backup may have been restored since they were read.
