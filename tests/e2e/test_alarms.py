@@ -1,38 +1,16 @@
 """An alarm comes up at the console, is taken note of, goes away, and stays in the list."""
 
 import re
-import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter
-from tests.features.headset.site import Headset, Site
-from tests.features.headset.streaming import PER_BATCH, Streamer, in_free_movement, materialised
+from tests.features.headset.site import Site
+from tests.features.headset.streaming import in_free_movement, materialised
 from tests.support.browser import ColorScheme
-from tests.wire.samples import RATE_HZ
-
-
-@contextmanager
-def streaming(headset: Headset, streamer: Streamer) -> Iterator[None]:
-    """Movement comes while the block lasts, and what the server says is heard."""
-    over = threading.Event()
-
-    def go_on() -> None:
-        while not over.wait(PER_BATCH / RATE_HZ):
-            streamer.send_batch()
-            streamer.probe()
-
-    thread = threading.Thread(target=go_on)
-    thread.start()
-    try:
-        yield
-    finally:
-        over.set()
-        thread.join()
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
@@ -51,7 +29,7 @@ def test_an_alarm_comes_up_and_goes_away(
     strip = page.get_by_label("Signal and alarms")
     with headset_site.headset(headset_site.token(session_id)) as headset:
         streamer = in_free_movement(headset_site, session_id, headset)
-        with streaming(headset, streamer):
+        with streamer.streaming(running=True, probing=True):
             expect(strip).to_contain_text("Movement arrives and is stored", timeout=PATIENCE_MS)
             expect(strip).to_contain_text(re.compile(r"90 Hz"), timeout=PATIENCE_MS)
             before = strip.bounding_box()
@@ -67,7 +45,7 @@ def test_an_alarm_comes_up_and_goes_away(
         experimenter.press("Understood")
         expect(alarm).to_contain_text("Headset silent")
         assert axe(page) == []
-        with streaming(headset, streamer):
+        with streamer.streaming(running=True, probing=True):
             expect(strip).to_contain_text("No alarms", timeout=PATIENCE_MS)
         page.keyboard.press("a")
         drawer = page.get_by_role("dialog")

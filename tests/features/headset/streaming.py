@@ -63,13 +63,18 @@ class Streamer:
         self.last_sent_s = time.monotonic()
 
     @contextmanager
-    def streaming(self) -> Iterator[None]:
-        """Go on beside what the block does; the block may listen but not speak."""
+    def streaming(self, *, running: bool = False, probing: bool = False) -> Iterator[None]:
+        """Go on beside what the block does; the block may listen but not speak.
+
+        `probing`, it exchanges readings of the clocks too; then the block may not listen either.
+        """
         over = threading.Event()
 
         def go_on() -> None:
             while not over.wait(PER_BATCH / RATE_HZ):
-                self.send_batch(running=False)
+                self.send_batch(running=running)
+                if probing:
+                    self.probe()
 
         thread = threading.Thread(target=go_on)
         thread.start()
