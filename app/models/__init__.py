@@ -1,10 +1,13 @@
 """The tables, one family a file. Importing this package registers them all."""
 
-from app.models.accounts import Account, LoginToken
+from app.models.accounts import Account, Invitation, LoginToken, StudyMember
+from app.models.audit import AuditEntry, AuditHead
+from app.models.desk import Calibration, Suggestion
 from app.models.devices import Device, PairingCode
 from app.models.ledger import Ledger, LedgerSlot, Participant, SlotAttempt
 from app.models.quality import AlarmRow, PhaseLatency, PhaseQuality
 from app.models.questionnaires import Answer, ScoreValue, Submission
+from app.models.rights import AnswerCorrection, CopyMade, Erasure
 from app.models.sessions import Phase, SessionContent, SessionEvent, StudySession
 from app.models.studies import InstrumentVersion, Study, StudyVersion
 from app.models.telemetry import (
@@ -22,12 +25,19 @@ __all__ = [
     "Account",
     "AlarmRow",
     "Answer",
+    "AnswerCorrection",
+    "AuditEntry",
+    "AuditHead",
+    "Calibration",
     "ClientReport",
     "ClockProbe",
     "Completion",
     "Contact",
+    "CopyMade",
     "Device",
+    "Erasure",
     "InstrumentVersion",
+    "Invitation",
     "JointErrorRow",
     "Ledger",
     "LedgerSlot",
@@ -42,9 +52,11 @@ __all__ = [
     "SessionEvent",
     "SlotAttempt",
     "Study",
+    "StudyMember",
     "StudySession",
     "StudyVersion",
     "Submission",
+    "Suggestion",
     "TelemetryBatch",
     "TelemetryChunk",
     "TelemetryStream",

@@ -1,25 +1,61 @@
-"""Who may use the console, and the logins that are alive."""
+"""Who may use the console, for which studies, and the logins that are alive."""
 
 from datetime import datetime
+from typing import Any
 
-from sqlalchemy import ForeignKey, String
+from sqlalchemy import JSON, CheckConstraint, ForeignKey, String, true
 from sqlalchemy.orm import Mapped, mapped_column, relationship
 
 from app.database import Base
 from app.models.types import Id, UtcDateTime, UtcTime
 
+ROLES = ("admin", "experimenter", "operator", "analyst")
+
 
 class Account(Base):
-    """A person of the lab. The password is kept as an argon2id hash only."""
+    """A person of the lab. The password is kept as an argon2id hash only.
+
+    `all_studies`: every study is theirs, also those to come; else those of `study_members`.
+    """
 
     __tablename__ = "accounts"
 
     id: Mapped[Id]
     username: Mapped[str] = mapped_column(String(80), unique=True)
     role: Mapped[str] = mapped_column(String(20))
+    all_studies: Mapped[bool] = mapped_column(default=True, server_default=true())
     password_hash: Mapped[str] = mapped_column(String(200))
     created_at: Mapped[UtcTime]
     disabled_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+
+
+class StudyMember(Base):
+    """A study that an account may see, where it may not see all."""
+
+    __tablename__ = "study_members"
+
+    account_id: Mapped[str] = mapped_column(ForeignKey("accounts.id"), primary_key=True)
+    study_id: Mapped[str] = mapped_column(ForeignKey("studies.id"), primary_key=True, index=True)
+
+
+class Invitation(Base):
+    """A link that makes one account, once: the hash of its token, and what the account may do."""
+
+    __tablename__ = "invitations"
+    __table_args__ = (CheckConstraint(f"role IN {ROLES}", name="role"),)
+
+    id: Mapped[Id]
+    token_hash: Mapped[str] = mapped_column(String(64), unique=True)
+    role: Mapped[str] = mapped_column(String(20))
+    note: Mapped[str] = mapped_column(String(80))
+    all_studies: Mapped[bool]
+    studies: Mapped[list[Any]] = mapped_column(JSON)
+    created_by: Mapped[str] = mapped_column(String(80))
+    created_at: Mapped[UtcTime]
+    expires_at: Mapped[UtcTime]
+    used_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+    account_id: Mapped[str | None] = mapped_column(ForeignKey("accounts.id"))
+    revoked_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
 
 
 class LoginToken(Base):

@@ -9,7 +9,9 @@ from sqlalchemy.orm import Mapped, mapped_column
 from app.database import Base
 from app.models.types import Id, UtcDateTime, UtcTime
 
-KINDS = ("people", "simulated", "test")
+KINDS = ("people", "simulated", "test", "expert")
+"""Who was in a session. Only people are data; experts look a study over and give advice."""
+KIND_CHECK = f"kind IN {KINDS}"
 
 
 class Participant(Base):
@@ -36,7 +38,7 @@ class Ledger(Base):
     __tablename__ = "ledgers"
     __table_args__ = (
         UniqueConstraint("study_id", "kind", "design_hash"),
-        CheckConstraint("kind IN ('people', 'simulated', 'test')", name="kind"),
+        CheckConstraint(KIND_CHECK, name="kind"),
     )
 
     id: Mapped[Id]

@@ -15,6 +15,7 @@ from sqlalchemy import (
 from sqlalchemy.orm import Mapped, mapped_column
 
 from app.database import Base
+from app.models.ledger import KIND_CHECK
 from app.models.types import Id, UtcDateTime, UtcTime
 
 
@@ -23,7 +24,7 @@ class StudySession(Base):
 
     __tablename__ = "sessions"
     __table_args__ = (
-        CheckConstraint("kind IN ('people', 'simulated', 'test')", name="kind"),
+        CheckConstraint(KIND_CHECK, name="kind"),
         CheckConstraint("time_scale = 1.0 OR kind = 'simulated'", name="time_scale"),
     )
 

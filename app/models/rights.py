@@ -1,0 +1,76 @@
+"""What participants may ask for afterwards: corrections, copies, and that their data go."""
+
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import JSON, BigInteger, ForeignKey, ForeignKeyConstraint, String, Text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.database import Base
+from app.models.types import Id, UtcDateTime, UtcTime
+
+
+class AnswerCorrection(Base):
+    """A later value of one answer; the answer as first given stays beside it.
+
+    The newest correction counts. Value and previous value are a number or a text; neither means
+    left out. `reason`, values and `salt` are emptied by erasure; the event log holds only the hash.
+    """
+
+    __tablename__ = "answer_corrections"
+    __table_args__ = (
+        ForeignKeyConstraint(["submission_id", "item"], ["answers.submission_id", "answers.item"]),
+    )
+
+    id: Mapped[Id]
+    submission_id: Mapped[str] = mapped_column(String(32), index=True)
+    item: Mapped[str] = mapped_column(String(80))
+    previous_number: Mapped[float | None]
+    previous_text: Mapped[str | None] = mapped_column(Text)
+    value_number: Mapped[float | None]
+    value_text: Mapped[str | None] = mapped_column(Text)
+    reason: Mapped[str] = mapped_column(String(2000))
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime]
+
+
+class Erasure(Base):
+    """A tombstone: that a participant's data were erased, when, by whom, and how much went.
+
+    It holds nothing about the person. `removed` counts rows by table; `remaining` lists exports and
+    backups made before, which lie outside the database and must be deleted by hand.
+    """
+
+    __tablename__ = "erasures"
+
+    id: Mapped[Id]
+    study_id: Mapped[str] = mapped_column(ForeignKey("studies.id"), index=True)
+    participant_id: Mapped[str] = mapped_column(ForeignKey("participants.id"), unique=True)
+    sessions: Mapped[list[Any]] = mapped_column(JSON)
+    removed: Mapped[dict[str, Any]] = mapped_column(JSON)
+    remaining: Mapped[list[Any]] = mapped_column(JSON)
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime]
+
+
+class CopyMade(Base):
+    """A copy of data that left the database: an export, an access copy, or a backup.
+
+    `kind` is export, access or backup. `place` is where it went as far as known: a file, or the
+    browser of `by`. `destroyed_at`: somebody said that it is gone.
+    """
+
+    __tablename__ = "copies_made"
+
+    id: Mapped[Id]
+    kind: Mapped[str] = mapped_column(String(20))
+    study_id: Mapped[str | None] = mapped_column(ForeignKey("studies.id"), index=True)
+    session_kind: Mapped[str | None] = mapped_column(String(20))
+    participant_id: Mapped[str | None] = mapped_column(ForeignKey("participants.id"))
+    place: Mapped[str] = mapped_column(String(400))
+    sessions: Mapped[int | None]
+    bytes: Mapped[int | None] = mapped_column(BigInteger)
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime]
+    destroyed_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+    destroyed_by: Mapped[str | None] = mapped_column(String(100))
