@@ -60,9 +60,14 @@ class WriteObserver(Protocol):
 
 @dataclass(eq=False)
 class CommitCount:
-    """How many transactions of this process have changed something."""
+    """How many transactions of this process have changed something.
+
+    `copied`: the number up to which SQLite's log was copied completely; one at a time copies it.
+    """
 
     number: int = 0
+    copied: int = 0
+    copying: threading.Lock = field(default_factory=threading.Lock)
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ ReembodyError                     something was refused; carries value, valid an
 │   ├── StaleVersion      409     somebody else acted first; look again, then decide
 │   └── NotNow            409     the session is in a step where this cannot be done
 ├── Gone                  410     a pairing code was used or has expired
+│   └── Withdrawn         410     the participant has withdrawn: nothing more is taken of them
 ├── TooLarge              413     more bytes than this interface takes
 ├── TooManyAttempts       429     slow down; says for how long
 └── NotDurable            503     the record cannot be written now, so nothing was promised
@@ -123,6 +124,12 @@ class Gone(ReembodyError):
 
     code = "gone"
     status = 410
+
+
+class Withdrawn(Gone):
+    """The participant has withdrawn, or their data were erased: nothing more is taken of them."""
+
+    code = "withdrawn"
 
 
 class TooLarge(ReembodyError):

@@ -25,6 +25,7 @@ from app.features.telemetry.encoder import Encoder
 from app.features.telemetry.fold import Folder
 from app.features.telemetry.summaries import Summariser
 from app.features.telemetry.writer import TelemetryWriter
+from app.lan.network import Network
 from app.resources import static_dir
 from app.settings import Settings
 
@@ -38,9 +39,10 @@ def create_app(
     settings: Settings | None = None,
     *,
     clock: Clock | None = None,
+    network: Network | None = None,
     on_first_password: Callable[[str], None] | None = None,
 ) -> FastAPI:
-    """The application for `settings` (from the environment if None).
+    """The application for `settings` (from the environment if None), reachable over `network`.
 
     Start-up migrates the database, makes the first account (telling a random password to
     `on_first_password`), stores the shipped studies and pauses phases that a crash cut off.
@@ -56,6 +58,7 @@ def create_app(
         storage=storage,
         login_limiter=RateLimiter(LOGIN_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
         pairing_limiter=RateLimiter(PAIRING_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
+        network=network or Network(),
     )
     summariser = Summariser(context)
     writer = TelemetryWriter(context, summariser.phase_ended)

@@ -17,6 +17,10 @@ class Settings(BaseSettings):
     without it the first start makes a random one and prints it once. Below `low_disk_bytes` of free
     space in `data_dir` the console warns. A running phase is paused after `headset_silent_s`
     without a frame. `production` switches the interactive API pages off.
+
+    `lan` opens https on `lan_port` of every address (or of `lan_host`), with `certificate` and `key`
+    or with the built-in authority, whose help page is on `help_port`. An address that others can
+    reach is refused without TLS unless `without_tls` is set (docs/lab-network.md).
     """
 
     model_config = SettingsConfigDict(env_prefix="REEMBODY_", frozen=True, extra="ignore")
@@ -26,6 +30,13 @@ class Settings(BaseSettings):
     admin_password: SecretStr | None = None
     host: str = "127.0.0.1"
     port: int = 8321
+    lan: bool = False
+    lan_host: str = ""
+    lan_port: int = 8443
+    help_port: int = 8080
+    certificate: Path | None = None
+    key: Path | None = None
+    without_tls: bool = False
     commit_interval_s: float = 0.05
     login_hours: float = 12.0
     pairing_minutes: float = 10.0

@@ -25,6 +25,8 @@ def prepare_connection(dbapi_connection: DBAPIConnection, _record: ConnectionPoo
         "journal_mode=WAL",
         "synchronous=FULL",
         "foreign_keys=ON",
+        # What is deleted is overwritten with zeros: else erased data could be read in the file.
+        "secure_delete=ON",
         # The server copies the log itself, beside its commits; this is only a limit to its length.
         f"wal_autocheckpoint={LONGEST_LOG_PAGES}",
     )

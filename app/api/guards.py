@@ -14,6 +14,9 @@ from app.api.errors import error_response
 from app.errors import NotAllowed, ReembodyError, TooLarge
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+# No Strict-Transport-Security: a browser applies it to every port of a host and, once it has seen
+# it, lets nobody past a certificate that it does not trust. A device would then lose the help page,
+# which must be plain http, and a headset by USB cable its http://localhost.
 SECURITY_HEADERS: Mapping[str, str] = {
     "content-security-policy": (
         "default-src 'self'; script-src 'self'; style-src 'self' 'unsafe-inline'; "

@@ -10,16 +10,21 @@ from sqlalchemy import text
 
 from app import __version__
 from app.features.accounts.endpoints import router as accounts
+from app.features.accounts.people_endpoints import router as people
 from app.features.alarms.endpoints import router as alarms
 from app.features.analysis.endpoints import router as analysis
+from app.features.audit.endpoints import router as audit
 from app.features.context import AppContext
-from app.features.dependencies import Context
+from app.features.dependencies import API_PREFIX, Context
 from app.features.devices.endpoints import router as devices
 from app.features.exports.endpoints import router as exports
 from app.features.headset.socket import serve_headset
+from app.features.instruments.endpoints import router as instruments
+from app.features.network.endpoints import router as network
 from app.features.participants.endpoints import router as participants
 from app.features.receipts.endpoints import router as receipts
 from app.features.sessions.endpoints import router as sessions
+from app.features.sessions.watching import router as watching
 from app.features.studies.endpoints import router as studies
 from app.features.tablet.endpoints import router as tablet
 from app.features.telemetry.writer import TelemetryWriter
@@ -42,10 +47,11 @@ class Health(BaseModel):
 
 def build_router() -> APIRouter:
     """The routes under /api."""
-    router = APIRouter(prefix="/api")
+    router = APIRouter(prefix=API_PREFIX)
     parts = (
-        *(accounts, studies, participants, sessions, devices, tablet, alarms),
-        *(analysis, exports, receipts),
+        *(accounts, people, audit, studies, instruments, participants, sessions, watching),
+        *(devices, tablet, alarms),
+        *(analysis, exports, receipts, network),
     )
     for part in parts:
         router.include_router(part)

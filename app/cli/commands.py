@@ -3,9 +3,12 @@
 import json
 import sys
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated
 
 import typer
+
+from app.cli.failing import fail
+from app.cli.tls_commands import tls
 
 app = typer.Typer(
     help="Runs, watches and analyses VR re-embodiment studies.",
@@ -13,22 +16,50 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.add_typer(tls, name="tls")
 INCOMPLETE = 1
-UNUSABLE = 2
 
 
 @app.command()
 def serve(
     port: Annotated[int | None, typer.Option(help="Port to listen on.")] = None,
     host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
+    lan: Annotated[
+        bool | None, typer.Option("--lan", help="Also https on the lab's network.")
+    ] = None,
+    lan_port: Annotated[int | None, typer.Option(help="Port of https (8443).")] = None,
+    lan_host: Annotated[
+        str | None, typer.Option(help="Address of https; every one of this machine if left out.")
+    ] = None,
+    help_port: Annotated[
+        int | None, typer.Option(help="Port of the page that helps devices (8080).")
+    ] = None,
+    certificate: Annotated[
+        Path | None, typer.Option(help="Your own certificate with its chain, PEM.")
+    ] = None,
+    key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
+    without_tls: Annotated[
+        bool | None, typer.Option("--without-tls", help="Reachable by others, unencrypted.")
+    ] = None,
     new_database: Annotated[
         bool, typer.Option("--new-database", help="Begin an empty one behind one in quarantine.")
     ] = False,
 ) -> None:
-    """Serve the product on this machine."""
+    """Serve the product on this machine, with --lan also on the lab's network."""
     from app.cli.serving import serve_forever
 
-    serve_forever(host=host, port=port, new_database=new_database)
+    given = {
+        "port": port,
+        "host": host,
+        "lan": lan,
+        "lan_port": lan_port,
+        "lan_host": lan_host,
+        "help_port": help_port,
+        "certificate": certificate,
+        "key": key,
+        "without_tls": without_tls,
+    }
+    serve_forever(given, new_database=new_database)
 
 
 @app.command()
@@ -180,9 +211,3 @@ def restore(
         )
     except ReembodyError as error:
         fail(f"{error.message}. {error.remedy}".strip())
-
-
-def fail(message: str) -> NoReturn:
-    """Say what is wrong and leave with the status for unusable input."""
-    print(f"reembody: {message}", file=sys.stderr)
-    raise typer.Exit(UNUSABLE)

@@ -1,15 +1,23 @@
-"""Starting the server on this machine."""
+"""Starting the server: on this machine, and on the lab's network if asked to."""
 
 import gc
 import sys
+from collections.abc import Mapping
 from typing import NoReturn
 
 import uvicorn
+from fastapi import FastAPI
 from sqlalchemy.exc import DBAPIError
 
+from app.cli.opened import addresses
 from app.clock import Clock
 from app.errors import ReembodyError
 from app.features.opening.service import prepare_database
+from app.lan.help.site import HelpSite
+from app.lan.listening import Door, LabServer, allow_open_files, bind, tls_context
+from app.lan.network import Network
+from app.lan.plan import Plan, make_plan
+from app.lan.watch import CertificateWatch
 from app.main import create_app
 from app.settings import Settings
 
@@ -19,29 +27,74 @@ SWITCH_INTERVAL_S = 0.0005
 or the database. With Python's own 5 ms, each then waits that long for a thread that computes."""
 
 
-def serve_forever(*, host: str | None, port: int | None, new_database: bool = False) -> None:
+def serve_forever(given: Mapping[str, object], *, new_database: bool = False) -> None:
     """Serve until interrupted; says where, and on the first start the admin's password.
 
-    A database that cannot be worked with ends it before it listens, saying why and what to do;
-    `new_database` begins an empty one in the place of one in quarantine.
+    `given` are settings from the command line, None where nothing was said. A database that cannot
+    be worked with, a port that is taken or an address that may not be opened ends it before it
+    listens, saying why and what to do; `new_database` begins an empty one in the place of one in
+    quarantine.
     """
-    given = {"host": host, "port": port}
-    settings = Settings().model_copy(
-        update={name: value for name, value in given.items() if value is not None}
-    )
+    settings = settings_with(given)
+    try:
+        plan = make_plan(settings, Clock())
+        watch = CertificateWatch(
+            plan, Network(), None if plan.certificates is None else tls_context()
+        )
+        watch.refresh()
+        bound = _Bound(plan)
+    except ReembodyError as error:
+        _give_up(f"{error.message}. {error.remedy}")
     _prepare(settings, new_database=new_database)
-    app = create_app(settings, on_first_password=_tell_password)
+    app = create_app(settings, network=watch.network, on_first_password=_tell_password)
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     # What is here to stay need not be searched for garbage: that took 0.2 s now and then, in which
     # nothing was acknowledged.
     gc.collect()
     gc.freeze()
-    url = f"http://{settings.host}:{settings.port}"
-    print(f"Reembody   {url}\nTablet     {url}/tablet\nData       {_where(settings)}", flush=True)
-    uvicorn.run(
-        app,
-        host=settings.host,
-        port=settings.port,
+    print(addresses(watch.network.reach, _where(settings)), flush=True)
+    allow_open_files()
+    server = LabServer(bound.doors(app, watch, settings), watch.run)
+    try:
+        server.run()
+    except KeyboardInterrupt:
+        return
+
+
+def settings_with(given: Mapping[str, object]) -> Settings:
+    """The settings of the environment, with those that were `given` in their place."""
+    return Settings().model_copy(
+        update={name: value for name, value in given.items() if value is not None}
+    )
+
+
+class _Bound:
+    """The ports, taken before anything else is touched: two servers must not share the data."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.local = bind(plan.local_hosts, plan.local_port, "--port")
+        self.lan = bind(plan.lan_hosts, plan.lan_port, "--lan-port") if plan.certificates else ()
+        self.help = (
+            bind(plan.lan_hosts, plan.help_port, "--help-port")
+            if plan.help_port is not None
+            else ()
+        )
+
+    def doors(self, app: FastAPI, watch: CertificateWatch, settings: Settings) -> list[Door]:
+        """What is served behind each of them."""
+        config = _config(app, settings)
+        doors = [Door(self.local, config)]
+        if self.lan:
+            doors.append(Door(self.lan, config, watch.tls))
+        if self.help:
+            site = HelpSite(watch.network, watch.authority)
+            doors.append(Door(self.help, _config(site, settings)))
+        return doors
+
+
+def _config(app: object, settings: Settings) -> uvicorn.Config:
+    return uvicorn.Config(
+        app,  # type: ignore[arg-type]  # any ASGI application
         ws="websockets-sansio",
         ws_max_size=settings.max_telemetry_message_bytes,
         log_level="warning",

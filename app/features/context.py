@@ -1,12 +1,13 @@
 """What a running application is made of; built once in `create_app`, handed to every request."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from app.clock import Clock
 from app.database import Database
 from app.features.live import Hub
 from app.features.rate_limit import RateLimiter
 from app.features.storage_health import StorageHealth
+from app.lan.network import Network
 from app.settings import Settings
 
 
@@ -21,3 +22,4 @@ class AppContext:
     storage: StorageHealth
     login_limiter: RateLimiter
     pairing_limiter: RateLimiter
+    network: Network = field(default_factory=Network)

@@ -4,34 +4,23 @@
 """
 
 from collections.abc import AsyncIterator, Iterator
-from dataclasses import dataclass
 from typing import Annotated
 
 from fastapi import Depends, Request
 from sqlalchemy.orm import Session
 
-from app.errors import KeptConflict, NotSignedIn
+from app.errors import KeptConflict, NotAllowed, NotSignedIn
+from app.features.access import Caller, caller_of, require_object
 from app.features.accounts.service import account_of_token
 from app.features.context import AppContext
+from app.features.cookies import read_cookie
 from app.features.devices.service import device_of_token
-from app.models import Account, Device
+from app.features.policy import HEADSET, TABLET, allowed
+from app.models import Device
 
 LOGIN_COOKIE = "reembody_login"
 TABLET_COOKIE = "reembody_tablet"
-
-
-@dataclass(frozen=True)
-class Caller:
-    """A person of the lab; `actor` is how the record names them."""
-
-    account_id: str
-    username: str
-    role: str
-
-    @property
-    def actor(self) -> str:
-        """The name in the event log."""
-        return f"account:{self.username}"
+API_PREFIX = "/api"
 
 
 def get_context(request: Request) -> AppContext:
@@ -71,18 +60,39 @@ def bearer_token(request: Request) -> str | None:
 
 
 def get_caller(request: Request, context: Context) -> Caller:
-    """The signed-in person, by cookie or bearer token; raises NotSignedIn."""
-    token = bearer_token(request) or request.cookies.get(LOGIN_COOKIE)
+    """The signed-in person, by cookie or bearer token, who may call this route on this object.
+
+    Raises NotSignedIn, NotAllowed where the route is not for their role, and NotFound where the
+    object is of a study that is not theirs.
+    """
+    caller = known_caller(request, context)
+    template = _template(request)
+    roles = allowed(request.method, template)
+    if caller.role not in roles:
+        raise NotAllowed(
+            f"this is not for the role {caller.role}",
+            value=caller.role,
+            valid=sorted(roles),
+            remedy="Ask the administrator of the lab if you need it.",
+        )
+    with context.database.reading() as db:
+        require_object(db, caller, template, request.path_params)
+    return caller
+
+
+def known_caller(request: Request, context: Context) -> Caller:
+    """The signed-in person, whatever the route; raises NotSignedIn."""
+    token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE)
     if not token:
         raise NotSignedIn("nobody is signed in", remedy="Log in first.")
     with context.database.reading() as db:
-        account = account_of_token(db, token, context.clock.utc_now())
-    return _caller(account)
+        return caller_of(account_of_token(db, token, context.clock.utc_now()))
 
 
 def get_tablet(request: Request, context: Context) -> Device:
     """The paired tablet; raises NotSignedIn when it is unknown or was replaced."""
-    token = request.cookies.get(TABLET_COOKIE) or bearer_token(request)
+    _require_device_route(request, TABLET)
+    token = read_cookie(request, TABLET_COOKIE) or bearer_token(request)
     tablet = _device(token, "tablet", context)
     context.hub.note_seen(tablet.id, context.clock.utc_now())
     return tablet
@@ -90,7 +100,20 @@ def get_tablet(request: Request, context: Context) -> Device:
 
 def get_headset(request: Request, context: Context) -> Device:
     """The paired headset; raises NotSignedIn when it is unknown or was replaced."""
+    _require_device_route(request, HEADSET)
     return _device(bearer_token(request), "headset", context)
+
+
+def _require_device_route(request: Request, who: frozenset[str]) -> None:
+    if allowed(request.method, _template(request)) != who:
+        raise NotAllowed("this route is not open to devices", remedy="Use the device's own page.")
+
+
+def _template(request: Request) -> str:
+    """The route's path with the names of its parameters; all routes are included under one prefix,
+    which the route itself does not know.
+    """
+    return f"{API_PREFIX}{request.scope['route'].path}"
 
 
 def _device(token: str | None, kind: str, context: AppContext) -> Device:
@@ -98,10 +121,6 @@ def _device(token: str | None, kind: str, context: AppContext) -> Device:
         raise NotSignedIn(f"this {kind} is not paired", remedy="Enter the code from the console.")
     with context.database.reading() as db:
         return device_of_token(db, token, kind)
-
-
-def _caller(account: Account) -> Caller:
-    return Caller(account.id, account.username, account.role)
 
 
 SignedIn = Annotated[Caller, Depends(get_caller)]

@@ -110,6 +110,13 @@ class Hub:
         for reader in readers:
             reader.offer("storage", None)
 
+    def publish_access(self) -> None:
+        """Let every reader of every session look whether it may still read."""
+        with self._lock:
+            readers = [reader for group in self._subscribers.values() for reader in group]
+        for reader in readers:
+            reader.offer("access", None)
+
     def headset_joined(self, session_id: str) -> None:
         """A headset's socket is open."""
         with self._lock:

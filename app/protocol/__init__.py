@@ -15,7 +15,8 @@ from app.protocol.loading import (
 )
 from app.protocol.orders import LedgerRow, ledger_block, sequences
 from app.protocol.plan import Step, StepKind, compile_plan
-from app.protocol.procedure import Block, Procedure, SetupStep, TaskPhase
+from app.protocol.procedure import Block, ConsentStep, Procedure, SetupStep, TaskPhase
+from app.protocol.safety import Safety, StopRule
 from app.protocol.study import Blinding, LatencySettings, StudyProtocol
 from app.protocol.tasks import FootTask, HandTask, Tasks
 
@@ -27,6 +28,7 @@ __all__ = [
     "Condition",
     "ConfigError",
     "ConfigProblem",
+    "ConsentStep",
     "Cues",
     "FootTask",
     "HandTask",
@@ -39,9 +41,11 @@ __all__ = [
     "PlanError",
     "Procedure",
     "Provenance",
+    "Safety",
     "SetupStep",
     "Step",
     "StepKind",
+    "StopRule",
     "StudyProtocol",
     "TaskPhase",
     "Tasks",

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 
 from app.protocol.common import TEXT_MARK
 from app.protocol.conditions import MAX_PERMUTED
+from app.protocol.safety_checks import practice_problems, safety_problems
 from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
 from app.protocol.study import SCREEN_TEXTS
@@ -31,6 +32,8 @@ def cross_problems(
     yield from _titles(tree, languages)
     yield from _rows(tree)
     yield from _sequences(tree)
+    yield from safety_problems(tree, instruments)
+    yield from practice_problems(tree)
 
 
 def _texts(tree: Plain, schema: Schema, languages: list[str]) -> Iterator[DefinitionProblem]:
@@ -118,7 +121,7 @@ def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[Definition
     """Built-in titles speak two languages; a study in a third brings its own."""
     foreign = [language for language in languages if language not in DEFAULT_LANGUAGES]
     for path, step in _steps(tree):
-        fields = ("title", "questionnaire_title") if "limb" in step else ("title",)
+        fields = ("title", "questionnaire_title") if "questionnaire" in step else ("title",)
         for field in fields:
             if foreign and step.get(field) is None:
                 yield DefinitionProblem(

@@ -59,8 +59,13 @@ def load_study(text: str, *, instruments: Mapping[str, Instrument]) -> LoadedStu
 def load_instrument(text: str) -> LoadedInstrument:
     """Read an instrument file (YAML). Raises ConfigError with every problem of the file."""
     instrument = _validated(_INSTRUMENT, read_source(text), [])
-    canonical = canonical_json(_canonical(instrument))
+    canonical = canonical_json(instrument_as_json(instrument))
     return LoadedInstrument(instrument, sha256_of(canonical), canonical)
+
+
+def study_schema() -> Schema:
+    """The JSON schema of study files, with the descriptions that problems quote."""
+    return _STUDY.schema
 
 
 def parse_study_json(canonical_json: str) -> StudyProtocol:
@@ -68,7 +73,7 @@ def parse_study_json(canonical_json: str) -> StudyProtocol:
     return _parsed(_STUDY, canonical_json)
 
 
-def _canonical(instrument: Instrument) -> dict[str, Plain]:
+def instrument_as_json(instrument: Instrument) -> dict[str, Plain]:
     """Its content, defaults written out; without what was added later where that is not used.
 
     So the hash of an instrument that is stored somewhere does not change with a release.

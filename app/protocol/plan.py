@@ -14,8 +14,10 @@ from app.protocol.conditions import Condition
 from app.protocol.errors import PlanError
 from app.protocol.procedure import (
     ClosingStep,
+    ConsentStep,
     FormStep,
     FreeRoamStep,
+    PracticeStep,
     SetupStep,
     TaskPhase,
 )
@@ -30,10 +32,15 @@ StepKind = Literal[
     "height",
     "materialise",
     "free_roam",
+    "practice",
     "task",
     "questionnaire",
     "debrief",
 ]
+
+
+TIMED_KINDS: tuple[StepKind, ...] = ("free_roam", "practice", "task")
+"""Steps that are phases: they run on the headset's clock and are recorded as such."""
 
 
 @dataclass(frozen=True)
@@ -42,8 +49,9 @@ class Step:
 
     `index` counts from 0; `key` is unique ("form.demographics", "block2.hand",
     "block2.hand.karas2020", "block2.fms"). `block` counts from 1 and, like `condition`, is None
-    outside the blocks. `latency_ms` is also set for free movement. `text` names a text of the
-    study.
+    outside the blocks. `latency_ms` is also set for free movement and practice. `text` names a text
+    of the study. `until_completions`: a practice ends early after so many tasks. `consent`: what a
+    consent asks for besides its text.
     """
 
     index: int
@@ -59,6 +67,8 @@ class Step:
     freeze_s: float | None = None
     instrument: str | None = None
     text: str | None = None
+    until_completions: int | None = None
+    consent: ConsentStep | None = None
 
 
 def compile_plan(
@@ -101,14 +111,34 @@ def compile_plan(
 
 def _simple(step: SetupStep | ClosingStep) -> Step:
     """A step outside the blocks."""
+    if isinstance(step, PracticeStep):
+        return _practice(step)
     title = title_of(step.step, step.title)
     if isinstance(step, FormStep):
         key = f"form.{step.instrument}"
         return Step(0, key, "form", title, instrument=step.instrument)
     plain = Step(0, step.step, step.step, title, text=step.text)
+    if isinstance(step, ConsentStep):
+        return replace(plain, consent=step)
     if isinstance(step, FreeRoamStep):
         return replace(plain, latency_ms=step.latency_ms, duration_s=step.duration_s)
     return plain
+
+
+def _practice(step: PracticeStep) -> Step:
+    return Step(
+        0,
+        f"practice.{step.limb}",
+        "practice",
+        title_of(f"practice_{step.limb}", step.title),
+        latency_ms=step.latency_ms,
+        limb=step.limb,
+        preparation_s=step.preparation_s,
+        duration_s=step.duration_s,
+        freeze_s=step.freeze_s,
+        text=step.text,
+        until_completions=step.repeat_until_completions,
+    )
 
 
 def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Iterator[Step]:

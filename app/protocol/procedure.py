@@ -13,12 +13,34 @@ from app.protocol.conditions import LatencyMs
 from app.science.tasks.layout import Limb
 
 
+class Statement(Strict):
+    """One line of a consent that is ticked by itself; unless `optional`, nothing goes on without.
+
+    An optional one asks for a permission that somebody may keep back and still take part, such as
+    the use of their data in later studies.
+    """
+
+    text: Text
+    optional: bool = False
+
+
 class ConsentStep(Strict):
-    """The participant reads the consent text and agrees, or the session ends."""
+    """The participant reads the consent text and agrees, or the session ends.
+
+    `signature`: "none" is a button, "typed" a name, "drawn" a signature by finger, pen or mouse
+    (whoever cannot draw types their name). `statements`: what is ticked line by line.
+    """
 
     step: Literal["consent"]
     text: Key
     title: Text | None = None
+    # Left out of the content where they are not used, so that the hash of other studies stays.
+    signature: Annotated[
+        Literal["none", "typed", "drawn"], Field(exclude_if=lambda value: value == "none")
+    ] = "none"
+    statements: Annotated[
+        tuple[Statement, ...], Field(max_length=20, exclude_if=lambda value: not value)
+    ] = ()
 
 
 class FormStep(Strict):
@@ -63,6 +85,26 @@ class FreeRoamStep(Strict):
     title: Text | None = None
 
 
+class PracticeStep(Strict):
+    """A task to try before it counts: boxes, clock and freeze as in a block, and no analysis of it.
+
+    Its latency is its own. `repeat_until_completions`: it ends once so many tasks are completed,
+    and at the latest when its time is used up.
+    """
+
+    step: Literal["practice"]
+    limb: Limb
+    preparation_s: Pause
+    duration_s: Duration
+    freeze_s: Pause
+    latency_ms: LatencyMs
+    repeat_until_completions: Annotated[
+        int | None, Field(ge=1, le=100, exclude_if=lambda value: value is None)
+    ] = None
+    text: Key | None = None
+    title: Text | None = None
+
+
 class DebriefStep(Strict):
     """The participant is told what the study was about."""
 
@@ -72,7 +114,13 @@ class DebriefStep(Strict):
 
 
 SetupStep = Annotated[
-    ConsentStep | FormStep | InstructionsStep | HeightStep | MaterialiseStep | FreeRoamStep,
+    ConsentStep
+    | FormStep
+    | InstructionsStep
+    | HeightStep
+    | MaterialiseStep
+    | FreeRoamStep
+    | PracticeStep,
     Field(discriminator="step"),
 ]
 ClosingStep = Annotated[FormStep | InstructionsStep | DebriefStep, Field(discriminator="step")]

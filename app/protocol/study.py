@@ -9,6 +9,7 @@ from app.protocol.canonical import canonical_json, sha256_of
 from app.protocol.common import Key, Provenance, Strict, Text, refusal
 from app.protocol.conditions import Condition, Conditions, Orders
 from app.protocol.procedure import FormStep, Procedure
+from app.protocol.safety import Safety
 from app.protocol.tasks import Tasks
 from app.science.skeleton.joints import JOINT_NAMES
 
@@ -83,6 +84,8 @@ class StudyProtocol(Strict):
     tasks: Tasks
     appearance: Appearance
     texts: dict[Key, Text]
+    # Left out of the content where there is none, so that the hash of other studies stays.
+    safety: Annotated[Safety | None, Field(exclude_if=lambda value: value is None)] = None
 
     def condition(self, key: str) -> Condition:
         """The condition with that key; KeyError if there is none."""

@@ -9,6 +9,8 @@ DEFAULT_TITLES: dict[str, dict[str, str]] = {
     "height": {"en": "Height", "de": "Körpergröße"},
     "materialise": {"en": "Entering the body", "de": "Eintritt in den Körper"},
     "free_roam": {"en": "Free movement", "de": "Freies Bewegen"},
+    "practice_hand": {"en": "Practice with the hand", "de": "Übung mit der Hand"},
+    "practice_foot": {"en": "Practice with the foot", "de": "Übung mit dem Fuß"},
     "hand": {"en": "Hand task", "de": "Handaufgabe"},
     "foot": {"en": "Foot task", "de": "Fußaufgabe"},
     "questionnaire": {"en": "Questionnaire", "de": "Fragebogen"},

@@ -73,7 +73,7 @@ def _next_action(view: Json, person: Person) -> tuple[str, Json] | None:
             return "complete_step", {"height_m": height}
         case "debrief":
             return "complete_step", {}
-        case "free_roam" | "task":
+        case "free_roam" | "practice" | "task":
             if current["status"] == "ready" and connected:
                 return "begin_phase", {}
             if current["status"] == "paused" and connected and not current["resuming"]:

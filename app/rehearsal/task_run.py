@@ -58,6 +58,13 @@ class BoxRun(TimedRun):
         """The active clock of the task rules."""
         return self._run.state.clock
 
+    @property
+    def has_enough(self) -> bool:
+        """Whether as many tasks are completed as a practice wants."""
+        wanted = self.order.until_completions
+        done = self._completed_before + self._told_completions
+        return wanted is not None and self.clock_runs and done >= wanted
+
     def command(self, kind: CommandKind, t_s: float) -> None:
         """Start, pause, resume or freeze the task."""
         self._run.command(kind, t_s)

@@ -54,6 +54,11 @@ class TimedRun(ABC):
         """Whether active time passes now."""
         return self.clock.running_since_s is not None
 
+    @property
+    def has_enough(self) -> bool:
+        """Whether the phase ends now, before its time: a practice with its tasks completed."""
+        return False
+
     def active_s(self, t_s: float) -> float:
         """Active time used up at `t_s`, at most the phase's duration."""
         clock = self.clock
@@ -107,7 +112,8 @@ class TimedRun(ABC):
             return [*reports, *self._freeze(max(end_s, self.clock.last_s or end_s))]
         if self.clock.last_s is not None:
             self.touch(t_s, axes_m, radii_m)
-        return [*reports, *self.news(t_s)]
+        reports += self.news(t_s)
+        return [*reports, *self._freeze(t_s)] if self.has_enough else reports
 
     def report(self, what: str, t_s: float, cause: str = "headset") -> PhaseReport:
         """A report of this phase's clock."""

@@ -16,7 +16,11 @@ class StreamPosition(Message):
 
 
 class PhaseOrder(Message):
-    """The phase to run; the headset converges to it. Latency is known here and nowhere else."""
+    """The phase to run; the headset converges to it. Latency is known here and nowhere else.
+
+    `until_completions`: a practice ends once so many tasks are completed, before its time is up;
+    null everywhere else.
+    """
 
     phase_id: int
     kind: str
@@ -30,6 +34,7 @@ class PhaseOrder(Message):
     completions: int
     pausing: bool
     resuming: bool
+    until_completions: int | None = None
 
 
 class ParticipantInfo(Message):

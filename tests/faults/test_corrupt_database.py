@@ -25,7 +25,7 @@ KNOWINGLY = (
     """
 import sys
 from app.cli.serving import serve_forever
-serve_forever(host=None, port=int(sys.argv[3]), new_database=True)
+serve_forever({"port": int(sys.argv[3])}, new_database=True)
 """,
 )
 

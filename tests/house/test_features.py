@@ -12,6 +12,7 @@ ALSO = {
         "engine",  # commands and state are the words in which features speak of a session
         "contents",  # words beside the event log
         "journal",  # the log's canonical JSON and its hash chain
+        "capture",  # whose sessions take no more data
     },
     "telemetry": {
         "frames",  # reading movement back

@@ -5,21 +5,19 @@ SHA-256, so a stolen database opens nothing, and every login can be revoked.
 """
 
 import hashlib
+import re
 import secrets
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from argon2 import PasswordHasher
-from argon2.exceptions import VerificationError
-from sqlalchemy import select
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotSignedIn
+from app.features.accounts.passwords import hash_password, is_password
 from app.models import Account, LoginToken
 
-_HASHER = PasswordHasher()
-# Verified when the user name is unknown, so that the answer takes as long as for a known one.
-_NOBODY = _HASHER.hash(secrets.token_urlsafe(16))
+_USERNAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 
 @dataclass(frozen=True)
@@ -39,13 +37,25 @@ def hash_token(token: str) -> str:
 def create_account(
     db: Session, *, username: str, password: str, role: str, now: datetime
 ) -> Account:
-    """Add an account; raises InvalidInput if the name is taken."""
-    if db.scalar(select(Account).where(Account.username == username)):
+    """Add an account that sees all studies; InvalidInput if the name is taken or unusable."""
+    if not _USERNAME.fullmatch(username):
+        raise InvalidInput(
+            f"{username!r} cannot be a user name",
+            value=username,
+            valid="1 to 80 letters, digits, dots, - and _, beginning with a letter or digit",
+            remedy="Choose another.",
+        )
+    # Two names that differ in capitals only would be mistaken for each other.
+    if db.scalar(select(Account).where(func.lower(Account.username) == username.lower())):
         raise InvalidInput(
             f"the user name {username!r} is taken", value=username, remedy="Choose another."
         )
     account = Account(
-        username=username, role=role, password_hash=_HASHER.hash(password), created_at=now
+        username=username,
+        role=role,
+        all_studies=True,
+        password_hash=hash_password(password),
+        created_at=now,
     )
     db.add(account)
     db.flush()
@@ -61,21 +71,20 @@ def ensure_admin(db: Session, *, password: str | None, now: datetime) -> str | N
     return None if password else chosen
 
 
-def log_in(db: Session, *, username: str, password: str, now: datetime, hours: float) -> Login:
-    """Check a password and open a login; the same NotSignedIn whatever was wrong."""
+def check_password(db: Session, *, username: str, password: str) -> Account:
+    """Whose name and password these are; the same NotSignedIn whatever was wrong.
+
+    Takes a while on purpose, so it is not to be called inside a writing transaction.
+    """
     account = db.scalar(
         select(Account).where(Account.username == username, Account.disabled_at.is_(None))
     )
-    try:
-        _HASHER.verify(account.password_hash if account else _NOBODY, password)
-    except VerificationError:
-        account = None
-    if account is None:
+    if not is_password(account.password_hash if account else None, password) or account is None:
         raise NotSignedIn(
             "user name and password do not match",
             remedy="Check both; the first start printed the admin's password in its terminal.",
         )
-    return issue_token(db, account, purpose="browser", now=now, hours=hours)
+    return account
 
 
 def issue_token(

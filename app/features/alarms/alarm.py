@@ -20,8 +20,15 @@ SEVERITIES: dict[str, Severity] = {
     "clock_unknown": "warning",
     "clock_uncertain": "info",
     "storage": "critical",
+    "stop_rule_met": "critical",
+    "stop_rule_near": "warning",
+    "stop_rule_unknown": "warning",
 }
-"""Every alarm there is. Critical: data are being lost now, or a phase stands."""
+"""Every alarm there is. Critical: data are being lost now, a phase stands, or somebody is unwell."""
+
+STANDING = ("stop_rule_met", "stop_rule_near", "stop_rule_unknown")
+"""Alarms about the participant: they hold until a person or a form says otherwise, whatever becomes
+of the server and the headset in between."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Alarms on the record: rows are only ever added, one when raised and one when cleared."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from datetime import datetime, timedelta
 
 from sqlalchemy import Select, case, func, select
@@ -34,11 +34,20 @@ def store_change(db: Session, session_id: str, change: Change) -> bool:
     return True
 
 
-def clear_all(db: Session, session_ids: Iterable[str], message: str, now: datetime) -> int:
-    """Clear every open alarm of these sessions and say why; how many there were."""
+def clear_all(
+    db: Session,
+    session_ids: Iterable[str],
+    message: str,
+    now: datetime,
+    *,
+    keep: Collection[str] = (),
+) -> int:
+    """Clear the open alarms of these sessions, but for those codes, and say why; how many."""
     count = 0
     for session_id in session_ids:
         for row in open_rows(db, session_id):
+            if row.code in keep:
+                continue
             condition = Condition(row.code, message, row.stream)
             _add(db, session_id, condition, "cleared", max(now, row.at + TICK))
             count += 1

@@ -1,14 +1,13 @@
 """Pairing devices over HTTP."""
 
-import io
-
-import segno
 from fastapi import APIRouter, Request, Response
 
+from app.features.cookies import set_cookie
 from app.features.dependencies import TABLET_COOKIE, Context, SignedIn, Writing
 from app.features.devices.schemas import NewPairing, PairedView, PairingView, PairRequest
 from app.features.devices.service import new_code, pair, revoke
 from app.features.sessions.service import session_by_id
+from app.lan.qr import qr_svg
 
 router = APIRouter(tags=["devices"])
 TABLET_COOKIE_DAYS = 2
@@ -28,13 +27,16 @@ def post_pairing(
         now=context.clock.utc_now(),
         minutes=context.settings.pairing_minutes,
     )
-    base = str(request.base_url).rstrip("/")
+    reach = context.network.reach
+    base = reach.for_devices(str(request.base_url))
     url = f"{base}/tablet?code={made.code}" if wish.device == "tablet" else base
     return PairingView(
         device=wish.device,
         code=made.code,
         url=url,
-        qr_svg=_qr_svg(url) if wish.device == "tablet" else None,
+        qr_svg=qr_svg(url) if wish.device == "tablet" else None,
+        help_url=reach.help_url,
+        help_qr_svg=None if reach.help_url is None else qr_svg(reach.help_url),
         expires_at=made.expires_at,
     )
 
@@ -52,14 +54,7 @@ def post_pair(
     device = paired.device
     context.hub.publish_after_commit(db, device.session_id)
     if device.kind == "tablet":
-        response.set_cookie(
-            TABLET_COOKIE,
-            paired.token,
-            max_age=TABLET_COOKIE_DAYS * 86_400,
-            httponly=True,
-            samesite="strict",
-            secure=request.url.scheme == "https",
-        )
+        set_cookie(request, response, TABLET_COOKIE, paired.token, TABLET_COOKIE_DAYS * 86_400)
     return PairedView(
         device="tablet" if device.kind == "tablet" else "headset",
         session_id=device.session_id,
@@ -74,11 +69,3 @@ def delete_device(
     """Unpair a device: its token stops working at once."""
     revoke(db, session_id=session_id, device_id=device_id, now=context.clock.utc_now())
     context.hub.publish_after_commit(db, session_id)
-
-
-def _qr_svg(url: str) -> str:
-    buffer = io.BytesIO()
-    segno.make(url, error="m").save(
-        buffer, kind="svg", xmldecl=False, svgns=True, border=2, scale=1, omitsize=True
-    )
-    return buffer.getvalue().decode()

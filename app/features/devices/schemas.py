@@ -20,13 +20,16 @@ class PairingView(BaseModel):
     """A code that works once, until `expires_at`; `url` and `qr_svg` open the page with it.
 
     A headset's client is given the address of the server and types the code; it has no page to
-    scan, so its `qr_svg` is null.
+    scan, so its `qr_svg` is null. `help_url` is the page on which a device that comes for the first
+    time gets the lab's certificate; null where there is nothing to install.
     """
 
     device: DeviceKind
     code: str
     url: str
     qr_svg: str | None
+    help_url: str | None
+    help_qr_svg: str | None
     expires_at: datetime
 
 

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
-from app.errors import InvalidInput
+from app.errors import InvalidInput, Withdrawn
 from app.features.context import AppContext
 from app.features.devices.service import device_of_token
 from app.features.headset.lookout import Lookout
@@ -76,6 +76,8 @@ class HeadsetConnection:
     def fail(self, error: Exception) -> None:
         """Called by the writer: the session's messages cannot be stored."""
         message = Failure(code="not_stored", message=str(error)[:300], remedy="Reconnect.")
+        if isinstance(error, Withdrawn):
+            message = Failure(code=error.code, message=error.message, remedy=error.remedy)
         self._call(self._outbox.put_nowait, message)
 
     async def run(self) -> None:

@@ -5,12 +5,14 @@ from datetime import datetime
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from app.features.questionnaires.service import answers_of
+from app.features.sessions.capture import require_capture
 from app.features.sessions.contents import content_body, contents_of
 from app.features.sessions.engine import SessionState
 from app.features.sessions.service import plan_of, session_by_id, state_of
 from app.features.studies.service import protocol_of
 from app.features.telemetry.positions import certain_active_s, positions_of, take_epoch
-from app.models import Answer, Completion, StudySession, StudyVersion, Submission
+from app.models import Completion, StudySession, StudyVersion, Submission
 from app.protocol.plan import Step
 from app.wire.messages import (
     PROTOCOL_VERSION,
@@ -26,6 +28,7 @@ CENTIMETRES_PER_METRE = 100.0
 def welcome(db: Session, session_id: str, epoch: int | None, now: datetime) -> Welcome:
     """The answer to a hello; `epoch` None takes the next one."""
     session = session_by_id(db, session_id, lock=True)
+    require_capture(db, session_id)
     protocol = protocol_of(db.get_one(StudyVersion, session.study_version_id))
     return Welcome(
         protocol=PROTOCOL_VERSION,
@@ -89,10 +92,7 @@ def _demographics(db: Session, session: StudySession) -> dict[str, str | float |
         .order_by(Submission.submitted_at.desc())
         .limit(1)
     )
-    rows = db.scalars(select(Answer).where(Answer.submission_id == newest))
-    return {
-        row.item: row.value_number if row.value_text is None else row.value_text for row in rows
-    }
+    return {} if newest is None else answers_of(db, newest)
 
 
 def _text(value: str | float | None) -> str | None:
@@ -125,4 +125,5 @@ def _phase_order(
         completions=completions or 0,
         pausing=phase.pausing,
         resuming=phase.resuming,
+        until_completions=step.until_completions,
     )

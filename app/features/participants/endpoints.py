@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from fastapi import APIRouter
 from sqlalchemy.orm import Session
 
+from app.features.access import Caller, is_blind
 from app.features.dependencies import Reading, SignedIn
 from app.features.participants.service import SlotView, ledger_of, planned_slots
 from app.features.sessions.schemas import Kind
@@ -17,8 +18,11 @@ router = APIRouter(tags=["participants"])
 
 
 @router.get("/studies/{key}/ledger")
-def get_ledger(key: str, db: Reading, _: SignedIn, kind: Kind = "people") -> LedgerView:
-    """Every slot with its attempts; before the first join, the slots as they will be."""
+def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -> LedgerView:
+    """Every slot with its attempts; before the first join, the slots as they will be.
+
+    In a blinded study only the orders of completed slots are told, and to operators none.
+    """
     version = newest_version(db, study_by_key(db, key))
     protocol = protocol_of(version)
     latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
@@ -34,15 +38,21 @@ def get_ledger(key: str, db: Reading, _: SignedIn, kind: Kind = "people") -> Led
         )
         for index, (sequence, replicate) in enumerate(planned_slots(protocol))
     ]
-    blinded = protocol.blinding.operator
+    blinded = is_blind(db, caller, protocol, None)
     return LedgerView(
         kind=kind,
-        seed=protocol.orders.seed,
+        seed=None if blinded else protocol.orders.seed,
         when_full=protocol.orders.when_full,
         started=bool(slots),
         sequences=None if blinded else _sequences(rows),
-        slots=[row.model_copy(update={"sequence": None}) for row in rows] if blinded else rows,
+        slots=[_hidden(row, caller) for row in rows] if blinded else rows,
     )
+
+
+def _hidden(row: SlotRow, caller: Caller) -> SlotRow:
+    """A slot of a blinded study: its order is told once it is completed, and never to operators."""
+    told = row.state == "completed" and caller.role != "operator"
+    return row if told else row.model_copy(update={"sequence": None})
 
 
 def _row(db: Session, view: SlotView, latency_ms: dict[str, float]) -> SlotRow:

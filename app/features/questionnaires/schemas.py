@@ -65,11 +65,26 @@ class StoredScores(BaseModel):
     score_views: list[ScoreView]
 
 
+class CorrectionView(BaseModel):
+    """A later value of one answer. `previous` is what counted before; null is "left out"."""
+
+    item: str
+    previous: AnswerValue
+    value: AnswerValue
+    reason: str
+    by: str
+    at: datetime
+
+
 class StoredAnswers(StoredScores):
-    """One stored form with its answers as given."""
+    """One stored form with the answers that count: as given, unless they were corrected since.
+
+    `corrections`: oldest first; the first one's `previous` is the answer as given.
+    """
 
     submission_id: str
     language: str
     shown_order: list[str]
     submitted_at: datetime
     answers: dict[str, AnswerValue]
+    corrections: list[CorrectionView]

@@ -16,11 +16,17 @@ from app.features.questionnaires.refused import keep_refused, request_hash
 from app.features.questionnaires.schemas import (
     Administration,
     AnswerValue,
-    ScoreView,
-    StoredAnswers,
-    StoredScores,
     SubmissionRequest,
 )
+from app.features.questionnaires.stored import (
+    answers_of,
+    correct_answer,
+    newest_corrections,
+    stored_answers,
+    stored_scores,
+)
+from app.features.sessions.capture import require_capture
+from app.features.questionnaires.stop_rules import judge, tell
 from app.features.sessions.engine import SessionState
 from app.features.sessions.engine.commands import SubmitForm
 from app.features.sessions.journal import canonical
@@ -31,6 +37,16 @@ from app.models.types import new_id
 from app.protocol.plan import Step
 from app.science.instruments import Instrument, item_order, score_answers, validate_answers
 
+__all__ = [
+    "administration_key",
+    "answers_of",
+    "correct_answer",
+    "current_administration",
+    "newest_corrections",
+    "stored_answers",
+    "stored_scores",
+    "submit",
+]
 FORM_KINDS = ("form", "questionnaire")
 
 
@@ -76,6 +92,7 @@ def submit(
     this form is not due, KeptConflict when other answers are stored already; these are then kept
     beside them.
     """
+    require_capture(db, session.id)
     hash_ = request_hash(request)
     known = _stored(db, session, request)
     if known is not None:
@@ -121,68 +138,23 @@ def submit(
     db.flush()
     db.add_all(_answer_rows(submission, instrument, request.answers))
     db.add_all(_score_rows(submission, instrument, request.answers))
+    db.flush()
+    judgement = judge(db, session, submission)
+    tell(db, session, judgement, now)
     digest = hashlib.sha256(f"{salt}{canonical(request.answers)}".encode()).hexdigest()
     apply_command(
         db,
         context,
         session,
-        SubmitForm(step=step.index, submission_id=submission.id, content_hash=digest),
+        SubmitForm(
+            step=step.index,
+            submission_id=submission.id,
+            content_hash=digest,
+            rules_met=judgement.met,
+        ),
         actor=actor,
     )
     return submission, False
-
-
-def stored_answers(db: Session, session: StudySession) -> list[StoredAnswers]:
-    """Every stored form of a session, oldest first."""
-    submissions = db.scalars(
-        select(Submission)
-        .where(Submission.session_id == session.id)
-        .order_by(Submission.submitted_at, Submission.id)
-    ).all()
-    return [_stored_answers(db, submission) for submission in submissions]
-
-
-def stored_scores(db: Session, session: StudySession) -> list[StoredScores]:
-    """The scores of every stored form that has any."""
-    return [
-        StoredScores(**answers.model_dump(include=set(StoredScores.model_fields)))
-        for answers in stored_answers(db, session)
-        if answers.scores
-    ]
-
-
-def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
-    answers = db.scalars(
-        select(Answer).where(Answer.submission_id == submission.id).order_by(Answer.position)
-    )
-    rows = db.scalars(select(ScoreValue).where(ScoreValue.submission_id == submission.id))
-    scores = {row.score: row.value for row in rows}
-    version = db.get_one(InstrumentVersion, submission.instrument_version_id)
-    return StoredAnswers(
-        submission_id=submission.id,
-        administration=submission.administration,
-        step_index=submission.step_index,
-        instrument=submission.instrument,
-        mode=submission.mode,
-        language=submission.language,
-        shown_order=submission.shown_order,
-        submitted_at=submission.submitted_at,
-        answers={
-            row.item: row.value_number if row.value_text is None else row.value_text
-            for row in answers
-        },
-        scores=scores,
-        score_views=[
-            ScoreView(
-                key=score.key,
-                label=score.label.get("en") or score.key,
-                value=scores.get(score.key),
-                minimum=score.minimum,
-                maximum=score.maximum,
-            )
-            for score in instrument_of(version).scores
-        ],
-    )
 
 
 def _stored(db: Session, session: StudySession, request: SubmissionRequest) -> Submission | None:

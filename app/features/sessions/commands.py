@@ -24,13 +24,8 @@ def command_of(
     if request.type in _STARTS:
         context.storage.require_storage()
     reason = (request.reason or "").strip()
-    if request.type in _NEEDS_REASON and not reason:
-        raise InvalidInput(
-            f"{request.type} needs a reason",
-            value=request.reason,
-            valid="1 to 2000 characters",
-            remedy="Write in a few words why; it becomes part of the record.",
-        )
+    if request.type in _NEEDS_REASON:
+        reason_given(reason, request.type)
     store = _Store(db, context, session, actor)
     connected = context.hub.headset_connected(session.id)
     if request.type in _NEEDS_REASON:
@@ -55,6 +50,18 @@ def command_of(
             return c.AddNote(content=store.put("note", _note_text(request)))
         case _:
             return c.Start()
+
+
+def reason_given(reason: str, what: str) -> str:
+    """The words of a reason; raises InvalidInput where there are none."""
+    if not reason.strip():
+        raise InvalidInput(
+            f"{what} needs a reason",
+            value=reason,
+            valid="1 to 2000 characters",
+            remedy="Write in a few words why; it becomes part of the record.",
+        )
+    return reason.strip()
 
 
 def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:

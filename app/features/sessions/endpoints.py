@@ -1,14 +1,9 @@
-"""Sessions over HTTP: joining, the cockpit's view, commands, the log, live news."""
+"""Sessions over HTTP: joining, the cockpit's view, commands, the log."""
 
-import asyncio
-from collections.abc import AsyncIterator
-from typing import Annotated, Any
-
-from fastapi import APIRouter, Depends
-from fastapi.sse import EventSourceResponse, ServerSentEvent
+from fastapi import APIRouter
 from sqlalchemy import select
 
-from app.features.context import AppContext
+from app.features.access import is_blind
 from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.questionnaires.schemas import (
     Administration,
@@ -17,12 +12,15 @@ from app.features.questionnaires.schemas import (
     SubmissionRequest,
 )
 from app.features.questionnaires.service import current_administration, stored_answers, submit
-from app.features.sessions.commands import command_of
+from app.features.sessions.commands import command_of, reason_given
+from app.features.sessions.contents import store_content
+from app.features.sessions.engine.commands import LiftBlinding
 from app.features.sessions.schemas import (
     CommandRequest,
     EventView,
     Kind,
     NewSession,
+    Reveal,
     SessionSummary,
     SessionView,
     StreamView,
@@ -39,21 +37,11 @@ from app.features.studies.service import study_by_key
 from app.models import TelemetryStream
 
 router = APIRouter(tags=["sessions"])
-HEARTBEAT_S = 10.0
-
-
-def _known_session(session_id: str, context: Context) -> str:
-    """The id of a session that exists: a stream cannot say otherwise once it has begun."""
-    with context.database.reading() as db:
-        return session_by_id(db, session_id).id
-
-
-KnownSession = Annotated[str, Depends(_known_session)]
 
 
 @router.post("/studies/{key}/sessions", status_code=201)
 def create_session(
-    key: str, request: NewSession, db: Writing, context: Context, _: SignedIn
+    key: str, request: NewSession, db: Writing, context: Context, caller: SignedIn
 ) -> SessionView:
     """Join a study: take the next slot of the ledger for a participant."""
     session = join(
@@ -65,21 +53,21 @@ def create_session(
         language=request.language,
         time_scale=request.time_scale,
     )
-    return session_view(db, context, session)
+    return session_view(db, context, session, caller)
 
 
 @router.get("/studies/{key}/sessions")
 def get_sessions(
-    key: str, db: Reading, _: SignedIn, kind: Kind | None = None
+    key: str, db: Reading, caller: SignedIn, kind: Kind | None = None
 ) -> list[SessionSummary]:
     """The sessions of a study, newest first."""
-    return list_sessions(db, study_by_key(db, key), kind)
+    return list_sessions(db, study_by_key(db, key), kind, caller)
 
 
 @router.get("/sessions/{session_id}")
-def get_session(session_id: str, db: Reading, context: Context, _: SignedIn) -> SessionView:
+def get_session(session_id: str, db: Reading, context: Context, caller: SignedIn) -> SessionView:
     """A session as the cockpit shows it."""
-    return session_view(db, context, session_by_id(db, session_id))
+    return session_view(db, context, session_by_id(db, session_id), caller)
 
 
 @router.post("/sessions/{session_id}/commands")
@@ -89,7 +77,7 @@ def post_command(
     """Do something with a session. A repeated `command_id` changes nothing."""
     session = session_by_id(db, session_id, lock=True)
     if is_repeated(db, session_id, request.command_id):
-        return session_view(db, context, session)
+        return session_view(db, context, session, caller)
     apply_command(
         db,
         context,
@@ -100,13 +88,36 @@ def post_command(
         # A note cannot clash with anything.
         expected_version=None if request.type == "note" else request.expected_version,
     )
-    return session_view(db, context, session)
+    return session_view(db, context, session, caller)
 
 
 @router.get("/sessions/{session_id}/events")
-def get_events(session_id: str, db: Reading, _: SignedIn) -> list[EventView]:
+def get_events(session_id: str, db: Reading, caller: SignedIn) -> list[EventView]:
     """The event log, oldest first."""
-    return event_views(db, session_by_id(db, session_id))
+    return event_views(db, session_by_id(db, session_id), caller)
+
+
+@router.post("/sessions/{session_id}/reveal")
+def post_reveal(
+    session_id: str, request: Reveal, db: Writing, context: Context, caller: SignedIn
+) -> SessionView:
+    """Show a blinded session's condition before it is over, for a reason that goes on record.
+
+    Asking again changes nothing. An operator stays blind.
+    """
+    session = session_by_id(db, session_id, lock=True)
+    reason = reason_given(request.reason, "showing the condition")
+    if is_blind(db, caller, protocol_of_session(db, session), session):
+        content = store_content(
+            db,
+            session_id=session.id,
+            kind="reason",
+            body=reason,
+            by=caller.actor,
+            now=context.clock.utc_now(),
+        )
+        apply_command(db, context, session, LiftBlinding(content=content), actor=caller.actor)
+    return session_view(db, context, session, caller)
 
 
 @router.get("/sessions/{session_id}/answers")
@@ -151,48 +162,3 @@ def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
             .order_by(TelemetryStream.epoch, TelemetryStream.stream)
         )
     ]
-
-
-@router.get("/sessions/{session_id}/live", response_class=EventSourceResponse)
-async def get_live(
-    _: SignedIn, session_id: KnownSession, context: Context
-) -> AsyncIterator[ServerSentEvent]:
-    """News of a session: `session` on every change, `telemetry` a few times a second, and
-    `storage` at first and when the record ceases to be written, or the disk gets low.
-    """
-    blinded = await asyncio.to_thread(_is_blinded, context, session_id)
-    with context.hub.subscribe(session_id, "telemetry") as subscription:
-        yield await _session_event(context, session_id)
-        told = None
-        while True:
-            storage = await asyncio.to_thread(context.storage.state)
-            if storage != told:
-                yield ServerSentEvent(data=storage, event="storage")
-                told = storage
-            news = await subscription.next(HEARTBEAT_S)
-            if not news:
-                yield ServerSentEvent(comment="still here")
-            if "session" in news:
-                yield await _session_event(context, session_id)
-            if "telemetry" in news:
-                figures = _unblinding_left_out(news["telemetry"]) if blinded else news["telemetry"]
-                yield ServerSentEvent(data=figures, event="telemetry")
-
-
-def _is_blinded(context: AppContext, session_id: str) -> bool:
-    with context.database.reading() as db:
-        return protocol_of_session(db, session_by_id(db, session_id)).blinding.operator
-
-
-def _unblinding_left_out(figures: dict[str, Any]) -> dict[str, Any]:
-    """Joint errors grow with the latency, so they would tell the condition."""
-    return {name: value for name, value in figures.items() if name != "joint_error_deg"}
-
-
-async def _session_event(context: AppContext, session_id: str) -> ServerSentEvent:
-    def read() -> SessionView:
-        with context.database.reading() as db:
-            return session_view(db, context, session_by_id(db, session_id))
-
-    view = await asyncio.to_thread(read)
-    return ServerSentEvent(data=view, event="session", id=str(view.version))

@@ -8,7 +8,8 @@ from datetime import datetime
 
 from sqlalchemy.orm import Session
 
-from app.features.alarms.service import clear_all
+from app.features.alarms.alarm import Change, Condition
+from app.features.alarms.service import clear_all, store_change
 from app.features.participants.service import close_attempt
 from app.features.sessions.engine import Event
 from app.features.sessions.engine import events as e
@@ -30,6 +31,9 @@ def project(
             session.ended_at = now
             close_attempt(db, session, str(status), now)
             clear_all(db, [session.id], "the session has ended", now)
+        case e.StopRuleOverridden():
+            over = Condition("stop_rule_met", "the operator went on, with a reason on record")
+            store_change(db, session.id, Change("cleared", over, now))
         case e.PhasePrepared():
             db.add(_phase_row(session, plan[event.step], event, now))
             db.flush()

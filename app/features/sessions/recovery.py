@@ -2,6 +2,7 @@
 
 from sqlalchemy import select
 
+from app.features.alarms.alarm import STANDING
 from app.features.alarms.service import clear_all, sessions_with_open_alarms
 from app.features.context import AppContext
 from app.features.sessions.engine.commands import HeadsetLost
@@ -35,8 +36,11 @@ def stop_running_clocks(context: AppContext) -> int:
 
 
 def _clear_alarms(context: AppContext) -> None:
-    """Nobody has looked since the server died, so nobody knows whether they still hold."""
+    """Nobody has looked since the server died, so nobody knows whether they still hold.
+
+    What is known of the participant's state stays.
+    """
     now = context.clock.utc_now()
     with context.database.writing() as db:
         sessions = sessions_with_open_alarms(db)
-        clear_all(db, sessions, "the server had stopped in between", now)
+        clear_all(db, sessions, "the server had stopped in between", now, keep=STANDING)

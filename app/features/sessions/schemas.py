@@ -66,6 +66,14 @@ class CommandRequest(BaseModel):
     height_m: Height | None = None
 
 
+class Reveal(BaseModel):
+    """Why the condition of a blinded session must be known before it is over."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    reason: str = Field(max_length=2000)
+
+
 class SlotInfo(BaseModel):
     """The session's row of the ledger."""
 
@@ -173,11 +181,12 @@ class SessionSummary(BaseModel):
 
 
 class SessionView(SessionSummary):
-    """Everything a cockpit shows. `sequence` and latencies are null for a blinded operator.
+    """Everything a cockpit shows. `sequence` and latencies are null where the reader is `blinded`.
 
     `alarms`: those that are open, the oldest first.
     """
 
+    blinded: bool
     study_key: str
     study_title: str
     avatar: str
@@ -203,7 +212,7 @@ class EventView(BaseModel):
     at: datetime
     by: str
     data: dict[str, Any]
-    hash: str
+    hash: str | None
 
 
 class StreamView(BaseModel):

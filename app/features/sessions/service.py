@@ -28,7 +28,12 @@ from app.features.sessions.engine import (
 )
 from app.features.sessions.journal import append_events
 from app.features.sessions.projection import project
-from app.features.studies.service import newest_version, protocol_of, study_by_key
+from app.features.studies.service import (
+    newest_version,
+    protocol_of,
+    require_open,
+    study_by_key,
+)
 from app.models import SessionContent, SessionEvent, StudySession, StudyVersion
 from app.models.ledger import KINDS
 from app.models.types import new_id
@@ -95,6 +100,7 @@ def join(
     """
     context.storage.require_storage()
     study = study_by_key(db, study_key)
+    require_open(study)
     version = newest_version(db, study)
     protocol = protocol_of(version)
     _check_join(protocol, kind, language, time_scale)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.access import Caller, is_blind
 from app.features.alarms.service import open_alarms
 from app.features.context import AppContext
 from app.features.devices.service import devices_of_session
@@ -27,21 +28,26 @@ from app.features.sessions.schemas import (
 )
 from app.features.sessions.service import plan_of, state_of
 from app.features.studies.service import protocol_of
-from app.models import Participant, Study, StudySession, StudyVersion
+from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
 from app.protocol import StudyProtocol
 from app.protocol.plan import Step
 
 
-def session_view(db: Session, context: AppContext, session: StudySession) -> SessionView:
-    """The whole session, for the console."""
+def session_view(
+    db: Session, context: AppContext, session: StudySession, caller: Caller
+) -> SessionView:
+    """The whole session, as `caller` may see it."""
     version = db.get_one(StudyVersion, session.study_version_id)
     protocol = protocol_of(version)
-    blinded = protocol.blinding.operator
+    blinded = is_blind(db, caller, protocol, session)
     state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
     reasons = _reasons(db, session)
-    summary = _summary(session, protocol, version, _code(db, session), slot.sequence)
+    summary = _summary(
+        session, protocol, version, _code(db, session), slot.sequence, blinded=blinded
+    )
     return SessionView(
         **summary.model_dump(),
+        blinded=blinded,
         study_key=protocol.key,
         study_title=_text(protocol.title, "en"),
         avatar=session.avatar,
@@ -60,27 +66,36 @@ def session_view(db: Session, context: AppContext, session: StudySession) -> Ses
     )
 
 
-def list_sessions(db: Session, study: Study, kind: str | None) -> list[SessionSummary]:
-    """All sessions of a study, newest first."""
+def list_sessions(
+    db: Session, study: Study, kind: str | None, caller: Caller
+) -> list[SessionSummary]:
+    """All sessions of a study, newest first; orders are left out where `caller` is blind."""
     query = (
-        select(StudySession, StudyVersion, Participant.code)
+        select(StudySession, StudyVersion, Participant.code, LedgerSlot.sequence)
         .join(StudyVersion, StudyVersion.id == StudySession.study_version_id)
         .join(Participant, Participant.id == StudySession.participant_id)
+        .join(SlotAttempt, SlotAttempt.session_id == StudySession.id)
+        .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
         .where(StudySession.study_id == study.id)
         .order_by(StudySession.created_at.desc())
     )
     if kind is not None:
         query = query.where(StudySession.kind == kind)
-    return [
-        _summary(session, protocol_of(version), version, code, slot_of(db, session).sequence)
-        for session, version, code in db.execute(query)
-    ]
+    summaries = []
+    for session, version, code, sequence in db.execute(query):
+        protocol = protocol_of(version)
+        blinded = is_blind(db, caller, protocol, session)
+        summaries.append(_summary(session, protocol, version, code, sequence, blinded=blinded))
+    return summaries
 
 
-def event_views(db: Session, session: StudySession) -> list[EventView]:
-    """The event log for reading; latencies are left out where the operator is blinded."""
+def event_views(db: Session, session: StudySession, caller: Caller) -> list[EventView]:
+    """The event log for reading.
+
+    Who is blind gets no latencies, and no hashes: with three latencies to try, a hash tells which.
+    """
     version = db.get_one(StudyVersion, session.study_version_id)
-    blinded = protocol_of(version).blinding.operator
+    blinded = is_blind(db, caller, protocol_of(version), session)
     views = []
     for row in events_of(db, session.id):
         data = json.loads(row.payload)
@@ -93,7 +108,7 @@ def event_views(db: Session, session: StudySession) -> list[EventView]:
                 at=row.recorded_at,
                 by=row.actor,
                 data=data,
-                hash=row.hash,
+                hash=None if blinded else row.hash,
             )
         )
     return views
@@ -105,6 +120,8 @@ def _summary(
     version: StudyVersion,
     code: str,
     sequence: Sequence[str],
+    *,
+    blinded: bool,
 ) -> SessionSummary:
     latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
     return SessionSummary(
@@ -113,7 +130,7 @@ def _summary(
         kind=session.kind,
         simulated=session.kind == "simulated",
         status=session.status,
-        sequence=None if protocol.blinding.operator else [latency_ms[key] for key in sequence],
+        sequence=None if blinded else [latency_ms[key] for key in sequence],
         study_version=version.number,
         created_at=session.created_at,
         started_at=session.started_at,

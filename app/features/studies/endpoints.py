@@ -1,15 +1,22 @@
-"""Studies over HTTP: listing, checking files, making versions."""
+"""Studies over HTTP: listing, making versions and comparing them, copying and putting away."""
 
 import json
+from collections.abc import Mapping
+from datetime import datetime
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.errors import InvalidConfig
+from app.features.access import Caller, add_member, is_blind, is_theirs
+from app.features.audit.service import record
 from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.studies.comparing import compare_versions
+from app.features.studies.draft_endpoints import router as drafts
+from app.features.studies.draft_schemas import DuplicateRequest, StudyDiff, VersionDetail
+from app.features.studies.lifecycle import archive, duplicate, restore
 from app.features.studies.schemas import (
-    CheckResult,
     StudyFile,
     StudySummary,
     StudyView,
@@ -17,57 +24,138 @@ from app.features.studies.schemas import (
 )
 from app.features.studies.service import (
     add_version,
-    check_study,
     create_study,
     newest_version,
     protocol_of,
     session_counts,
     study_by_key,
+    version_by_number,
     versions_of,
 )
 from app.models import Study, StudyVersion
 
 router = APIRouter(tags=["studies"])
+router.include_router(drafts)
+
+VersionNumber = Annotated[int, Query(ge=1, lt=1_000_000)]
 
 
 @router.get("/studies")
-def get_studies(db: Reading, _: SignedIn) -> list[StudySummary]:
-    """All studies with their newest version."""
-    studies = db.scalars(select(Study).where(Study.archived_at.is_(None)).order_by(Study.key))
+def get_studies(db: Reading, caller: SignedIn, *, archived: bool = False) -> list[StudySummary]:
+    """Every study of the caller with its newest version; `archived`: those put away instead."""
+    wanted = Study.archived_at.is_not(None) if archived else Study.archived_at.is_(None)
+    studies = db.scalars(select(Study).where(wanted, is_theirs(caller)).order_by(Study.key))
     return [_summary(db, study, newest_version(db, study)) for study in studies]
 
 
 @router.post("/studies", status_code=201)
-def post_study(file: StudyFile, db: Writing, context: Context, _: SignedIn) -> StudyView:
+def post_study(file: StudyFile, db: Writing, context: Context, caller: SignedIn) -> StudyView:
     """Create a study from its file."""
-    version = create_study(db, file.yaml, context.clock.utc_now())
-    return _view(db, db.get_one(Study, version.study_id))
-
-
-@router.post("/studies/check")
-def post_check(file: StudyFile, db: Reading, _: SignedIn) -> CheckResult:
-    """Check a file without storing it."""
-    try:
-        loaded = check_study(db, file.yaml)
-    except InvalidConfig as error:
-        return CheckResult(ok=False, problems=[dict(problem) for problem in error.details])
-    return CheckResult(ok=True, key=loaded.protocol.key, content_hash=loaded.content_hash)
+    now = context.clock.utc_now()
+    version = create_study(db, file.yaml, now)
+    return _begun(db, version, caller, "study.created", now)
 
 
 @router.get("/studies/{key}")
-def get_study(key: str, db: Reading, _: SignedIn) -> StudyView:
-    """One study in full."""
-    return _view(db, study_by_key(db, key))
+def get_study(key: str, db: Reading, caller: SignedIn) -> StudyView:
+    """One study in full; an operator of a blinded study does not get its protocol."""
+    return _view(db, study_by_key(db, key), caller)
 
 
 @router.post("/studies/{key}/versions", status_code=201)
 def post_version(
-    key: str, file: StudyFile, db: Writing, context: Context, _: SignedIn
+    key: str, file: StudyFile, db: Writing, context: Context, caller: SignedIn
 ) -> StudyView:
     """Make a version of a study; the same content gives the version that has it."""
     study = study_by_key(db, key)
-    add_version(db, study, file.yaml, context.clock.utc_now())
-    return _view(db, study)
+    now = context.clock.utc_now()
+    version = add_version(db, study, file.yaml, now)
+    details = {"version": version.number, "content_hash": version.content_hash}
+    _note(db, caller, "study.version", study, now, details)
+    return _view(db, study, caller)
+
+
+@router.get("/studies/{key}/versions/{number}")
+def get_version(key: str, number: int, db: Reading, _: SignedIn) -> VersionDetail:
+    """One version in full."""
+    version = version_by_number(db, study_by_key(db, key), number)
+    return VersionDetail(
+        number=version.number,
+        content_hash=version.content_hash,
+        design_hash=version.design_hash,
+        yaml=version.source_yaml,
+        protocol=json.loads(version.canonical_json),
+        instruments=version.instruments,
+    )
+
+
+@router.get("/studies/{key}/diff")
+def get_diff(
+    key: str,
+    db: Reading,
+    _: SignedIn,
+    source: Annotated[VersionNumber, Query(alias="from")],
+    target: Annotated[VersionNumber, Query(alias="to")],
+) -> StudyDiff:
+    """What changed from one version to another."""
+    return compare_versions(db, study_by_key(db, key), source, target)
+
+
+@router.post("/studies/{key}/duplicate", status_code=201)
+def post_duplicate(
+    key: str, request: DuplicateRequest, db: Writing, context: Context, caller: SignedIn
+) -> StudyView:
+    """A copy under another key, with a ledger of its own."""
+    source = study_by_key(db, key)
+    now = context.clock.utc_now()
+    version = duplicate(db, source, key=request.key, title=request.title, now=now)
+    return _begun(db, version, caller, "study.duplicated", now, {"from": source.key})
+
+
+@router.post("/studies/{key}/archive")
+def post_archive(key: str, db: Writing, context: Context, caller: SignedIn) -> StudyView:
+    """Put a study away: it takes no new sessions until it is restored."""
+    study = study_by_key(db, key)
+    now = context.clock.utc_now()
+    archive(db, study, now)
+    _note(db, caller, "study.archived", study, now)
+    return _view(db, study, caller)
+
+
+@router.post("/studies/{key}/restore")
+def post_restore(key: str, db: Writing, context: Context, caller: SignedIn) -> StudyView:
+    """Take a study out again."""
+    study = study_by_key(db, key)
+    restore(db, study)
+    _note(db, caller, "study.restored", study, context.clock.utc_now())
+    return _view(db, study, caller)
+
+
+def _begun(
+    db: Session,
+    version: StudyVersion,
+    caller: Caller,
+    action: str,
+    now: datetime,
+    details: Mapping[str, object] | None = None,
+) -> StudyView:
+    """A study that has just been made is its maker's to see."""
+    study = db.get_one(Study, version.study_id)
+    add_member(db, caller, study)
+    _note(db, caller, action, study, now, details)
+    return _view(db, study, caller)
+
+
+def _note(
+    db: Session,
+    caller: Caller,
+    action: str,
+    study: Study,
+    now: datetime,
+    details: Mapping[str, object] | None = None,
+) -> None:
+    subject = f"study:{study.key}"
+    record(db, actor=caller.actor, action=action, subject=subject, details=details, now=now)
 
 
 def _summary(db: Session, study: Study, version: StudyVersion) -> StudySummary:
@@ -81,12 +169,14 @@ def _summary(db: Session, study: Study, version: StudyVersion) -> StudySummary:
         frozen=version.frozen_at is not None,
         session_counts=session_counts(db, study),
         created_at=study.created_at,
+        archived_at=study.archived_at,
     )
 
 
-def _view(db: Session, study: Study) -> StudyView:
+def _view(db: Session, study: Study, caller: Caller) -> StudyView:
     versions = versions_of(db, study)
     newest = versions[-1]
+    hidden = caller.role == "operator" and is_blind(db, caller, protocol_of(newest), None)
     return StudyView(
         **_summary(db, study, newest).model_dump(),
         languages=list(protocol_of(newest).languages),
@@ -99,6 +189,6 @@ def _view(db: Session, study: Study) -> StudyView:
             )
             for version in versions
         ],
-        protocol=json.loads(newest.canonical_json),
-        yaml=newest.source_yaml,
+        protocol=None if hidden else json.loads(newest.canonical_json),
+        yaml=None if hidden else newest.source_yaml,
     )

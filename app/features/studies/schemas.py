@@ -16,15 +16,6 @@ class StudyFile(BaseModel):
     yaml: str = Field(max_length=MAX_YAML_CHARACTERS)
 
 
-class CheckResult(BaseModel):
-    """Whether a file can be used, with every problem and its place."""
-
-    ok: bool
-    key: str | None = None
-    content_hash: str | None = None
-    problems: list[dict[str, Any]] = []
-
-
 class VersionView(BaseModel):
     """One version of a study."""
 
@@ -45,15 +36,16 @@ class StudySummary(BaseModel):
     frozen: bool
     session_counts: dict[str, int]
     created_at: datetime
+    archived_at: datetime | None
 
 
 class StudyView(StudySummary):
-    """A study with its newest version in full."""
+    """A study with its newest version in full; an operator of a blinded one gets no protocol."""
 
     languages: list[str]
     versions: list[VersionView]
-    protocol: dict[str, Any]
-    yaml: str
+    protocol: dict[str, Any] | None
+    yaml: str | None
 
 
 class AttemptView(BaseModel):
@@ -68,7 +60,7 @@ class AttemptView(BaseModel):
 
 
 class SlotRow(BaseModel):
-    """A slot of the ledger; `sequence` holds latencies in ms, null for a blinded operator."""
+    """A slot of the ledger; `sequence` holds latencies in ms, null for who must not know."""
 
     index: int
     block: int
@@ -91,7 +83,7 @@ class LedgerView(BaseModel):
     """The counterbalancing ledger of one kind of sessions."""
 
     kind: str
-    seed: int
+    seed: int | None
     when_full: str
     started: bool
     sequences: list[SequenceRow] | None

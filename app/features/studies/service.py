@@ -8,20 +8,14 @@ from pathlib import Path
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.errors import Conflict, InvalidConfig, NotFound
+from app.errors import Conflict, NotFound, NotNow
+from app.features.config_problems import invalid_config
+from app.features.instruments.service import instrument_of as instrument_of  # read with studies
+from app.features.instruments.service import newest_instruments as newest_instruments
+from app.features.instruments.service import parsed_instruments, save_instrument
 from app.models import InstrumentVersion, Study, StudySession, StudyVersion
-from app.protocol import (
-    ConfigError,
-    LoadedInstrument,
-    LoadedStudy,
-    StudyProtocol,
-    load_instrument,
-    load_study,
-    parse_instrument_json,
-    parse_study_json,
-)
+from app.protocol import ConfigError, LoadedStudy, StudyProtocol, load_study, parse_study_json
 from app.resources import study_configs_dir
-from app.science.instruments import Instrument
 
 
 @dataclass(frozen=True)
@@ -50,24 +44,6 @@ def _parse_study(_content_hash: str, canonical_json: str) -> StudyProtocol:
     return parse_study_json(canonical_json)
 
 
-def instrument_of(version: InstrumentVersion) -> Instrument:
-    """The typed instrument of a version."""
-    return _parse_instrument(version.content_hash, version.canonical_json)
-
-
-@lru_cache(maxsize=64)
-def _parse_instrument(_content_hash: str, canonical_json: str) -> Instrument:
-    return parse_instrument_json(canonical_json)
-
-
-def newest_instruments(db: Session) -> dict[str, InstrumentVersion]:
-    """The newest version of every instrument, by key."""
-    rows = db.scalars(
-        select(InstrumentVersion).order_by(InstrumentVersion.created_at, InstrumentVersion.id)
-    )
-    return {row.key: row for row in rows}
-
-
 def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVersion:
     """The wording of instrument `key` that this study version uses."""
     content_hash = version.instruments.get(key)
@@ -85,37 +61,10 @@ def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVe
 
 def check_study(db: Session, text: str) -> LoadedStudy:
     """Load a study file against the instruments at hand; InvalidConfig has every problem."""
-    instruments = {key: instrument_of(row) for key, row in newest_instruments(db).items()}
     try:
-        return load_study(text, instruments=instruments)
+        return load_study(text, instruments=parsed_instruments(db))
     except ConfigError as error:
-        raise _invalid_config("study", error) from error
-
-
-def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
-    """Store an instrument file as a version, or find the version with that content."""
-    try:
-        loaded: LoadedInstrument = load_instrument(text)
-    except ConfigError as error:
-        raise _invalid_config("instrument", error) from error
-    known = db.scalar(
-        select(InstrumentVersion).where(
-            InstrumentVersion.key == loaded.instrument.key,
-            InstrumentVersion.content_hash == loaded.content_hash,
-        )
-    )
-    if known is not None:
-        return known
-    row = InstrumentVersion(
-        key=loaded.instrument.key,
-        content_hash=loaded.content_hash,
-        source_yaml=text,
-        canonical_json=loaded.canonical_json,
-        created_at=now,
-    )
-    db.add(row)
-    db.flush()
-    return row
+        raise invalid_config("study", error) from error
 
 
 def create_study(db: Session, text: str, now: datetime) -> StudyVersion:
@@ -190,6 +139,29 @@ def versions_of(db: Session, study: Study) -> list[StudyVersion]:
     )
 
 
+def version_by_number(db: Session, study: Study, number: int) -> StudyVersion:
+    """The version of that number; raises NotFound."""
+    versions = versions_of(db, study)
+    for version in versions:
+        if version.number == number:
+            return version
+    raise NotFound(
+        f"the study has no version {number}",
+        value=number,
+        valid=[version.number for version in versions],
+    )
+
+
+def require_open(study: Study) -> None:
+    """Refuse new sessions of a study that was put away; raises NotNow."""
+    if study.archived_at is not None:
+        raise NotNow(
+            f"the study {study.key!r} is archived and takes no new sessions",
+            value=study.key,
+            remedy="Restore it on its page, or choose another study.",
+        )
+
+
 def newest_version(db: Session, study: Study) -> StudyVersion:
     """The version that new sessions take."""
     return versions_of(db, study)[-1]
@@ -218,24 +190,3 @@ def add_shipped(db: Session, now: datetime) -> None:
     if db.scalar(select(Study).limit(1)) is None:
         for path in files.studies:
             create_study(db, path.read_text(encoding="utf-8"), now)
-
-
-def _invalid_config(what: str, error: ConfigError) -> InvalidConfig:
-    problems = [
-        {
-            "path": problem.path,
-            "line": problem.line,
-            "column": problem.column,
-            "message": problem.message,
-            "value": problem.value,
-            "valid": problem.valid,
-            "remedy": problem.remedy,
-        }
-        for problem in error.problems
-    ]
-    count = len(problems)
-    return InvalidConfig(
-        f"the {what} file has {count} problem{'s' if count != 1 else ''}",
-        remedy="Mend the lines named below; nothing was stored.",
-        details=problems,
-    )

@@ -27,21 +27,22 @@ class Checkpointer:
     database: Database
     monotonic_s: Callable[[], float] = time.monotonic
     _next_s: float = 0.0
-    _copied_at: int = 0
 
     def turn(self) -> None:
         """Copy what has been written, if it is time to."""
         if not self.database.is_sqlite or self.monotonic_s() < self._next_s:
             return
         self._next_s = self.monotonic_s() + EVERY_S
-        with self.database.write_turn():
-            nothing_new = self.database.commits.number == self._copied_at
-        if nothing_new:
-            return
-        self._copy()
-        with self.database.write_turn():
-            if self.database.commits.number != self._copied_at and self._copy():
-                self._copied_at = self.database.commits.number
+        commits = self.database.commits
+        with commits.copying:
+            with self.database.write_turn():
+                nothing_new = commits.number == commits.copied
+            if nothing_new:
+                return
+            self._copy()
+            with self.database.write_turn():
+                if commits.number != commits.copied and self._copy():
+                    commits.copied = commits.number
 
     def _copy(self) -> bool:
         """Copy without waiting for anybody; whether nothing is left to copy."""

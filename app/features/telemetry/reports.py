@@ -3,7 +3,7 @@
 from datetime import datetime
 from typing import Any, cast
 
-from sqlalchemy import Table
+from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
@@ -116,10 +116,17 @@ def _act_on_phase(
         client_t_s=body.t_s,
         active_s=body.active_s,
         cause=body.cause,
+        completions=_completions(db, session_id, body.phase_id) if body.what == "time_up" else 0,
     )
     apply_command(db, context, session, command, actor="headset")
     if body.what == "ended":
         outcome.phases_ended.append(body.phase_id)
+
+
+def _completions(db: Session, session_id: str, phase_id: int) -> int:
+    count = select(func.count()).select_from(Completion)
+    of_phase = count.where(Completion.session_id == session_id, Completion.phase_id == phase_id)
+    return db.scalar(of_phase) or 0
 
 
 def _completion(session_id: str, epoch: int, body: CompletionReport) -> Completion:

@@ -8,7 +8,7 @@ database itself cannot write, nothing is acknowledged and everything waits.
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Protocol
 
@@ -16,6 +16,7 @@ from sqlalchemy.exc import DBAPIError
 
 from app.features.alarms.alarm import Change, Condition
 from app.features.context import AppContext
+from app.features.sessions.capture import closed_sessions, refusal
 from app.features.telemetry.ingest import Intake
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.reports import store_report
@@ -177,12 +178,16 @@ class TelemetryWriter:
         )
         ended: list[tuple[str, int]] = []
         with self.context.database.writing() as db:
+            closed = closed_sessions(db, {arrival.session_id for arrival in arrivals})
             intake = Intake(db, self.context, self.context.clock.utc_now())
             intake.positions.fetch(arrival.session_id for arrival in arrivals)
             intake.fetch_phases(
                 arrival.session_id for arrival in arrivals if isinstance(arrival.content, Report)
             )
             for arrival in arrivals:
+                if arrival.session_id in closed:
+                    _leave_out(arrival, flags)
+                    continue
                 _, outcome = outcomes.setdefault(id(arrival.sender), (arrival.sender, Outcome()))
                 _store_one(intake, arrival, flags, outcome)
                 outcome.messages += not isinstance(arrival.content, LossContent | AlarmContent)
@@ -193,6 +198,25 @@ class TelemetryWriter:
             sender.deliver(outcome)
         for session_id, phase_id in ended:
             self.on_phase_ended(session_id, phase_id)
+        _refuse(arrivals, closed)
+
+
+def _leave_out(arrival: Arrival, flags: Iterator[FrameFlags]) -> None:
+    """A batch that is not stored has its flags among those of the others all the same."""
+    if isinstance(arrival.content, BatchContent):
+        next(flags)
+
+
+def _refuse(arrivals: Sequence[Arrival], closed: Collection[str]) -> None:
+    """Tell each headset that sent something for a session that takes no more data."""
+    own = (LossContent, AlarmContent)
+    senders = {
+        id(one.sender): one.sender
+        for one in arrivals
+        if one.session_id in closed and not isinstance(one.content, own)
+    }
+    for sender in senders.values():
+        sender.fail(refusal())
 
 
 def _store_one(

@@ -16,6 +16,7 @@ import { useHashLocation } from "wouter/use-hash-location";
 import { signOut, useSignInAgain } from "./account";
 import { SessionPage } from "./cockpit/SessionPage";
 import { useTexts } from "./i18n";
+import { NetworkPage } from "./pages/network/NetworkPage";
 import { StudiesPage } from "./pages/Studies";
 import { StudyPage } from "./pages/study/StudyPage";
 import classes from "./Shell.module.css";
@@ -34,6 +35,7 @@ export function Shell({ account }: { readonly account: Account }): JSX.Element {
           {t("app.name")}
         </Link>
         <div className={classes.tools}>
+          <NetworkLink />
           <LanguageButton />
           <AppearanceButton />
           <AccountMenu account={account} />
@@ -42,6 +44,11 @@ export function Shell({ account }: { readonly account: Account }): JSX.Element {
       <main id="main" tabIndex={-1}>
         <Switch>
           <Route path="/sessions/:id">{({ id }) => <SessionPage key={id} id={id} />}</Route>
+          <Route path="/network">
+            <div className={classes.main}>
+              <NetworkPage />
+            </div>
+          </Route>
           <Route path="/studies/:key/:tab?">
             {({ key, tab }) => (
               <div className={classes.main}>
@@ -63,6 +70,23 @@ export function Shell({ account }: { readonly account: Account }): JSX.Element {
 /** The address after `#` belongs to the router, so skipping moves the focus itself. */
 function focusMain(): void {
   document.getElementById("main")?.focus();
+}
+
+function NetworkLink(): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Button
+      component={Link}
+      href="/network"
+      variant="subtle"
+      color="gray"
+      fw={450}
+      size="compact-sm"
+      leftSection={<Icon name="link" size={16} />}
+    >
+      {t("network.title")}
+    </Button>
+  );
 }
 
 function LanguageButton(): JSX.Element {

@@ -1,7 +1,14 @@
 /** The console's reads of the server, each with the key under which it is kept. */
-import { sessions, studies } from "@shared/api/endpoints";
+import { network, sessions, studies } from "@shared/api/endpoints";
 import type { Kind } from "@shared/api/types";
 import { keepPreviousData, queryOptions } from "@tanstack/react-query";
+
+/** Looked at again now and then: a laptop that joins another network gets other addresses. */
+export const networkQuery = queryOptions({
+  queryKey: ["network"],
+  queryFn: network.get,
+  refetchInterval: 30_000,
+});
 
 export const studiesQuery = queryOptions({ queryKey: ["studies"], queryFn: studies.list });
 

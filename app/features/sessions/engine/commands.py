@@ -35,11 +35,15 @@ class CompleteStep(Command):
 
 @dataclass(frozen=True, kw_only=True)
 class SubmitForm(Command):
-    """The form of step `step` was stored as `submission_id`."""
+    """The form of step `step` was stored as `submission_id`.
+
+    `rules_met`: which stop rules of the study its scores meet, by their index.
+    """
 
     step: int
     submission_id: str
     content_hash: str
+    rules_met: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +99,20 @@ class Stop(Command):
 
 
 @dataclass(frozen=True, kw_only=True)
+class LiftBlinding(Command):
+    """Show the condition of a blinded session before it is over."""
+
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverrideStop(Command):
+    """Go on although a stop rule was met."""
+
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
 class AddNote(Command):
     """Write something down."""
 
@@ -110,10 +128,31 @@ class KeepRefusedForm(Command):
 
 
 @dataclass(frozen=True, kw_only=True)
+class CorrectAnswers(Command):
+    """A stored answer is wrong; `content` holds the item, both values and the reason."""
+
+    submission_id: str
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
+class EraseData(Command):
+    """The participant's data are erased from this session, for the reason of this code.
+
+    `even_though_active`: a backup was restored in which the session had not ended yet.
+    """
+
+    erasure_id: str
+    reason_code: str
+    even_though_active: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
 class Report(Command):
     """What the headset did to a phase's clock, at its own time.
 
     `what`: started, paused, resumed, walk_back_started, walk_back_ended, time_up or ended.
+    `completions`: how many tasks of the phase are stored, counted by the server.
     """
 
     what: str
@@ -121,6 +160,7 @@ class Report(Command):
     client_t_s: float
     active_s: float
     cause: str = "headset"
+    completions: int = 0
 
 
 @dataclass(frozen=True, kw_only=True)

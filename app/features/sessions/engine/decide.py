@@ -4,6 +4,8 @@ from collections.abc import Sequence
 
 from app.features.sessions.engine import commands as c
 from app.features.sessions.engine import events as e
+from app.features.sessions.engine.beside import decide_beside
+from app.features.sessions.engine.holding import decide_override, require_not_held, rules_met
 from app.features.sessions.engine.phases import decide_headset_lost, decide_report
 from app.features.sessions.engine.refused import Refused
 from app.features.sessions.engine.state import (
@@ -12,9 +14,8 @@ from app.features.sessions.engine.state import (
     SessionState,
     SessionStatus,
 )
-from app.protocol.plan import Step
+from app.protocol.plan import TIMED_KINDS, Step
 
-TIMED = ("free_roam", "task")
 FORMS = ("form", "questionnaire")
 
 __all__ = ["Refused", "decide"]
@@ -25,10 +26,9 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
 
     A refusal leaves everything as it was. Ending the last step also ends the session.
     """
-    if isinstance(command, c.AddNote):
-        return [e.NoteAdded(**_ref(command.content))]
-    if isinstance(command, c.KeepRefusedForm):
-        return [e.FormRefused(submission_id=command.submission_id, **_ref(command.content))]
+    beside = decide_beside(state, command)
+    if beside is not None:
+        return beside
     if isinstance(command, c.Start):
         return _start(state)
     if state.status is not SessionStatus.ACTIVE or state.current is None:
@@ -40,7 +40,10 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
             if state.status is SessionStatus.PLANNED
             else "It has ended; only notes can be added.",
         )
+    require_not_held(state, command)
     match command:
+        case c.OverrideStop():
+            return decide_override(state, command)
         case c.Report():
             return _then_end(plan, state, decide_report(plan, state, command))
         case c.HeadsetLost():
@@ -116,12 +119,13 @@ def _submit(step: Step, command: c.SubmitForm) -> list[e.Event]:
             step=step.index,
             submission_id=command.submission_id,
             content_hash=command.content_hash,
-        )
+        ),
+        *rules_met(command),
     ]
 
 
 def _begin(step: Step, state: SessionState, command: c.BeginPhase) -> list[e.Event]:
-    _require_kind(step, TIMED, "begin a phase")
+    _require_kind(step, TIMED_KINDS, "begin a phase")
     if state.phase is not None:
         raise Refused(
             f"the phase is {state.phase.status} already",
@@ -164,7 +168,7 @@ def _redo(plan: Sequence[Step], state: SessionState, command: c.Redo) -> list[e.
             valid=list(range(current + 1)),
             remedy="Only the current step or an earlier one can be done over.",
         )
-    if target == current and state.phase is None and plan[target].kind not in TIMED:
+    if target == current and state.phase is None and plan[target].kind not in TIMED_KINDS:
         raise Refused(
             "the current step has not been done yet",
             value=target,

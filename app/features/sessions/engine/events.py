@@ -5,16 +5,18 @@ by id, with a salted hash: erasure removes content and salt, and the chain still
 """
 
 from dataclasses import asdict, dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 from pydantic import TypeAdapter
 
-
-@dataclass(frozen=True, kw_only=True)
-class Event:
-    """Base of all events; `type` is its stored name."""
-
-    type: ClassVar[str]
+from app.features.sessions.engine.event import Event as Event
+from app.features.sessions.engine.events_beside import AnswersCorrected as AnswersCorrected
+from app.features.sessions.engine.events_beside import BlindingLifted as BlindingLifted
+from app.features.sessions.engine.events_beside import DataErased as DataErased
+from app.features.sessions.engine.events_beside import FormRefused as FormRefused
+from app.features.sessions.engine.events_beside import NoteAdded as NoteAdded
+from app.features.sessions.engine.events_holding import StopRuleMet as StopRuleMet
+from app.features.sessions.engine.events_holding import StopRuleOverridden as StopRuleOverridden
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,25 +190,6 @@ class PhaseVoided(Event):
 
 
 @dataclass(frozen=True, kw_only=True)
-class NoteAdded(Event):
-    """The operator wrote a note."""
-
-    type = "note_added"
-    content_id: str
-    content_hash: str
-
-
-@dataclass(frozen=True, kw_only=True)
-class FormRefused(Event):
-    """Other answers came for a form that is stored: that one stands, these are kept beside."""
-
-    type = "form_refused"
-    submission_id: str
-    content_id: str
-    content_hash: str
-
-
-@dataclass(frozen=True, kw_only=True)
 class SessionEnded(Event):
     """The session is over: completed, aborted or withdrawn."""
 
@@ -222,6 +205,8 @@ EVENT_TYPES: dict[str, type[Event]] = {
         SessionStarted,
         StepCompleted,
         FormSubmitted,
+        StopRuleMet,
+        StopRuleOverridden,
         AvatarMaterialised,
         StepSkipped,
         StepReopened,
@@ -236,8 +221,11 @@ EVENT_TYPES: dict[str, type[Event]] = {
         PhaseFrozen,
         PhaseEnded,
         PhaseVoided,
+        BlindingLifted,
         NoteAdded,
         FormRefused,
+        AnswersCorrected,
+        DataErased,
         SessionEnded,
     )
 }

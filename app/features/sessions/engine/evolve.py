@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from app.features.sessions.engine import events as e
 from app.features.sessions.engine.state import (
+    Hold,
     PhaseState,
     PhaseStatus,
     SessionState,
@@ -44,9 +45,23 @@ def _applied(state: SessionState, event: e.Event) -> SessionState:
         case e.PhaseVoided():
             return _void_phase(state, event)
         case e.SessionEnded(status=status):
-            return replace(state, status=SessionStatus(status), current=None)
+            return replace(state, status=SessionStatus(status), current=None, held=None)
+        case e.StopRuleMet() | e.StopRuleOverridden() | e.DataErased():
+            return _marked(state, event)
         case _:
             return replace(state, phase=_clocked(state.phase, event))
+
+
+def _marked(state: SessionState, event: e.Event) -> SessionState:
+    """The state after an event that moves nothing: a hold, its end, an erasure."""
+    match event:
+        case e.StopRuleMet(rule=rule, submission_id=submission_id):
+            # Of several rules that one form meets, the first is named.
+            return replace(state, held=state.held or Hold(rule, submission_id))
+        case e.StopRuleOverridden():
+            return replace(state, held=None)
+        case _:
+            return replace(state, erased=True)
 
 
 def _clocked(phase: PhaseState | None, event: e.Event) -> PhaseState | None:

@@ -2,7 +2,7 @@
 
 The headset runs the phase on its own monotonic clock and reports each change with its active time;
 here the report is checked against the state. Active time never runs backwards and a phase cannot
-end before its duration is used up.
+end before its duration is used up; a practice may once enough tasks are completed.
 
 When the headset is lost the server assumes that the clock stands. What the headset did before it
 noticed is still in its journal and comes first when it is back: these reports correct the
@@ -58,9 +58,15 @@ def decide_report(plan: Sequence[Step], state: SessionState, report: c.Report) -
             valid=list(_EXPECTED[report.what]),
             remedy="Follow the newest state message.",
         )
-    _require_active_time(phase, report, plan[phase.step].duration_s or 0.0)
+    _require_active_time(phase, report, plan[phase.step])
     # A step back within the tolerance is rounding: what is known stands.
     return [_event(replace(report, active_s=max(phase.active_s, report.active_s)), phase)]
+
+
+def _has_enough(step: Step, report: c.Report) -> bool:
+    """Whether a practice may end before its time: as many tasks are done as the study wants."""
+    wanted = step.until_completions
+    return wanted is not None and report.completions >= wanted
 
 
 def _corrects(phase: PhaseState, report: c.Report) -> bool:
@@ -124,10 +130,11 @@ def decide_headset_lost(
     ]
 
 
-def _require_active_time(phase: PhaseState, report: c.Report, duration_s: float) -> None:
+def _require_active_time(phase: PhaseState, report: c.Report, step: Step) -> None:
+    duration_s = step.duration_s or 0.0
     low = max(0.0, phase.active_s - 1e-6)
     high = duration_s + FRAME_TOLERANCE_S
-    if report.what == "time_up":
+    if report.what == "time_up" and not _has_enough(step, report):
         low = max(low, duration_s - FRAME_TOLERANCE_S)
     if report.what == "started":
         high = FRAME_TOLERANCE_S

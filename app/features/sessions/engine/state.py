@@ -70,8 +70,20 @@ class PhaseState:
 
 
 @dataclass(frozen=True)
+class Hold:
+    """Why the session may not simply go on: a form met a stop rule of the study (its index)."""
+
+    rule: int
+    submission_id: str
+
+
+@dataclass(frozen=True)
 class SessionState:
-    """The whole state. `version` is the number of events folded so far."""
+    """The whole state. `version` is the number of events folded so far.
+
+    `held`: set from a stop rule that was met until the operator goes on with a reason.
+    `erased`: the participant's data are gone, and nothing is added any more.
+    """
 
     version: int
     status: SessionStatus
@@ -80,6 +92,8 @@ class SessionState:
     phase: PhaseState | None = None
     ended_phases: tuple[PhaseState, ...] = ()
     materialised: bool = False
+    held: Hold | None = None
+    erased: bool = False
 
     @property
     def next_phase_id(self) -> int:

@@ -100,8 +100,26 @@ function CodeShown({ pairing, device, onRenew }: CodeShownProps): JSX.Element {
         />
       )}
       <span className={classes.url}>{pairing.url}</span>
+      <FirstTime pairing={pairing} />
       <span className="numbers">{t("pairing.left", { time: clockFace(seconds(left)) })}</span>
     </div>
+  );
+}
+
+/** Folded: needed once for each device, and then in the way. */
+function FirstTime({ pairing }: { readonly pairing: Pairing }): JSX.Element | null {
+  const { t } = useTexts();
+  if (pairing.help_url === null || pairing.help_qr_svg === null) return null;
+  return (
+    <details className={classes.first}>
+      <summary>{t("pairing.first")}</summary>
+      <img
+        className={classes.qr}
+        alt={t("pairing.first.qr")}
+        src={`data:image/svg+xml;charset=utf-8,${encodeURIComponent(pairing.help_qr_svg)}`}
+      />
+      <span className={classes.url}>{pairing.help_url}</span>
+    </details>
   );
 }
 

@@ -7,13 +7,17 @@ import {
 } from "@shared/i18n/i18n";
 import { de } from "./de";
 import { en } from "./en";
+import { networkDe, networkEn } from "./networkTexts";
 
-export type Key = KeyOf<typeof en>;
+const allEn = { ...en, ...networkEn };
+const allDe = { ...de, ...networkDe };
+
+export type Key = KeyOf<typeof allEn>;
 
 const REMEMBERED = "reembody.console.language";
 const wanted = [localStorage.getItem(REMEMBERED) ?? [], navigator.languages].flat();
 
-export const translations = createTranslations({ en, de }, preferredLanguage(wanted));
+export const translations = createTranslations({ en: allEn, de: allDe }, preferredLanguage(wanted));
 translations.on("languageChanged", (language) => localStorage.setItem(REMEMBERED, language));
 
 export const useTexts = (): Texts<Key> => useTranslations<Key>();

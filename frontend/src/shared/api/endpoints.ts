@@ -12,6 +12,7 @@ import type {
   Device,
   Kind,
   Ledger,
+  Network,
   Pairing,
   Receipt,
   SessionEvent,
@@ -32,6 +33,10 @@ export const accounts = {
     answer<{ account: Account }>(server.POST("/api/login", { body: { username, password } })),
   logout: () => answer<void>(server.POST("/api/logout")),
   me: () => answer<{ account: Account | null }>(server.GET("/api/me")),
+};
+
+export const network = {
+  get: () => answer<Network>(server.GET("/api/network")),
 };
 
 export const studies = {

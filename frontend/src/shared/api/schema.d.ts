@@ -44,6 +44,90 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/instruments": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Instruments
+         * @description The newest version of every instrument.
+         */
+        readonly get: operations["get_instruments_api_instruments_get"];
+        readonly put?: never;
+        /**
+         * Post Instrument
+         * @description Store a version. Studies that exist keep the wording they were made with.
+         */
+        readonly post: operations["post_instrument_api_instruments_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/instruments/{key}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Instrument
+         * @description One instrument in full, with all its versions.
+         */
+        readonly get: operations["get_instrument_api_instruments__key__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/instruments/check": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Instrument Check
+         * @description Check a file without storing it.
+         */
+        readonly post: operations["post_instrument_check_api_instruments_check_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/instruments/score": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Score
+         * @description Score answers without storing them, with every step.
+         */
+        readonly post: operations["post_score_api_instruments_score_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/login": {
         readonly parameters: {
             readonly query?: never;
@@ -96,6 +180,26 @@ export interface paths {
          * @description Who is signed in; null where nobody is.
          */
         readonly get: operations["get_me_api_me_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/network": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Network
+         * @description Addresses, certificate and help page, as they are now.
+         */
+        readonly get: operations["get_network_api_network_get"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -354,7 +458,7 @@ export interface paths {
         };
         /**
          * Get Studies
-         * @description All studies with their newest version.
+         * @description All studies with their newest version; `archived`: those that were put away instead.
          */
         readonly get: operations["get_studies_api_studies_get"];
         readonly put?: never;
@@ -383,6 +487,26 @@ export interface paths {
         readonly get: operations["get_study_api_studies__key__get"];
         readonly put?: never;
         readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/archive": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Archive
+         * @description Put a study away: it takes no new sessions until it is restored.
+         */
+        readonly post: operations["post_archive_api_studies__key__archive_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -429,6 +553,50 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/studies/{key}/diff": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Diff
+         * @description What changed from one version to another.
+         */
+        readonly get: operations["get_diff_api_studies__key__diff_get"];
+        readonly put?: never;
+        /**
+         * Post Diff
+         * @description What a draft would change in the newest version.
+         */
+        readonly post: operations["post_diff_api_studies__key__diff_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/duplicate": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Duplicate
+         * @description A copy under another key, with a ledger of its own.
+         */
+        readonly post: operations["post_duplicate_api_studies__key__duplicate_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/studies/{key}/export": {
         readonly parameters: {
             readonly query?: never;
@@ -463,6 +631,26 @@ export interface paths {
         readonly get: operations["get_ledger_api_studies__key__ledger_get"];
         readonly put?: never;
         readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/restore": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Restore
+         * @description Take a study out again.
+         */
+        readonly post: operations["post_restore_api_studies__key__restore_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -513,6 +701,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/studies/{key}/versions/{number}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Version
+         * @description One version in full.
+         */
+        readonly get: operations["get_version_api_studies__key__versions__number__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/studies/check": {
         readonly parameters: {
             readonly query?: never;
@@ -527,6 +735,66 @@ export interface paths {
          * @description Check a file without storing it.
          */
         readonly post: operations["post_check_api_studies_check_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/edit": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Edit
+         * @description Change values of a text by their paths; comments and layout of the rest stay.
+         */
+        readonly post: operations["post_edit_api_studies_edit_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/timeline": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Timeline
+         * @description A dry run of one participant.
+         */
+        readonly post: operations["post_timeline_api_studies_timeline_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/study-schema": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Schema
+         * @description The JSON schema of study files, from which the editor makes its form.
+         */
+        readonly get: operations["get_schema_api_study_schema_get"];
+        readonly put?: never;
+        readonly post?: never;
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -633,6 +901,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/templates": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Templates
+         * @description Studies to begin with.
+         */
+        readonly get: operations["get_templates_api_templates_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -656,6 +944,18 @@ export interface components {
         readonly Acknowledgement: {
             /** Step Index */
             readonly step_index: number;
+        };
+        /**
+         * AddressView
+         * @description An address for devices, and the QR code of the tablet's page there.
+         */
+        readonly AddressView: {
+            /** Tablet Qr Svg */
+            readonly tablet_qr_svg: string;
+            /** Tablet Url */
+            readonly tablet_url: string;
+            /** Url */
+            readonly url: string;
         };
         /**
          * Administration
@@ -718,6 +1018,18 @@ export interface components {
             readonly value: number | null;
         };
         /**
+         * AnswerProblemView
+         * @description Why an answer cannot be taken.
+         */
+        readonly AnswerProblemView: {
+            /** Item */
+            readonly item: string;
+            /** Message */
+            readonly message: string;
+            /** Remedy */
+            readonly remedy: string;
+        };
+        /**
          * AttemptView
          * @description A session that holds or held a slot.
          */
@@ -742,6 +1054,44 @@ export interface components {
             readonly session_id: string;
         };
         /**
+         * CableView
+         * @description A headset on this machine's USB cable: run `command`, then open `url` in the headset.
+         */
+        readonly CableView: {
+            /** Command */
+            readonly command: string;
+            /** Url */
+            readonly url: string;
+        };
+        /**
+         * CertificateView
+         * @description The certificate behind https.
+         *
+         *     `source` is `authority` (the built-in one, which devices install) or `files` (the lab's own).
+         *     `fingerprint` is the SHA-256 that a device shows: of the authority, or of the lab's certificate.
+         *     `uncovered` are addresses of this machine that it is not valid for.
+         */
+        readonly CertificateView: {
+            /** Authority Expires At */
+            readonly authority_expires_at: string | null;
+            /**
+             * Expires At
+             * Format: date-time
+             */
+            readonly expires_at: string;
+            /** Fingerprint */
+            readonly fingerprint: string;
+            /** Server Fingerprint */
+            readonly server_fingerprint: string;
+            /**
+             * Source
+             * @enum {string}
+             */
+            readonly source: "authority" | "files";
+            /** Uncovered */
+            readonly uncovered: readonly string[];
+        };
+        /**
          * ChainCheck
          * @description Whether a log verifies; `broken_at` is the first seq that does not.
          */
@@ -754,12 +1104,38 @@ export interface components {
             readonly ok: boolean;
         };
         /**
+         * ChangeRequest
+         * @description One change; see `app.protocol.editing.Change`.
+         */
+        readonly ChangeRequest: {
+            /**
+             * Action
+             * @default set
+             * @enum {string}
+             */
+            readonly action: "set" | "remove" | "insert" | "move";
+            /** Path */
+            readonly path: readonly (string | number)[];
+            /**
+             * To
+             * @default 0
+             */
+            readonly to: number;
+            /** Value */
+            readonly value?: unknown;
+        };
+        /**
          * CheckResult
          * @description Whether a file can be used, with every problem and its place.
+         *
+         *     `tree`: the values of the file as they stand, whenever it can be read at all, so that a form can
+         *     show them while there are problems.
          */
         readonly CheckResult: {
             /** Content Hash */
             readonly content_hash?: string | null;
+            /** Design Hash */
+            readonly design_hash?: string | null;
             /** Key */
             readonly key?: string | null;
             /** Ok */
@@ -768,9 +1144,12 @@ export interface components {
              * Problems
              * @default []
              */
-            readonly problems: readonly {
+            readonly problems: readonly components["schemas"]["ProblemView"][];
+            readonly summary?: components["schemas"]["StudyFigures"] | null;
+            /** Tree */
+            readonly tree?: {
                 readonly [key: string]: unknown;
-            }[];
+            } | null;
         };
         /**
          * ColumnView
@@ -906,6 +1285,79 @@ export interface components {
             readonly paired_at: string;
         };
         /**
+         * DifferenceView
+         * @description One place that differs; `before` or `after` is null where it was not there.
+         */
+        readonly DifferenceView: {
+            /** After */
+            readonly after?: unknown;
+            /** Before */
+            readonly before?: unknown;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "added" | "removed" | "changed";
+            /** Path */
+            readonly path: string;
+        };
+        /**
+         * DraftFile
+         * @description A draft to compare with the newest version.
+         */
+        readonly DraftFile: {
+            /** Yaml */
+            readonly yaml: string;
+        };
+        /**
+         * DuplicateRequest
+         * @description A copy of a study under another key, with another title if wished, by language.
+         */
+        readonly DuplicateRequest: {
+            /** Key */
+            readonly key: string;
+            /** Title */
+            readonly title?: {
+                readonly [key: string]: string;
+            } | null;
+        };
+        /**
+         * EditedFile
+         * @description The text after the changes, comments and layout kept.
+         */
+        readonly EditedFile: {
+            /** Yaml */
+            readonly yaml: string;
+        };
+        /**
+         * EditRequest
+         * @description Changes of a form to a file's text, done one after the other.
+         */
+        readonly EditRequest: {
+            /** Changes */
+            readonly changes: readonly components["schemas"]["ChangeRequest"][];
+            /** Yaml */
+            readonly yaml: string;
+        };
+        /**
+         * EstimateRule
+         * @description The rule by which steps without a set duration are estimated; all in seconds.
+         */
+        readonly EstimateRule: {
+            /** By Hand S */
+            readonly by_hand_s: {
+                readonly [key: string]: number;
+            };
+            /** Item S */
+            readonly item_s: {
+                readonly [key: string]: number;
+            };
+            /** Opening S */
+            readonly opening_s: number;
+            /** Reading Words Per S */
+            readonly reading_words_per_s: number;
+        };
+        /**
          * EventView
          * @description A row of the event log.
          */
@@ -949,6 +1401,26 @@ export interface components {
             readonly title: string;
         };
         /**
+         * FormulaView
+         * @description A score with its formula, and the range its author states.
+         */
+        readonly FormulaView: {
+            /** Formula */
+            readonly formula: string;
+            /** Key */
+            readonly key: string;
+            /** Label */
+            readonly label: {
+                readonly [key: string]: string;
+            };
+            /** Maximum */
+            readonly maximum: number | null;
+            /** Minimum */
+            readonly minimum: number | null;
+            /** Note */
+            readonly note: string | null;
+        };
+        /**
          * Health
          * @description Whether the server and its database answer, and whether the record can be written.
          *
@@ -983,10 +1455,190 @@ export interface components {
             /** Stated */
             readonly stated?: number | null;
         };
+        /**
+         * HelpView
+         * @description The page, over plain http, on which a device gets the lab's certificate.
+         */
+        readonly HelpView: {
+            /** Qr Svg */
+            readonly qr_svg: string;
+            /** Url */
+            readonly url: string;
+        };
         /** HTTPValidationError */
         readonly HTTPValidationError: {
             /** Detail */
             readonly detail?: readonly components["schemas"]["ValidationError"][];
+        };
+        /**
+         * InstrumentChange
+         * @description An instrument whose wording differs: content hashes, null where it is not asked.
+         */
+        readonly InstrumentChange: {
+            /** After */
+            readonly after: string | null;
+            /** Before */
+            readonly before: string | null;
+            /** Key */
+            readonly key: string;
+        };
+        /**
+         * InstrumentCheck
+         * @description Whether a file can be used: every problem with its place, else what it becomes.
+         *
+         *     `known`: the very content is stored already. `replaces`: there are other contents of this key.
+         */
+        readonly InstrumentCheck: {
+            /** Content Hash */
+            readonly content_hash?: string | null;
+            /** Key */
+            readonly key?: string | null;
+            /**
+             * Known
+             * @default false
+             */
+            readonly known: boolean;
+            /** Ok */
+            readonly ok: boolean;
+            readonly preview?: components["schemas"]["Preview"] | null;
+            /**
+             * Problems
+             * @default []
+             */
+            readonly problems: readonly components["schemas"]["ProblemView"][];
+            /**
+             * Replaces
+             * @default false
+             */
+            readonly replaces: boolean;
+        };
+        /**
+         * InstrumentDetail
+         * @description An instrument in full; `versions` from the oldest to the newest.
+         *
+         *     `preview`: a form of it to draw, in the shape in which tablets get their forms.
+         */
+        readonly InstrumentDetail: {
+            /** Content Hash */
+            readonly content_hash: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Items */
+            readonly items: number;
+            /** Key */
+            readonly key: string;
+            /** Languages */
+            readonly languages: readonly string[];
+            /** Minutes */
+            readonly minutes: number;
+            readonly preview: components["schemas"]["Preview"];
+            readonly provenance: components["schemas"]["ProvenanceView"];
+            /** Scored Items */
+            readonly scored_items: number;
+            /** Scores */
+            readonly scores: readonly components["schemas"]["FormulaView"][];
+            /** Stored Versions */
+            readonly stored_versions: number;
+            /** Title */
+            readonly title: {
+                readonly [key: string]: string;
+            };
+            /** Used By */
+            readonly used_by: readonly string[];
+            /** Used By Older */
+            readonly used_by_older: readonly string[];
+            /** Version */
+            readonly version: number;
+            /** Versions */
+            readonly versions: readonly components["schemas"]["InstrumentVersionView"][];
+            /** Yaml */
+            readonly yaml: string;
+        };
+        /**
+         * InstrumentFile
+         * @description An instrument as YAML text.
+         */
+        readonly InstrumentFile: {
+            /** Yaml */
+            readonly yaml: string;
+        };
+        /**
+         * InstrumentSummary
+         * @description The newest version of an instrument in the library.
+         *
+         *     `version` is the number in the file; `stored_versions` counts the contents stored under the key.
+         *     `minutes` is how long filling it in takes by our rough rule. `used_by`: keys of studies whose
+         *     newest version asks this wording; `used_by_older`: those that ask an older one.
+         */
+        readonly InstrumentSummary: {
+            /** Content Hash */
+            readonly content_hash: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Items */
+            readonly items: number;
+            /** Key */
+            readonly key: string;
+            /** Languages */
+            readonly languages: readonly string[];
+            /** Minutes */
+            readonly minutes: number;
+            readonly provenance: components["schemas"]["ProvenanceView"];
+            /** Scored Items */
+            readonly scored_items: number;
+            /** Scores */
+            readonly scores: readonly components["schemas"]["FormulaView"][];
+            /** Stored Versions */
+            readonly stored_versions: number;
+            /** Title */
+            readonly title: {
+                readonly [key: string]: string;
+            };
+            /** Used By */
+            readonly used_by: readonly string[];
+            /** Used By Older */
+            readonly used_by_older: readonly string[];
+            /** Version */
+            readonly version: number;
+        };
+        /**
+         * InstrumentVersionView
+         * @description One stored content of an instrument, with the studies that ask it.
+         */
+        readonly InstrumentVersionView: {
+            /** Content Hash */
+            readonly content_hash: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Used By */
+            readonly used_by: readonly string[];
+            /** Version */
+            readonly version: number;
+            /** Yaml */
+            readonly yaml: string;
+        };
+        /**
+         * ItemStep
+         * @description An item on its way into the scores: as answered, and as the formulas get it.
+         */
+        readonly ItemStep: {
+            /** Item */
+            readonly item: string;
+            /** Raw */
+            readonly raw: number | null;
+            /** Recoded */
+            readonly recoded: number | null;
+            /** Scored */
+            readonly scored: boolean;
         };
         /**
          * LanguageChoice
@@ -1041,6 +1693,26 @@ export interface components {
             readonly started: boolean;
             /** When Full */
             readonly when_full: string;
+        };
+        /**
+         * NetworkView
+         * @description How devices reach the server now.
+         *
+         *     `mode` is `loopback` (this machine only), `lan` (also https) or `without_tls` (unencrypted).
+         */
+        readonly NetworkView: {
+            /** Addresses */
+            readonly addresses: readonly components["schemas"]["AddressView"][];
+            readonly cable: components["schemas"]["CableView"];
+            readonly certificate: components["schemas"]["CertificateView"] | null;
+            readonly help: components["schemas"]["HelpView"] | null;
+            /** Local Url */
+            readonly local_url: string;
+            /**
+             * Mode
+             * @enum {string}
+             */
+            readonly mode: "loopback" | "lan" | "without_tls";
         };
         /**
          * NewPairing
@@ -1114,7 +1786,8 @@ export interface components {
          * @description A code that works once, until `expires_at`; `url` and `qr_svg` open the page with it.
          *
          *     A headset's client is given the address of the server and types the code; it has no page to
-         *     scan, so its `qr_svg` is null.
+         *     scan, so its `qr_svg` is null. `help_url` is the page on which a device that comes for the first
+         *     time gets the lab's certificate; null where there is nothing to install.
          */
         readonly PairingView: {
             /** Code */
@@ -1129,6 +1802,10 @@ export interface components {
              * Format: date-time
              */
             readonly expires_at: string;
+            /** Help Qr Svg */
+            readonly help_qr_svg: string | null;
+            /** Help Url */
+            readonly help_url: string | null;
             /** Qr Svg */
             readonly qr_svg: string | null;
             /** Url */
@@ -1205,6 +1882,65 @@ export interface components {
             readonly step_index: number;
         };
         /**
+         * Preview
+         * @description An instrument as a form: its content, and the items in one possible order.
+         */
+        readonly Preview: {
+            /** Instrument */
+            readonly instrument: {
+                readonly [key: string]: unknown;
+            };
+            /** Item Order */
+            readonly item_order: readonly string[];
+            /** Languages */
+            readonly languages: readonly string[];
+            /** Minutes */
+            readonly minutes: number;
+            /** Recode */
+            readonly recode: string | null;
+            /** Scores */
+            readonly scores: readonly components["schemas"]["FormulaView"][];
+            /** Seed */
+            readonly seed: number;
+        };
+        /**
+         * ProblemView
+         * @description One thing to correct in a file: where, what, what is valid, what to do. Lines from 1.
+         */
+        readonly ProblemView: {
+            /** Column */
+            readonly column: number;
+            /** Line */
+            readonly line: number;
+            /** Message */
+            readonly message: string;
+            /** Path */
+            readonly path: string;
+            /**
+             * Remedy
+             * @default
+             */
+            readonly remedy: string;
+            /** Valid */
+            readonly valid?: unknown;
+            /** Value */
+            readonly value?: unknown;
+        };
+        /**
+         * ProvenanceView
+         * @description Where an instrument comes from, and how far that was checked.
+         */
+        readonly ProvenanceView: {
+            /** Licence */
+            readonly licence: string;
+            /** Notes */
+            readonly notes: readonly string[];
+            /** Source */
+            readonly source: string;
+            /** Verified */
+            readonly verified: string;
+        };
+        /**
          * Receipt
          * @description Proof that the form is stored; `duplicate` if it was stored before.
          */
@@ -1218,6 +1954,32 @@ export interface components {
              * Format: date-time
              */
             readonly stored_at: string;
+        };
+        /**
+         * ScoreStep
+         * @description A score: its formula, the same with the values put in, and what comes out.
+         *
+         *     `missing`: items without an answer that leave it without a value.
+         */
+        readonly ScoreStep: {
+            /** Filled In */
+            readonly filled_in: string;
+            /** Formula */
+            readonly formula: string;
+            /** Key */
+            readonly key: string;
+            /** Label */
+            readonly label: {
+                readonly [key: string]: string;
+            };
+            /** Maximum */
+            readonly maximum: number | null;
+            /** Minimum */
+            readonly minimum: number | null;
+            /** Missing */
+            readonly missing: readonly string[];
+            /** Value */
+            readonly value: number | null;
         };
         /**
          * ScoreView
@@ -1572,6 +2334,59 @@ export interface components {
             readonly stream: string;
         };
         /**
+         * StudyDiff
+         * @description What differs between two versions, or between one and a draft (`to` is then null).
+         *
+         *     `same`: the content is the same, whatever the layout. `new_ledger`: conditions or orders differ,
+         *     so that new sessions begin a ledger of their own. `under_way`: sessions that are planned or
+         *     running and keep the version they began with. `text`: the files in unified format.
+         */
+        readonly StudyDiff: {
+            /** Changes */
+            readonly changes: readonly components["schemas"]["DifferenceView"][];
+            /** Instruments */
+            readonly instruments: readonly components["schemas"]["InstrumentChange"][];
+            /** New Ledger */
+            readonly new_ledger: boolean;
+            /** Same */
+            readonly same: boolean;
+            /** Source */
+            readonly source: number;
+            /** Target */
+            readonly target: number | null;
+            /** Text */
+            readonly text: string;
+            /** Under Way */
+            readonly under_way: number;
+        };
+        /**
+         * StudyFigures
+         * @description What a study asks for: the size of its design and the length of a visit.
+         *
+         *     `slots`: participants until the initial ledger is full. `planned_minutes` is what the protocol
+         *     sets for each visit; `minutes` adds our rough estimate of forms and texts.
+         */
+        readonly StudyFigures: {
+            /** Administrations */
+            readonly administrations: number;
+            /** Blocks */
+            readonly blocks: number;
+            /** Conditions */
+            readonly conditions: number;
+            /** Instruments */
+            readonly instruments: readonly string[];
+            /** Minutes */
+            readonly minutes: number;
+            /** Orders */
+            readonly orders: number;
+            /** Planned Minutes */
+            readonly planned_minutes: number;
+            /** Replicates */
+            readonly replicates: number;
+            /** Slots */
+            readonly slots: number;
+        };
+        /**
          * StudyFile
          * @description A study as YAML text.
          */
@@ -1584,6 +2399,8 @@ export interface components {
          * @description A study in the list.
          */
         readonly StudySummary: {
+            /** Archived At */
+            readonly archived_at: string | null;
             /** Content Hash */
             readonly content_hash: string;
             /**
@@ -1611,6 +2428,8 @@ export interface components {
          * @description A study with its newest version in full.
          */
         readonly StudyView: {
+            /** Archived At */
+            readonly archived_at: string | null;
             /** Content Hash */
             readonly content_hash: string;
             /**
@@ -1699,6 +2518,141 @@ export interface components {
             /** Version */
             readonly version: number;
         };
+        /**
+         * TemplateView
+         * @description A study to begin with. `key` names the file, not the study in it.
+         */
+        readonly TemplateView: {
+            /** Description */
+            readonly description: {
+                readonly [key: string]: string;
+            };
+            /** Key */
+            readonly key: string;
+            /** Title */
+            readonly title: {
+                readonly [key: string]: string;
+            };
+            /** Yaml */
+            readonly yaml: string;
+        };
+        /**
+         * TimelineRequest
+         * @description A dry run of one participant: by slot of the ledger, or by the order's place in the list.
+         */
+        readonly TimelineRequest: {
+            /**
+             * Language
+             * @default en
+             */
+            readonly language: string;
+            /** Sequence Index */
+            readonly sequence_index?: number | null;
+            /** Slot */
+            readonly slot?: number | null;
+            /** Yaml */
+            readonly yaml: string;
+        };
+        /**
+         * TimelineStep
+         * @description A step of the visit; times in seconds from its begin. `estimated`: by a rule of ours.
+         *
+         *     `text` and `title` are in the language asked for. `condition_label` is that of the study.
+         */
+        readonly TimelineStep: {
+            /** Block */
+            readonly block: number | null;
+            /** Condition */
+            readonly condition: string | null;
+            /** Condition Label */
+            readonly condition_label: string | null;
+            /** Duration S */
+            readonly duration_s: number | null;
+            /** Estimated */
+            readonly estimated: boolean;
+            /** Freeze S */
+            readonly freeze_s: number | null;
+            /** Index */
+            readonly index: number;
+            /** Instrument */
+            readonly instrument: string | null;
+            /** Key */
+            readonly key: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "task" | "questionnaire" | "debrief";
+            /** Latency Ms */
+            readonly latency_ms: number | null;
+            /** Length S */
+            readonly length_s: number;
+            /** Limb */
+            readonly limb: string | null;
+            /** Preparation S */
+            readonly preparation_s: number | null;
+            /** Start S */
+            readonly start_s: number;
+            /** Text */
+            readonly text: string | null;
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * TimelineView
+         * @description One participant's visit. `replicate` counts from 1.
+         */
+        readonly TimelineView: {
+            /** Language */
+            readonly language: string;
+            /** Languages */
+            readonly languages: readonly string[];
+            /** Latencies Ms */
+            readonly latencies_ms: readonly number[];
+            /** Planned S */
+            readonly planned_s: number;
+            /** Replicate */
+            readonly replicate: number;
+            readonly rule: components["schemas"]["EstimateRule"];
+            /** Sequence */
+            readonly sequence: readonly string[];
+            /** Slot */
+            readonly slot: number;
+            /** Slots */
+            readonly slots: number;
+            /** Steps */
+            readonly steps: readonly components["schemas"]["TimelineStep"][];
+            /** Total S */
+            readonly total_s: number;
+        };
+        /**
+         * TryRequest
+         * @description Answers to score, by the instrument in a text or by the newest stored one of that key.
+         */
+        readonly TryRequest: {
+            /** Answers */
+            readonly answers: {
+                readonly [key: string]: boolean | number | string | null;
+            };
+            /** Key */
+            readonly key?: string | null;
+            /** Yaml */
+            readonly yaml?: string | null;
+        };
+        /**
+         * TryResult
+         * @description The scoring of one filled-in form, step by step; `problems` are answers that do not fit.
+         */
+        readonly TryResult: {
+            /** Items */
+            readonly items: readonly components["schemas"]["ItemStep"][];
+            /** Problems */
+            readonly problems: readonly components["schemas"]["AnswerProblemView"][];
+            /** Recode */
+            readonly recode: string | null;
+            /** Scores */
+            readonly scores: readonly components["schemas"]["ScoreStep"][];
+        };
         /** ValidationError */
         readonly ValidationError: {
             /** Context */
@@ -1711,6 +2665,28 @@ export interface components {
             readonly msg: string;
             /** Error Type */
             readonly type: string;
+        };
+        /**
+         * VersionDetail
+         * @description One version in full.
+         */
+        readonly VersionDetail: {
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Design Hash */
+            readonly design_hash: string;
+            /** Instruments */
+            readonly instruments: {
+                readonly [key: string]: string;
+            };
+            /** Number */
+            readonly number: number;
+            /** Protocol */
+            readonly protocol: {
+                readonly [key: string]: unknown;
+            };
+            /** Yaml */
+            readonly yaml: string;
         };
         /**
          * VersionView
@@ -1798,6 +2774,156 @@ export interface operations {
             };
         };
     };
+    readonly get_instruments_api_instruments_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["InstrumentSummary"][];
+                };
+            };
+        };
+    };
+    readonly post_instrument_api_instruments_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["InstrumentFile"];
+            };
+        };
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["InstrumentDetail"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly get_instrument_api_instruments__key__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["InstrumentDetail"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly post_instrument_check_api_instruments_check_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["InstrumentFile"];
+            };
+        };
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["InstrumentCheck"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly post_score_api_instruments_score_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["TryRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TryResult"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     readonly post_login_api_login_post: {
         readonly parameters: {
             readonly query?: never;
@@ -1865,6 +2991,26 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["WhoView"];
+                };
+            };
+        };
+    };
+    readonly get_network_api_network_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["NetworkView"];
                 };
             };
         };
@@ -2254,7 +3400,9 @@ export interface operations {
     };
     readonly get_studies_api_studies_get: {
         readonly parameters: {
-            readonly query?: never;
+            readonly query?: {
+                readonly archived?: boolean;
+            };
             readonly header?: never;
             readonly path?: never;
             readonly cookie?: never;
@@ -2268,6 +3416,15 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": readonly components["schemas"]["StudySummary"][];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
                 };
             };
         };
@@ -2306,6 +3463,37 @@ export interface operations {
         };
     };
     readonly get_study_api_studies__key__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["StudyView"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly post_archive_api_studies__key__archive_post: {
         readonly parameters: {
             readonly query?: never;
             readonly header?: never;
@@ -2400,6 +3588,110 @@ export interface operations {
             };
         };
     };
+    readonly get_diff_api_studies__key__diff_get: {
+        readonly parameters: {
+            readonly query: {
+                readonly from: number;
+                readonly to: number;
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["StudyDiff"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly post_diff_api_studies__key__diff_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["DraftFile"];
+            };
+        };
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["StudyDiff"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly post_duplicate_api_studies__key__duplicate_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["DuplicateRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["StudyView"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     readonly get_export_api_studies__key__export_get: {
         readonly parameters: {
             readonly query?: {
@@ -2453,6 +3745,37 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["LedgerView"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly post_restore_api_studies__key__restore_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
             /** @description Validation Error */
@@ -2569,6 +3892,38 @@ export interface operations {
             };
         };
     };
+    readonly get_version_api_studies__key__versions__number__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly number: number;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["VersionDetail"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
     readonly post_check_api_studies_check_post: {
         readonly parameters: {
             readonly query?: never;
@@ -2598,6 +3953,94 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly post_edit_api_studies_edit_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["EditRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["EditedFile"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly post_timeline_api_studies_timeline_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["TimelineRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TimelineView"];
+                };
+            };
+            /** @description Validation Error */
+            readonly 422: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly get_schema_api_study_schema_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": {
+                        readonly [key: string]: unknown;
+                    };
                 };
             };
         };
@@ -2737,6 +4180,26 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["HTTPValidationError"];
+                };
+            };
+        };
+    };
+    readonly get_templates_api_templates_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["TemplateView"][];
                 };
             };
         };

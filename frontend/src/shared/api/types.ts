@@ -35,11 +35,20 @@ export type CommandType = Schemas["CommandRequest"]["type"];
 /** What the operator may do now: a command, or entering a form that is due. */
 export type Allowed = SessionView["allowed"][number];
 
+export type Network = Schemas["NetworkView"];
 export type Account = Schemas["AccountView"];
 export type StudySummary = Schemas["StudySummary"];
 export type StudyVersion = Schemas["VersionView"];
 export type StudyDetail = With<Schemas["StudyView"], { protocol: StudyProtocol }>;
-export type CheckResult = With<Schemas["CheckResult"], { problems: readonly ConfigProblem[] }>;
+export type CheckResult = With<
+  Schemas["CheckResult"],
+  { problems: readonly ConfigProblem[]; tree?: Tree | null }
+>;
+/** A file as it was read, whatever is wrong with it. */
+export interface Tree {
+  readonly [key: string]: Value;
+}
+type Value = null | boolean | number | string | readonly Value[] | Tree;
 
 export interface ConfigProblem {
   readonly path: string;
@@ -197,6 +206,13 @@ export interface Instrument {
   readonly items: readonly Item[];
   readonly scale?: Scale | null;
 }
+
+export type InstrumentPreview = With<Schemas["Preview"], { instrument: Instrument }>;
+export type InstrumentCheck = With<
+  Schemas["InstrumentCheck"],
+  { problems: readonly ConfigProblem[]; preview?: InstrumentPreview | null }
+>;
+export type InstrumentDetail = With<Schemas["InstrumentDetail"], { preview: InstrumentPreview }>;
 
 export type Administration = With<Schemas["Administration"], { instrument: Instrument }>;
 export type TabletState = With<Schemas["TabletState"], { administration: Administration | null }>;

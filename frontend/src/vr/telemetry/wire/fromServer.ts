@@ -27,6 +27,8 @@ const PhaseOrder = v.object({
   completions: whole,
   pausing: v.boolean(),
   resuming: v.boolean(),
+  // A practice ends once so many tasks are completed; an older server does not say so.
+  until_completions: v.optional(v.nullable(whole), null),
 });
 export type PhaseOrder = v.InferOutput<typeof PhaseOrder>;
 

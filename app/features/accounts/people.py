@@ -1,0 +1,125 @@
+"""The lab's people: what each may do, and taking it back."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import delete, func, select, update
+from sqlalchemy.orm import Session
+
+from app.errors import Conflict, InvalidInput, NotFound
+from app.models import Account, LoginToken, Study, StudyMember
+
+
+@dataclass(frozen=True)
+class Person:
+    """An account with its studies (keys; empty where all are theirs) and logins alive."""
+
+    account: Account
+    studies: tuple[str, ...]
+    logins: int
+    last_login_at: datetime | None
+
+
+def people(db: Session, now: datetime) -> list[Person]:
+    """Everybody, also those whose account is closed, by name."""
+    accounts = db.scalars(select(Account).order_by(Account.username)).all()
+    return [person_of(db, account, now) for account in accounts]
+
+
+def person_of(db: Session, account: Account, now: datetime) -> Person:
+    """One account with what belongs to it."""
+    studies = db.scalars(
+        select(Study.key)
+        .join(StudyMember, StudyMember.study_id == Study.id)
+        .where(StudyMember.account_id == account.id)
+        .order_by(Study.key)
+    )
+    alive = (LoginToken.revoked_at.is_(None)) & (LoginToken.expires_at > now)
+    logins, last = db.execute(
+        select(func.count().filter(alive), func.max(LoginToken.created_at)).where(
+            LoginToken.account_id == account.id
+        )
+    ).one()
+    return Person(account, tuple(studies), logins, last)
+
+
+def account_by_id(db: Session, account_id: str) -> Account:
+    """The account; raises NotFound."""
+    account = db.get(Account, account_id)
+    if account is None:
+        raise NotFound("there is no such account", value=account_id)
+    return account
+
+
+def give_role(db: Session, account: Account, role: str) -> None:
+    """Change what somebody may do; raises Conflict where no admin would be left."""
+    if account.role == "admin" and role != "admin":
+        _require_another_admin(db, account)
+    account.role = role
+
+
+def give_studies(db: Session, account: Account, keys: Sequence[str] | None) -> None:
+    """Let somebody see these studies only, or all of them (None); raises InvalidInput."""
+    account.all_studies = keys is None
+    db.execute(delete(StudyMember).where(StudyMember.account_id == account.id))
+    for study_id in study_ids(db, keys or ()):
+        db.add(StudyMember(account_id=account.id, study_id=study_id))
+    db.flush()
+
+
+def study_ids(db: Session, keys: Sequence[str]) -> list[str]:
+    """The ids of studies by key; raises InvalidInput for those that do not exist."""
+    rows = db.execute(select(Study.key, Study.id).where(Study.key.in_(keys)))
+    found = {row.key: row.id for row in rows}
+    unknown = sorted(set(keys) - set(found))
+    if unknown:
+        raise InvalidInput(
+            f"there is no study {unknown[0]!r}",
+            value=unknown,
+            valid=list(db.scalars(select(Study.key).order_by(Study.key))),
+        )
+    return [found[key] for key in dict.fromkeys(keys)]
+
+
+def close_account(db: Session, account: Account, now: datetime) -> None:
+    """Shut somebody out: the account stays in the record, and its logins end."""
+    if account.disabled_at is not None:
+        return
+    if account.role == "admin":
+        _require_another_admin(db, account)
+    account.disabled_at = now
+    end_logins(db, account, now)
+
+
+def reopen_account(account: Account) -> None:
+    """Let somebody in again, who must log in anew."""
+    account.disabled_at = None
+
+
+def end_logins(db: Session, account: Account, now: datetime, *, but: str | None = None) -> int:
+    """End every login of an account, but the one with the token hash `but`; how many ended."""
+    wanted = (
+        LoginToken.account_id == account.id,
+        LoginToken.revoked_at.is_(None),
+        LoginToken.token_hash != (but or ""),
+    )
+    alive = db.scalar(select(func.count()).where(*wanted, LoginToken.expires_at > now)) or 0
+    db.execute(update(LoginToken).where(*wanted).values(revoked_at=now))
+    return alive
+
+
+def _require_another_admin(db: Session, account: Account) -> None:
+    # Two admins who take each other's role at once must not both succeed.
+    others = db.scalars(
+        select(Account.id)
+        .where(Account.role == "admin", Account.disabled_at.is_(None))
+        .order_by(Account.id)
+        .with_for_update(key_share=True)
+    ).all()
+    if not set(others) - {account.id}:
+        raise Conflict(
+            "this is the only administrator",
+            value=account.username,
+            remedy="Give somebody else the role admin first.",
+        )

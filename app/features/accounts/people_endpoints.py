@@ -1,0 +1,205 @@
+"""The lab's people and invitations over HTTP."""
+
+from datetime import datetime
+
+from fastapi import APIRouter, Request, Response
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.accounts.endpoints import open_login
+from app.features.accounts.invitations import (
+    accept,
+    invitations,
+    invite,
+    open_invitation,
+    revoke_invitation,
+    status_of,
+)
+from app.features.accounts.people import (
+    Person,
+    account_by_id,
+    close_account,
+    end_logins,
+    give_role,
+    give_studies,
+    people,
+    person_of,
+    reopen_account,
+)
+from app.features.accounts.schemas import (
+    Acceptance,
+    AccountView,
+    InvitationLook,
+    InvitationToken,
+    InvitationView,
+    InvitedView,
+    NewInvitation,
+    PersonChange,
+    PersonView,
+    SignedInView,
+)
+from app.features.audit.service import record
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.live import after_commit
+from app.models import Account, Invitation, Study
+
+router = APIRouter(tags=["accounts"])
+
+
+@router.get("/accounts")
+def get_accounts(db: Reading, context: Context, _: SignedIn) -> list[PersonView]:
+    """Everybody who has or had an account."""
+    return [_person(person) for person in people(db, context.clock.utc_now())]
+
+
+@router.patch("/accounts/{account_id}")
+def patch_account(
+    account_id: str, change: PersonChange, db: Writing, context: Context, caller: SignedIn
+) -> PersonView:
+    """Change role or studies, or close and reopen an account; logins of a closed one end."""
+    account, now = account_by_id(db, account_id), context.clock.utc_now()
+    given = change.model_fields_set
+    if change.role is not None:
+        give_role(db, account, change.role)
+    if "studies" in given:
+        give_studies(db, account, change.studies)
+    if change.closed is True:
+        close_account(db, account, now)
+    elif change.closed is False:
+        reopen_account(account)
+    db.flush()
+    person = person_of(db, account, now)
+    if given:
+        details = change.model_dump(include=given)
+        subject = f"account:{account.username}"
+        record(
+            db,
+            actor=caller.actor,
+            action="account.changed",
+            subject=subject,
+            details=details,
+            now=now,
+        )
+        after_commit(db, context.hub.publish_access)
+    return _person(person)
+
+
+@router.delete("/accounts/{account_id}/logins", status_code=204)
+def delete_logins(account_id: str, db: Writing, context: Context, caller: SignedIn) -> None:
+    """End every login of somebody, such as one on a lost laptop."""
+    account, now = account_by_id(db, account_id), context.clock.utc_now()
+    ended = end_logins(db, account, now)
+    subject, details = f"account:{account.username}", {"ended": ended}
+    record(
+        db, actor=caller.actor, action="login.revoked", subject=subject, details=details, now=now
+    )
+    after_commit(db, context.hub.publish_access)
+
+
+@router.get("/invitations")
+def get_invitations(db: Reading, context: Context, _: SignedIn) -> list[InvitationView]:
+    """Every invitation, also those used up, the newest first."""
+    now = context.clock.utc_now()
+    return [InvitationView.model_validate(_invitation(db, row, now)) for row in invitations(db)]
+
+
+@router.post("/invitations", status_code=201)
+def post_invitation(
+    wish: NewInvitation, request: Request, db: Writing, context: Context, caller: SignedIn
+) -> InvitedView:
+    """Make a link that lets one person make an account with this role."""
+    now = context.clock.utc_now()
+    made = invite(
+        db,
+        role=wish.role,
+        note=wish.note,
+        studies=wish.studies,
+        by=caller.actor,
+        now=now,
+        hours=wish.hours,
+    )
+    base = context.network.reach.for_devices(str(request.base_url))
+    view = _invitation(db, made.invitation, now) | {"url": f"{base}/#/join/{made.token}"}
+    details = {"role": wish.role, "studies": wish.studies}
+    subject = f"invitation:{made.invitation.id}"
+    record(
+        db, actor=caller.actor, action="invitation.made", subject=subject, details=details, now=now
+    )
+    return InvitedView.model_validate(view)
+
+
+@router.delete("/invitations/{invitation_id}", status_code=204)
+def delete_invitation(invitation_id: str, db: Writing, context: Context, caller: SignedIn) -> None:
+    """Take an invitation back."""
+    now = context.clock.utc_now()
+    revoke_invitation(db, invitation_id, now)
+    subject = f"invitation:{invitation_id}"
+    record(db, actor=caller.actor, action="invitation.revoked", subject=subject, now=now)
+
+
+@router.post("/invitations/look")
+def post_look(
+    asked: InvitationToken, request: Request, db: Reading, context: Context
+) -> InvitationLook:
+    """What an invitation is for."""
+    context.pairing_limiter.attempt(_guest(request))
+    row = open_invitation(db, asked.token, context.clock.utc_now())
+    return InvitationLook.model_validate(
+        {"role": row.role, "note": row.note, "expires_at": row.expires_at}
+    )
+
+
+@router.post("/invitations/accept", status_code=201)
+def post_accept(
+    acceptance: Acceptance, request: Request, response: Response, db: Writing, context: Context
+) -> SignedInView:
+    """Make the account and log in."""
+    context.pairing_limiter.attempt(_guest(request))
+    now = context.clock.utc_now()
+    account = accept(
+        db,
+        token=acceptance.token,
+        username=acceptance.username,
+        password=acceptance.password,
+        now=now,
+    )
+    caller = open_login(db, context, request, response, account)
+    record(db, actor=caller.actor, action="account.made", details={"role": caller.role}, now=now)
+    view = {"id": account.id, "username": account.username, "role": account.role}
+    return SignedInView(account=AccountView.model_validate(view))
+
+
+def _person(person: Person) -> PersonView:
+    account = person.account
+    return PersonView.model_validate(
+        {
+            "id": account.id,
+            "username": account.username,
+            "role": account.role,
+            "studies": None if account.all_studies else list(person.studies),
+            "created_at": account.created_at,
+            "disabled_at": account.disabled_at,
+            "logins": person.logins,
+            "last_login_at": person.last_login_at,
+        }
+    )
+
+
+def _invitation(db: Session, row: Invitation, now: datetime) -> dict[str, object]:
+    keys = db.scalars(select(Study.key).where(Study.id.in_(row.studies)).order_by(Study.key))
+    used_by = db.get(Account, row.account_id) if row.account_id else None
+    return {
+        "id": row.id,
+        "role": row.role,
+        "note": row.note,
+        "studies": None if row.all_studies else list(keys),
+        "status": status_of(row, now),
+        "created_by": row.created_by,
+        "created_at": row.created_at,
+        "expires_at": row.expires_at,
+        "used_by": used_by.username if used_by else None,
+    }
+
+
+def _guest(request: Request) -> str:
+    return f"invitation:{request.client.host if request.client else ''}"

@@ -1,0 +1,49 @@
+"""The audit trail over HTTP."""
+
+import json
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from app.features.audit.schemas import AuditCheckView, AuditPage, AuditView
+from app.features.audit.service import entries_before, verify_trail
+from app.features.dependencies import Reading, SignedIn
+
+router = APIRouter(tags=["audit"])
+Name = Annotated[str | None, Query(max_length=100)]
+
+
+@router.get("/audit")
+def get_audit(
+    db: Reading,
+    _: SignedIn,
+    before: Annotated[int | None, Query(ge=1, lt=2**31)] = None,
+    limit: Annotated[int, Query(ge=1, le=200)] = 50,
+    actor: Name = None,
+    action: Name = None,
+) -> AuditPage:
+    """What was done, newest first; an `action` that ends with a dot takes all that begin so."""
+    rows = entries_before(db, before=before, limit=limit + 1, actor=actor, action=action)
+    shown = rows[:limit]
+    return AuditPage(
+        entries=[
+            AuditView(
+                seq=row.seq,
+                at=row.at,
+                actor=row.actor,
+                action=row.action,
+                subject=row.subject,
+                details=json.loads(row.details),
+                hash=row.hash,
+            )
+            for row in shown
+        ],
+        next_before=shown[-1].seq if len(rows) > limit else None,
+    )
+
+
+@router.get("/audit/check")
+def get_audit_check(db: Reading, _: SignedIn) -> AuditCheckView:
+    """Recompute the whole chain."""
+    check = verify_trail(db)
+    return AuditCheckView(ok=check.ok, entries=check.entries, broken_at=check.broken_at)

@@ -1,0 +1,34 @@
+"""Problems of a study or instrument file as every interface tells them."""
+
+from pydantic import BaseModel
+
+from app.errors import InvalidConfig
+from app.protocol import ConfigError
+
+
+class ProblemView(BaseModel):
+    """One thing to correct in a file: where, what, what is valid, what to do. Lines from 1."""
+
+    path: str
+    line: int
+    column: int
+    message: str
+    value: object = None
+    valid: object = None
+    remedy: str = ""
+
+
+def problem_views(error: ConfigError) -> list[ProblemView]:
+    """Every problem of the file, in its order."""
+    return [ProblemView(**problem.as_json()) for problem in error.problems]
+
+
+def invalid_config(what: str, error: ConfigError) -> InvalidConfig:
+    """The refusal of a file with every problem in its details; `what` is "study" or the like."""
+    problems = [view.model_dump() for view in problem_views(error)]
+    count = len(problems)
+    return InvalidConfig(
+        f"the {what} file has {count} problem{'s' if count != 1 else ''}",
+        remedy="Mend the lines named below; nothing was stored.",
+        details=problems,
+    )

@@ -1,0 +1,1 @@
+"""The library of instruments: every version that was ever stored, and trying one out."""

@@ -1,0 +1,96 @@
+"""The library of instruments over HTTP: listing, checking files, storing versions, trying one."""
+
+from itertools import groupby
+
+from fastapi import APIRouter
+from sqlalchemy import select
+
+from app.errors import InvalidInput
+from app.features.config_problems import problem_views
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.instruments.schemas import (
+    InstrumentCheck,
+    InstrumentDetail,
+    InstrumentFile,
+    InstrumentSummary,
+    TryRequest,
+    TryResult,
+)
+from app.features.instruments.service import (
+    checked_instrument,
+    instrument_of,
+    save_instrument,
+    uses,
+    versions_of_instrument,
+)
+from app.features.instruments.trying import try_answers
+from app.features.instruments.views import detail_of, preview_of, summary_of
+from app.models import InstrumentVersion
+from app.protocol import ConfigError, load_instrument
+
+router = APIRouter(tags=["instruments"])
+
+
+@router.get("/instruments")
+def get_instruments(db: Reading, _: SignedIn) -> list[InstrumentSummary]:
+    """The newest version of every instrument."""
+    rows = db.scalars(
+        select(InstrumentVersion).order_by(
+            InstrumentVersion.key, InstrumentVersion.created_at, InstrumentVersion.id
+        )
+    )
+    used = uses(db)
+    by_key = groupby(rows, key=lambda row: row.key)
+    return [summary_of(list(versions), used) for _, versions in by_key]
+
+
+@router.post("/instruments", status_code=201)
+def post_instrument(
+    file: InstrumentFile, db: Writing, context: Context, _: SignedIn
+) -> InstrumentDetail:
+    """Store a version. Studies that exist keep the wording they were made with."""
+    row = save_instrument(db, file.yaml, context.clock.utc_now())
+    return detail_of(db, row.key)
+
+
+@router.post("/instruments/check")
+def post_instrument_check(file: InstrumentFile, db: Reading, _: SignedIn) -> InstrumentCheck:
+    """Check a file without storing it."""
+    try:
+        loaded = load_instrument(file.yaml)
+    except ConfigError as error:
+        return InstrumentCheck(ok=False, problems=problem_views(error))
+    key = loaded.instrument.key
+    stored = db.scalars(
+        select(InstrumentVersion.content_hash).where(InstrumentVersion.key == key)
+    ).all()
+    return InstrumentCheck(
+        ok=True,
+        key=key,
+        content_hash=loaded.content_hash,
+        known=loaded.content_hash in stored,
+        replaces=any(one != loaded.content_hash for one in stored),
+        preview=preview_of(loaded.instrument),
+    )
+
+
+@router.post("/instruments/score")
+def post_score(request: TryRequest, db: Reading, _: SignedIn) -> TryResult:
+    """Score answers without storing them, with every step."""
+    if (request.yaml is None) == (request.key is None):
+        raise InvalidInput(
+            "either a file or a key says which instrument is meant",
+            valid="yaml or key, one of the two",
+            remedy="Send the file's text as yaml, or the key of a stored instrument.",
+        )
+    if request.yaml is not None:
+        instrument = checked_instrument(request.yaml).instrument
+    else:
+        instrument = instrument_of(versions_of_instrument(db, request.key or "")[-1])
+    return try_answers(instrument, request.answers)
+
+
+@router.get("/instruments/{key}")
+def get_instrument(key: str, db: Reading, _: SignedIn) -> InstrumentDetail:
+    """One instrument in full, with all its versions."""
+    return detail_of(db, key)

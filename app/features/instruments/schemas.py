@@ -1,0 +1,164 @@
+"""Instruments as pages see them."""
+
+from datetime import datetime
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+
+from app.features.config_problems import ProblemView
+
+MAX_YAML_CHARACTERS = 262_144
+Whole = Annotated[int, Field(ge=-(2**53), le=2**53)]
+TriedAnswer = bool | Whole | FiniteFloat | Annotated[str, Field(max_length=10_000)] | None
+
+
+class InstrumentFile(BaseModel):
+    """An instrument as YAML text."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    yaml: str = Field(max_length=MAX_YAML_CHARACTERS)
+
+
+class TryRequest(BaseModel):
+    """Answers to score, by the instrument in a text or by the newest stored one of that key."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    yaml: str | None = Field(default=None, max_length=MAX_YAML_CHARACTERS)
+    key: str | None = Field(default=None, max_length=80)
+    answers: dict[Annotated[str, Field(max_length=80)], TriedAnswer] = Field(max_length=500)
+
+
+class FormulaView(BaseModel):
+    """A score with its formula, and the range its author states."""
+
+    key: str
+    label: dict[str, str]
+    formula: str
+    minimum: float | None
+    maximum: float | None
+    note: str | None
+
+
+class ProvenanceView(BaseModel):
+    """Where an instrument comes from, and how far that was checked."""
+
+    source: str
+    licence: str
+    verified: str
+    notes: list[str]
+
+
+class InstrumentSummary(BaseModel):
+    """The newest version of an instrument in the library.
+
+    `version` is the number in the file; `stored_versions` counts the contents stored under the key.
+    `minutes` is how long filling it in takes by our rough rule. `used_by`: keys of studies whose
+    newest version asks this wording; `used_by_older`: those that ask an older one.
+    """
+
+    key: str
+    title: dict[str, str]
+    version: int
+    languages: list[str]
+    items: int
+    scored_items: int
+    scores: list[FormulaView]
+    minutes: float
+    provenance: ProvenanceView
+    content_hash: str
+    created_at: datetime
+    stored_versions: int
+    used_by: list[str]
+    used_by_older: list[str]
+
+
+class InstrumentVersionView(BaseModel):
+    """One stored content of an instrument, with the studies that ask it."""
+
+    version: int
+    content_hash: str
+    created_at: datetime
+    yaml: str
+    used_by: list[str]
+
+
+class InstrumentDetail(InstrumentSummary):
+    """An instrument in full; `versions` from the oldest to the newest.
+
+    `preview`: a form of it to draw, in the shape in which tablets get their forms.
+    """
+
+    yaml: str
+    preview: "Preview"
+    versions: list[InstrumentVersionView]
+
+
+class Preview(BaseModel):
+    """An instrument as a form: its content, and the items in one possible order."""
+
+    instrument: dict[str, Any]
+    item_order: list[str]
+    seed: int
+    languages: list[str]
+    recode: str | None
+    scores: list[FormulaView]
+    minutes: float
+
+
+class InstrumentCheck(BaseModel):
+    """Whether a file can be used: every problem with its place, else what it becomes.
+
+    `known`: the very content is stored already. `replaces`: there are other contents of this key.
+    """
+
+    ok: bool
+    key: str | None = None
+    content_hash: str | None = None
+    known: bool = False
+    replaces: bool = False
+    problems: list[ProblemView] = []
+    preview: Preview | None = None
+
+
+class ItemStep(BaseModel):
+    """An item on its way into the scores: as answered, and as the formulas get it."""
+
+    item: str
+    raw: float | None
+    recoded: float | None
+    scored: bool
+
+
+class ScoreStep(BaseModel):
+    """A score: its formula, the same with the values put in, and what comes out.
+
+    `missing`: items without an answer that leave it without a value.
+    """
+
+    key: str
+    label: dict[str, str]
+    formula: str
+    filled_in: str
+    value: float | None
+    minimum: float | None
+    maximum: float | None
+    missing: list[str]
+
+
+class TryResult(BaseModel):
+    """The scoring of one filled-in form, step by step; `problems` are answers that do not fit."""
+
+    recode: str | None
+    items: list[ItemStep]
+    scores: list[ScoreStep]
+    problems: list["AnswerProblemView"]
+
+
+class AnswerProblemView(BaseModel):
+    """Why an answer cannot be taken."""
+
+    item: str
+    message: str
+    remedy: str

@@ -1,0 +1,99 @@
+"""Instruments: a file becomes a content-hashed version; a version that was stored never changes."""
+
+from datetime import datetime
+from functools import lru_cache
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import NotFound
+from app.features.config_problems import invalid_config
+from app.models import InstrumentVersion, Study, StudyVersion
+from app.protocol import ConfigError, LoadedInstrument, load_instrument, parse_instrument_json
+from app.science.instruments import Instrument
+
+
+def instrument_of(version: InstrumentVersion) -> Instrument:
+    """The typed instrument of a version."""
+    return _parse_instrument(version.content_hash, version.canonical_json)
+
+
+@lru_cache(maxsize=64)
+def _parse_instrument(_content_hash: str, canonical_json: str) -> Instrument:
+    return parse_instrument_json(canonical_json)
+
+
+def newest_instruments(db: Session) -> dict[str, InstrumentVersion]:
+    """The newest version of every instrument, by key."""
+    rows = db.scalars(
+        select(InstrumentVersion).order_by(InstrumentVersion.created_at, InstrumentVersion.id)
+    )
+    return {row.key: row for row in rows}
+
+
+def parsed_instruments(db: Session) -> dict[str, Instrument]:
+    """The newest instruments, typed, by key."""
+    return {key: instrument_of(row) for key, row in newest_instruments(db).items()}
+
+
+def versions_of_instrument(db: Session, key: str) -> list[InstrumentVersion]:
+    """All stored versions, oldest first. Raises NotFound."""
+    rows = db.scalars(
+        select(InstrumentVersion)
+        .where(InstrumentVersion.key == key)
+        .order_by(InstrumentVersion.created_at, InstrumentVersion.id)
+    ).all()
+    if not rows:
+        known = sorted(newest_instruments(db))
+        raise NotFound(f"there is no instrument {key!r}", value=key, valid=known)
+    return list(rows)
+
+
+def checked_instrument(text: str) -> LoadedInstrument:
+    """Load an instrument file; InvalidConfig has every problem."""
+    try:
+        return load_instrument(text)
+    except ConfigError as error:
+        raise invalid_config("instrument", error) from error
+
+
+def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
+    """Store an instrument file as a version, or find the version with that content."""
+    loaded = checked_instrument(text)
+    known = db.scalar(
+        select(InstrumentVersion).where(
+            InstrumentVersion.key == loaded.instrument.key,
+            InstrumentVersion.content_hash == loaded.content_hash,
+        )
+    )
+    if known is not None:
+        return known
+    row = InstrumentVersion(
+        key=loaded.instrument.key,
+        content_hash=loaded.content_hash,
+        source_yaml=text,
+        canonical_json=loaded.canonical_json,
+        created_at=now,
+    )
+    db.add(row)
+    db.flush()
+    return row
+
+
+def uses(db: Session) -> dict[tuple[str, str], list[str]]:
+    """Which studies ask which wording: (instrument key, content hash) -> study keys.
+
+    Counted are the newest versions, of studies that are not archived: those that new sessions take.
+    """
+    found: dict[tuple[str, str], list[str]] = {}
+    rows = db.execute(
+        select(Study.key, StudyVersion.instruments)
+        .join(StudyVersion, StudyVersion.study_id == Study.id)
+        .where(Study.archived_at.is_(None))
+        .order_by(Study.key, StudyVersion.number)
+    ).all()
+    newest = {key: instruments for key, instruments in rows}  # noqa: C416 - the last one counts
+    for study, instruments in newest.items():
+        for key, content_hash in instruments.items():
+            found.setdefault((key, content_hash), []).append(study)
+    return found

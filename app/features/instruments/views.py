@@ -1,0 +1,105 @@
+"""From stored instruments to what pages show."""
+
+from collections.abc import Sequence
+
+from sqlalchemy.orm import Session
+
+from app.features.instruments.schemas import (
+    FormulaView,
+    InstrumentDetail,
+    InstrumentSummary,
+    InstrumentVersionView,
+    Preview,
+    ProvenanceView,
+)
+from app.features.instruments.service import instrument_of, uses, versions_of_instrument
+from app.models import InstrumentVersion
+from app.protocol.loading import instrument_as_json
+from app.protocol.timeline import form_s
+from app.science.instruments import Instrument, Score, item_order
+
+Uses = dict[tuple[str, str], list[str]]
+
+
+def summary_of(versions: Sequence[InstrumentVersion], used: Uses) -> InstrumentSummary:
+    """The newest of an instrument's `versions` (oldest first) as a row of the library."""
+    row = versions[-1]
+    instrument = instrument_of(row)
+    older = {
+        study
+        for version in versions[:-1]
+        for study in used.get((version.key, version.content_hash), ())
+    }
+    return InstrumentSummary(
+        key=row.key,
+        title=dict(instrument.title),
+        version=instrument.version,
+        languages=list(instrument.languages),
+        items=len(instrument.items),
+        scored_items=len(instrument.scored_items),
+        scores=[formula_view(score) for score in instrument.scores],
+        minutes=_minutes(instrument),
+        provenance=ProvenanceView(
+            source=instrument.provenance.source,
+            licence=instrument.provenance.licence,
+            verified=instrument.provenance.verified,
+            notes=list(instrument.provenance.notes),
+        ),
+        content_hash=row.content_hash,
+        created_at=row.created_at,
+        stored_versions=len(versions),
+        used_by=used.get((row.key, row.content_hash), []),
+        used_by_older=sorted(older),
+    )
+
+
+def detail_of(db: Session, key: str) -> InstrumentDetail:
+    """An instrument in full. Raises NotFound."""
+    versions = versions_of_instrument(db, key)
+    used = uses(db)
+    newest = versions[-1]
+    return InstrumentDetail(
+        **summary_of(versions, used).model_dump(),
+        yaml=newest.source_yaml,
+        preview=preview_of(instrument_of(newest)),
+        versions=[
+            InstrumentVersionView(
+                version=instrument_of(row).version,
+                content_hash=row.content_hash,
+                created_at=row.created_at,
+                yaml=row.source_yaml,
+                used_by=used.get((row.key, row.content_hash), []),
+            )
+            for row in versions
+        ],
+    )
+
+
+def preview_of(instrument: Instrument) -> Preview:
+    """The instrument as a form; the order is that of seed 0, one of those a tablet could get."""
+    seed = 0
+    return Preview(
+        instrument=instrument_as_json(instrument),
+        item_order=list(item_order(instrument, seed)),
+        seed=seed,
+        languages=list(instrument.languages),
+        recode=instrument.recode,
+        scores=[formula_view(score) for score in instrument.scores],
+        minutes=_minutes(instrument),
+    )
+
+
+def formula_view(score: Score) -> FormulaView:
+    """A score with its formula."""
+    return FormulaView(
+        key=score.key,
+        label=dict(score.label),
+        formula=score.formula,
+        minimum=score.minimum,
+        maximum=score.maximum,
+        note=score.note,
+    )
+
+
+def _minutes(instrument: Instrument) -> float:
+    return round(form_s(instrument) / 60, 1)

@@ -1,0 +1,1 @@
+"""How devices reach this server, for the console."""

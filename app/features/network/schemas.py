@@ -1,0 +1,58 @@
+"""The lab's network over HTTP."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel
+
+
+class AddressView(BaseModel):
+    """An address for devices, and the QR code of the tablet's page there."""
+
+    url: str
+    tablet_url: str
+    tablet_qr_svg: str
+
+
+class CertificateView(BaseModel):
+    """The certificate behind https.
+
+    `source` is `authority` (the built-in one, which devices install) or `files` (the lab's own).
+    `fingerprint` is the SHA-256 that a device shows: of the authority, or of the lab's certificate.
+    `uncovered` are addresses of this machine that it is not valid for.
+    """
+
+    source: Literal["authority", "files"]
+    fingerprint: str
+    server_fingerprint: str
+    expires_at: datetime
+    authority_expires_at: datetime | None
+    uncovered: list[str]
+
+
+class HelpView(BaseModel):
+    """The page, over plain http, on which a device gets the lab's certificate."""
+
+    url: str
+    qr_svg: str
+
+
+class CableView(BaseModel):
+    """A headset on this machine's USB cable: run `command`, then open `url` in the headset."""
+
+    command: str
+    url: str
+
+
+class NetworkView(BaseModel):
+    """How devices reach the server now.
+
+    `mode` is `loopback` (this machine only), `lan` (also https) or `without_tls` (unencrypted).
+    """
+
+    mode: Literal["loopback", "lan", "without_tls"]
+    local_url: str
+    addresses: list[AddressView]
+    certificate: CertificateView | None
+    help: HelpView | None
+    cable: CableView

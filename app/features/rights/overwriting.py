@@ -1,0 +1,116 @@
+"""The bytes: what a database keeps of rows that are gone.
+
+SQLite overwrites deleted rows with zeros (`secure_delete`), but copies of them can be left in three
+places: in its write-ahead log, in pages that were freed by earlier versions of the product, and in
+the gaps of pages whose rows were moved when others came. So after an erasure the log is copied and
+cut to nothing, and the file is written anew (VACUUM). The latter holds writers up, so it waits for
+the next start of the server if a session is running now, or if the disk has no room for a second
+copy; a marker in the data folder remembers it, also over a crash.
+
+PostgreSQL gets a VACUUM of the tables that were touched. See docs/participants-rights.md for what
+that leaves.
+"""
+
+import logging
+import shutil
+import time
+from pathlib import Path
+
+from sqlalchemy import select
+from sqlalchemy.exc import DBAPIError
+
+from app.database import Database
+from app.features.opening.service import backups_of
+from app.features.rights.traces import TOUCHED
+from app.models import Participant, StudySession
+from app.settings import Settings
+
+log = logging.getLogger(__name__)
+MARKER = "erasure-unfinished"
+TRIES, PAUSE_S = 20, 0.25
+ROOM = 1.2
+"""How much of the database's size must be free to write it anew."""
+
+
+def expect_erasure(settings: Settings) -> None:
+    """Remember that bytes will have to be overwritten, before the rows go."""
+    folder = backups_of(settings).parent
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / MARKER).touch()
+
+
+def overwrite(database: Database, settings: Settings) -> bool:
+    """Overwrite what the erased rows left behind; whether nothing is left to do.
+
+    Call it outside of any transaction. What could not be done now is done at the next start.
+    """
+    marker = backups_of(settings).parent / MARKER
+    try:
+        done = _sqlite(database) if database.is_sqlite else _postgresql(database)
+    except DBAPIError as error:
+        log.warning("erased rows are still to be overwritten: %s", error.orig)
+        return False
+    if done:
+        marker.unlink(missing_ok=True)
+    return done
+
+
+def overwrite_what_is_left(database: Database, settings: Settings) -> bool:
+    """At a start: finish what an earlier erasure could not; whether there was anything."""
+    if not (backups_of(settings).parent / MARKER).exists():
+        return False
+    overwrite(database, settings)
+    return True
+
+
+def _sqlite(database: Database) -> bool:
+    # Nobody else copies the log, and nobody writes, from the first cut to the last.
+    with database.commits.copying, database.write_turn():
+        cut = _cut_log(database)
+        anew = cut and _nobody_waits(database) and _has_room(database)
+        if anew:
+            _execute(database, "VACUUM")
+            cut = _cut_log(database)
+        database.commits.copied = database.commits.number
+    return cut and anew
+
+
+def _cut_log(database: Database) -> bool:
+    """Copy the whole log and cut it to nothing; a reader may be in the way for a moment."""
+    for _ in range(TRIES):
+        busy, *_rest = _execute(database, "PRAGMA wal_checkpoint(TRUNCATE)") or (0,)
+        if not busy:
+            return True
+        time.sleep(PAUSE_S)
+    log.warning("the log could not be cut: somebody reads for long")
+    return False
+
+
+def _nobody_waits(database: Database) -> bool:
+    with database.reading() as db:
+        running = select(StudySession.id).where(StudySession.status == "active").limit(1)
+        return db.scalar(running) is None
+
+
+def _has_room(database: Database) -> bool:
+    file = Path(str(database.engine.url.database))
+    return shutil.disk_usage(file.absolute().parent).free > ROOM * file.stat().st_size
+
+
+def _postgresql(database: Database) -> bool:
+    with database.engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
+        for table in (*TOUCHED, Participant.__tablename__):
+            connection.exec_driver_sql(f'VACUUM "{table}"')
+    return True
+
+
+def _execute(database: Database, statement: str) -> tuple[int, ...] | None:
+    """Outside of any transaction, which the engine would open."""
+    connection = database.engine.raw_connection()
+    try:
+        cursor = connection.cursor()
+        cursor.execute(statement)
+        row = cursor.fetchone() if cursor.description else None
+        return None if row is None else tuple(row)
+    finally:
+        connection.close()

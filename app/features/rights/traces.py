@@ -1,0 +1,95 @@
+"""What the tables hold about a person, and removing it.
+
+What stays is the skeleton of the record: that there was a session, in which slot of the ledger, and
+the chain of its events. The chain points at words and answers by salted hashes; the salts go with
+the words, so that no hash can be tried out against the few answers that a form allows.
+"""
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+from sqlalchemy import CursorResult, Delete, Update, delete, select, update
+from sqlalchemy.orm import Session
+
+from app.models import (
+    AlarmRow,
+    Answer,
+    AnswerCorrection,
+    ClientReport,
+    ClockProbe,
+    Completion,
+    Contact,
+    Device,
+    JointErrorRow,
+    PairingCode,
+    PhaseLatency,
+    PhaseQuality,
+    ScoreValue,
+    SessionContent,
+    Submission,
+    Suggestion,
+    TelemetryBatch,
+    TelemetryChunk,
+    TelemetryStream,
+)
+
+OF_SESSIONS = (
+    TelemetryBatch,
+    TelemetryChunk,
+    TelemetryStream,
+    ClientReport,
+    ClockProbe,
+    Contact,
+    Completion,
+    JointErrorRow,
+    PhaseLatency,
+    PhaseQuality,
+    AlarmRow,
+    Device,
+    PairingCode,
+)
+"""Tables whose rows of a session go as a whole."""
+OF_FORMS = (AnswerCorrection, Answer, ScoreValue)
+"""Tables whose rows of a filled-in form go as a whole; those that refer to another first."""
+EMPTIED = (Submission, SessionContent, Suggestion)
+"""Tables whose rows stay, without what is personal in them."""
+TOUCHED = tuple(model.__tablename__ for model in (*OF_SESSIONS, *OF_FORMS, *EMPTIED))
+"""Every table that an erasure takes something from, but for the participant's own row."""
+
+
+def remove_traces(db: Session, session_ids: Sequence[str]) -> dict[str, int]:
+    """Remove what these sessions hold about their participant; how many rows, by table."""
+    removed: dict[str, int] = {}
+    forms = select(Submission.id).where(Submission.session_id.in_(session_ids))
+    for model in OF_FORMS:
+        rows = delete(model).where(model.submission_id.in_(forms))
+        removed[model.__tablename__] = _count(db, rows)
+    for own in OF_SESSIONS:
+        removed[own.__tablename__] = _count(db, delete(own).where(own.session_id.in_(session_ids)))
+    removed[Submission.__tablename__] = _empty_forms(db, session_ids)
+    emptied = update(SessionContent).where(
+        SessionContent.session_id.in_(session_ids), SessionContent.body.is_not(None)
+    )
+    removed[SessionContent.__tablename__] = _count(db, emptied.values(body=None, salt=None))
+    advice = update(Suggestion).where(Suggestion.session_id.in_(session_ids))
+    removed[Suggestion.__tablename__] = _count(db, advice.values(body=""))
+    return {table: rows for table, rows in removed.items() if rows}
+
+
+def _empty_forms(db: Session, session_ids: Sequence[str]) -> int:
+    """Keep which form was filled in when; the hash of the request is one of the bare answers."""
+    rows = db.scalars(select(Submission).where(Submission.session_id.in_(session_ids))).all()
+    for row in rows:
+        row.idempotency_key = row.id
+        row.request_hash = ""
+        row.salt = None
+        row.shown_order, row.timings = [], {}
+        row.started_at = None
+        row.item_seed = 0
+    db.flush()
+    return len(rows)
+
+
+def _count(db: Session, statement: Delete | Update) -> int:
+    statement = statement.execution_options(synchronize_session=False)
+    return cast("CursorResult[Any]", db.execute(statement)).rowcount

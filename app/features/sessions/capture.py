@@ -1,0 +1,55 @@
+"""Whose sessions take no more data: those of participants who withdrew or whose data were erased.
+
+A headset that was away may bring what a finished session still lacks. After a withdrawal nothing
+more is taken, from wherever it comes: it is refused with the reason, and not stored.
+"""
+
+from collections.abc import Collection
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import Withdrawn
+from app.models import Erasure, StudySession
+
+RUNS = ("planned", "active")
+
+
+def closed_sessions(db: Session, session_ids: Collection[str]) -> frozenset[str]:
+    """Those of the sessions that take no more data.
+
+    Until the transaction ends none of them can be erased: what it stores would be left behind.
+    """
+    ended: dict[str, str] = {}
+    closed = set()
+    rows = db.execute(
+        select(StudySession.id, StudySession.status, StudySession.participant_id)
+        .where(StudySession.id.in_(sorted(session_ids)))
+        .order_by(StudySession.id)
+        .with_for_update(read=True, key_share=True)
+    )
+    for session_id, status, participant_id in rows:
+        if status == "withdrawn":
+            closed.add(session_id)
+        elif status not in RUNS:
+            ended[session_id] = participant_id
+    if ended:
+        # Asked after the lock was there: an erasure that held it is seen.
+        query = select(Erasure.participant_id).where(Erasure.participant_id.in_(ended.values()))
+        erased = set(db.scalars(query))
+        closed.update(one for one, participant in ended.items() if participant in erased)
+    return frozenset(closed)
+
+
+def require_capture(db: Session, session_id: str) -> None:
+    """Raise Withdrawn where nothing more is taken of the session's participant."""
+    if closed_sessions(db, [session_id]):
+        raise refusal()
+
+
+def refusal() -> Withdrawn:
+    """What a device is told that brings data all the same."""
+    return Withdrawn(
+        "the participant has withdrawn: nothing more is stored of this session",
+        remedy="Stop recording, and discard what this device still keeps of it.",
+    )

@@ -1,0 +1,90 @@
+"""A consent as it is given, and as it is shown afterwards."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+SIGNATURE_WIDTH, SIGNATURE_HEIGHT = 600, 200
+"""The surface that is signed on; a path's coordinates are on it, origin at the top left."""
+_STROKE = r"M\d{1,3}(\.\d)? \d{1,3}(\.\d)?(L\d{1,3}(\.\d)? \d{1,3}(\.\d)?)*"
+
+SignaturePath = Annotated[
+    str,
+    StringConstraints(max_length=40_000, pattern=rf"^({_STROKE})+$"),
+    Field(description="an SVG path of moves and lines on a surface of 600 by 200"),
+]
+Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=120)]
+Mode = Literal["tablet", "operator", "paper"]
+
+
+class ConsentGiven(BaseModel):
+    """What the participant did on the tablet; `ticked` names statements by their index."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    step_index: int = Field(ge=0, lt=1000)
+    ticked: list[Annotated[int, Field(ge=0, lt=20)]] = Field(default=[], max_length=20)
+    name: Name | None = None
+    signature: SignaturePath | None = None
+
+
+class PaperConsent(BaseModel):
+    """A consent that was signed on paper: where the sheet is kept, and why on paper."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    place: str = Field(min_length=1, max_length=200)
+    reason: str = Field(min_length=1, max_length=1000)
+
+
+class StatementForm(BaseModel):
+    """A line to tick, in the participant's language."""
+
+    text: str
+    optional: bool
+
+
+class ConsentForm(BaseModel):
+    """What a consent asks for besides its text."""
+
+    signature: Literal["none", "typed", "drawn"]
+    statements: list[StatementForm]
+
+
+class StatementRecord(StatementForm):
+    """A line with what became of it; null where that stands on paper."""
+
+    ticked: bool | None
+
+
+class ConsentRecord(BaseModel):
+    """Who agreed to what, and when: everything a printed record shows.
+
+    `text` and `statements` are taken from the study version that was shown; `text_matches` says
+    that the text still has the hash that was stored with the consent. Of an erased consent only
+    `erased` and the time are left.
+    """
+
+    session_id: str
+    participant_code: str
+    simulated: bool
+    study_key: str
+    study_title: str
+    study_version: int
+    content_hash: str
+    language: str
+    title: str
+    text: str
+    text_hash: str
+    text_matches: bool
+    statements: list[StatementRecord]
+    signature_wanted: Literal["none", "typed", "drawn"]
+    name: str | None
+    signature: str | None
+    mode: Mode
+    paper: PaperConsent | None
+    at: datetime
+    by: str
+    erased: bool
+    records: int

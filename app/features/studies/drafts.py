@@ -1,0 +1,169 @@
+"""Working on a file that is not stored yet: checking it, changing it, walking through it."""
+
+from collections.abc import Sequence
+
+from sqlalchemy.orm import Session
+
+from app.errors import InvalidInput
+from app.features.config_problems import invalid_config, problem_views
+from app.features.instruments.service import parsed_instruments
+from app.features.studies.draft_schemas import (
+    ChangeRequest,
+    CheckResult,
+    EstimateRule,
+    StudyFigures,
+    TimelineRequest,
+    TimelineStep,
+    TimelineView,
+)
+from app.features.studies.service import check_study
+from app.protocol import ConfigError, LedgerRow, StudyProtocol, compile_plan, load_study, sequences
+from app.protocol.editing import Change, edit_text
+from app.protocol.orders import ledger_block
+from app.protocol.source import Plain, path_text, read_source
+from app.protocol.timeline import (
+    BY_HAND_S,
+    ITEM_S,
+    OPENING_S,
+    READING_WORDS_PER_S,
+    TimedStep,
+    timeline,
+    total_s,
+)
+
+RULE = EstimateRule(
+    reading_words_per_s=READING_WORDS_PER_S,
+    opening_s=OPENING_S,
+    by_hand_s=BY_HAND_S,
+    item_s=ITEM_S,
+)
+
+
+def check(db: Session, text: str) -> CheckResult:
+    """Every problem of a file, or what it asks for; and its values where it can be read."""
+    instruments = parsed_instruments(db)
+    tree, lines = _tree(text)
+    try:
+        loaded = load_study(text, instruments=instruments)
+    except ConfigError as error:
+        return CheckResult(ok=False, problems=problem_views(error), tree=tree, lines=lines)
+    protocol = loaded.protocol
+    orders = sequences(protocol)
+    plan = compile_plan(protocol, orders[0])
+    steps = timeline(protocol, plan, instruments, language=protocol.languages[0])
+    return CheckResult(
+        ok=True,
+        key=protocol.key,
+        content_hash=loaded.content_hash,
+        design_hash=protocol.design_hash,
+        tree=tree,
+        lines=lines,
+        summary=StudyFigures(
+            conditions=len(protocol.conditions),
+            orders=len(orders),
+            replicates=protocol.orders.replicates,
+            slots=len(orders) * protocol.orders.replicates,
+            blocks=len(protocol.conditions),
+            administrations=sum(step.instrument is not None for step in plan),
+            instruments=list(protocol.instrument_keys),
+            planned_minutes=_minutes(_planned_s(steps)),
+            minutes=_minutes(total_s(steps)),
+        ),
+    )
+
+
+def edit(text: str, changes: Sequence[ChangeRequest]) -> str:
+    """The text after the changes. Raises InvalidConfig where it cannot be read or changed."""
+    wanted = [Change(tuple(one.path), one.action, one.value, one.to) for one in changes]
+    try:
+        return edit_text(text, wanted)
+    except ConfigError as error:
+        raise invalid_config("study", error) from error
+
+
+def dry_run(db: Session, request: TimelineRequest) -> TimelineView:
+    """One participant's visit, step by step. Raises InvalidConfig and InvalidInput."""
+    protocol = check_study(db, request.yaml).protocol
+    orders = sequences(protocol)
+    slot, row = _row(protocol, orders, request)
+    language = (
+        request.language if request.language in protocol.languages else (protocol.languages[0])
+    )
+    plan = compile_plan(protocol, row.sequence, block_limb_flip=slot % 2 == 1)
+    steps = timeline(protocol, plan, parsed_instruments(db), language=language)
+    return TimelineView(
+        slot=slot,
+        slots=len(orders) * protocol.orders.replicates,
+        replicate=row.replicate,
+        sequence=list(row.sequence),
+        latencies_ms=[protocol.condition(key).latency_ms for key in row.sequence],
+        steps=[_step(protocol, step, language) for step in steps],
+        planned_s=_planned_s(steps),
+        total_s=total_s(steps),
+        language=language,
+        languages=list(protocol.languages),
+        rule=RULE,
+    )
+
+
+def _row(
+    protocol: StudyProtocol, orders: Sequence[tuple[str, ...]], request: TimelineRequest
+) -> tuple[int, LedgerRow]:
+    """The slot and its row of the ledger; for an order by its place, the first slot that has it."""
+    if request.sequence_index is not None:
+        if request.sequence_index >= len(orders):
+            raise InvalidInput(
+                "the study has no such order",
+                value=request.sequence_index,
+                valid=f"0 to {len(orders) - 1}",
+            )
+        wanted = orders[request.sequence_index]
+        block = ledger_block(protocol, 0)
+        return next((at, row) for at, row in enumerate(block) if row.sequence == wanted)
+    slot = request.slot or 0
+    return slot, ledger_block(protocol, slot // len(orders))[slot % len(orders)]
+
+
+def _step(protocol: StudyProtocol, timed: TimedStep, language: str) -> TimelineStep:
+    step = timed.step
+    label = None if step.condition is None else protocol.condition(step.condition).label
+    words = None if step.text is None else protocol.texts.get(step.text)
+    return TimelineStep(
+        index=step.index,
+        key=step.key,
+        kind=step.kind,
+        title=step.title[language],
+        block=step.block,
+        condition=step.condition,
+        condition_label=None if label is None else label[language],
+        latency_ms=step.latency_ms,
+        limb=step.limb,
+        instrument=step.instrument,
+        preparation_s=step.preparation_s,
+        duration_s=step.duration_s,
+        freeze_s=step.freeze_s,
+        start_s=timed.start_s,
+        length_s=timed.length_s,
+        estimated=timed.estimated,
+        text=None if words is None else words[language],
+    )
+
+
+def _tree(text: str) -> tuple[dict[str, Plain] | None, dict[str, int]]:
+    """The values of a file and their lines; nothing where it cannot be read."""
+    try:
+        source = read_source(text)
+    except ConfigError:
+        return None, {}
+    if not isinstance(source.tree, dict):
+        return None, {}
+    marks = {**source.values, **source.keys}
+    return source.tree, {path_text(path): mark.line for path, mark in marks.items()}
+
+
+def _planned_s(steps: Sequence[TimedStep]) -> float:
+    return sum(step.length_s for step in steps if not step.estimated)
+
+
+def _minutes(time_s: float) -> float:
+    return round(time_s / 60, 1)

@@ -1,0 +1,1 @@
+"""The page that helps a device to trust the lab's authority, and its words."""

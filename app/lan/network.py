@@ -1,0 +1,62 @@
+"""Where the running server can be reached, as pages and terminals tell it.
+
+`Network` is one for the whole run and always answers with the newest `Reach`: a laptop that joins
+another Wi-Fi gets other addresses and another certificate while the server runs.
+"""
+
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Literal
+from urllib.parse import urlsplit
+
+Mode = Literal["loopback", "lan", "without_tls"]
+LOOPBACK_HOSTS = ("localhost", "127.0.0.1", "::1")
+DEFAULT_PORT = 8321
+
+
+@dataclass(frozen=True)
+class ShownCertificate:
+    """The certificate of the https address; `authority_fingerprint` is what devices install."""
+
+    source: Literal["authority", "files"]
+    server_fingerprint: str
+    authority_fingerprint: str | None
+    expires_at: datetime
+    authority_expires_at: datetime | None
+    uncovered: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Reach:
+    """Addresses (URLs without a slash at the end), the best one first.
+
+    `loopback`: only this machine, and headsets on its USB cable. `lan`: also https at `urls`.
+    `without_tls`: plain http at `urls`, with no secrecy and without WebXR.
+    """
+
+    mode: Mode = "loopback"
+    local_url: str = f"http://127.0.0.1:{DEFAULT_PORT}"
+    urls: tuple[str, ...] = ()
+    help_url: str | None = None
+    certificate: ShownCertificate | None = None
+
+    @property
+    def port(self) -> int:
+        """The port on this machine, which a USB cable leads to."""
+        return urlsplit(self.local_url).port or DEFAULT_PORT
+
+    def for_devices(self, asked_at: str) -> str:
+        """The address to give to a device, when a page was asked for at the URL `asked_at`.
+
+        Whoever asks from this machine sees `localhost`, which is another machine for the tablet.
+        """
+        if self.urls and urlsplit(asked_at).hostname in LOOPBACK_HOSTS:
+            return self.urls[0]
+        return asked_at.rstrip("/")
+
+
+@dataclass
+class Network:
+    """The newest reach; replaced as a whole, so any thread may read it."""
+
+    reach: Reach = field(default_factory=Reach)

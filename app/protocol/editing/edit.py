@@ -1,0 +1,69 @@
+"""Changes to a file's text that leave comments, order, quotes and indentation of the rest alone.
+
+Each change replaces the smallest stretch of text that holds the value. What comes out is read again
+and must say exactly what the change meant; where it does not (an unusual layout), the value around
+it is written anew, and so on outwards. So a change is right or refused, never nearly right.
+"""
+
+from collections.abc import Iterable, Iterator
+
+from app.protocol.editing.change import Change, applied, same
+from app.protocol.editing.spans import Span, spans_of
+from app.protocol.editing.splice import spliced
+from app.protocol.errors import ConfigError, ConfigProblem
+from app.protocol.source import Path, Plain, path_text, read_source
+
+
+def edit_text(text: str, changes: Iterable[Change]) -> str:
+    """The text after the changes, one after the other.
+
+    Raises ConfigError for a text that is not readable or over the limits of `read_source`, and for
+    a change that does not fit it.
+    """
+    tree = read_source(text).tree
+    for change in changes:
+        wanted = applied(tree, change)
+        text = _changed(text, change, wanted)
+        tree = wanted
+    return text
+
+
+def _changed(text: str, change: Change, wanted: Plain) -> str:
+    root = spans_of(text)
+    for candidate in _candidates(text, root, change, wanted):
+        try:
+            if same(read_source(candidate).tree, wanted):
+                return candidate
+        except ConfigError:
+            continue
+    place = root.at(change.path) or root
+    line = text.count("\n", 0, place.start) + 1
+    raise ConfigError(
+        [
+            ConfigProblem(
+                path_text(change.path), line, 1, "This place cannot be changed from a form.",
+                remedy="Change it in the text: its layout or its length leaves no other way.",
+            )
+        ]
+    )  # fmt: skip
+
+
+def _candidates(text: str, root: Span, change: Change, wanted: Plain) -> Iterator[str]:
+    fine = spliced(text, root, change)
+    if fine is not None:
+        yield fine
+    path: Path = change.path[:-1]
+    while path:
+        whole = spliced(text, root, Change(path, "set", _value(wanted, path)))
+        if whole is not None:
+            yield whole
+        path = path[:-1]
+
+
+def _value(tree: Plain, path: Path) -> Plain:
+    for part in path:
+        if isinstance(tree, list) and isinstance(part, int):
+            tree = tree[part]
+        elif isinstance(tree, dict):
+            tree = tree[str(part)]
+    return tree

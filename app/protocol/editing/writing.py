@@ -1,0 +1,132 @@
+"""Values as YAML text: on one line where that reads well, else as an indented block."""
+
+import json
+import textwrap
+
+import yaml
+
+from app.protocol.errors import ConfigError
+from app.protocol.source import Plain, read_source
+
+WIDTH = 100
+_RESOLVER = yaml.SafeLoader("")
+
+
+def inline(value: Plain) -> str:
+    """The value on one line, in flow style; words are quoted only where they must be."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_word(key)}: {inline(one)}" for key, one in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(inline, value)) + "]"
+    return _word(value) if isinstance(value, str) else _plain(value)
+
+
+def scalar(value: Plain, style: str | None = None) -> str:
+    """A scalar on one line outside of brackets, in the quotes it had if it may keep them."""
+    if not isinstance(value, str):
+        return _plain(value)
+    if style == '"' or "\n" in value:
+        return _quoted(value)
+    if style == "'":
+        return "'" + value.replace("'", "''") + "'"
+    return value if _reads_back(f"k: {value}\n", {"k": value}, value) else _quoted(value)
+
+
+def block(value: Plain, indent: int, style: str | None = None) -> list[str]:
+    """The value as lines behind a key or a dash: the first goes behind it, the others below.
+
+    The others come with their `indent`. `style`: that of the scalar that stood there.
+    """
+    if isinstance(value, str):
+        return _text(value, indent, style)
+    if not isinstance(value, dict | list):
+        return [_plain(value)]
+    short = inline(value)
+    if not value or (_is_flat(value) and len(short) + indent <= WIDTH - 8):
+        return [short]
+    return ["", *_lines(value, indent)]
+
+
+def entry(key: str, value: Plain, indent: int) -> list[str]:
+    """Lines of a mapping's entry, all with their `indent`."""
+    first, *rest = block(value, indent + 2)
+    return [" " * indent + f"{_word(key)}:" + (f" {first}" if first else ""), *rest]
+
+
+def item(value: Plain, indent: int, *, spread: bool = False) -> list[str]:
+    """Lines of a list's entry, all with their `indent`; `spread`: a key a line, however short."""
+    first, *rest = block(value, indent + 2)
+    if spread and isinstance(value, dict) and value:
+        first, rest = "", _lines(value, indent + 2)
+    if first == "" and rest:
+        first, *rest = rest
+    return [" " * indent + "- " + first.lstrip(), *rest]
+
+
+def _lines(value: dict[str, Plain] | list[Plain], indent: int) -> list[str]:
+    if isinstance(value, dict):
+        return [line for key, one in value.items() for line in entry(key, one, indent)]
+    return [line for one in value for line in item(one, indent)]
+
+
+def _is_flat(value: dict[str, Plain] | list[Plain]) -> bool:
+    """Whether it holds nothing but short words, or mappings of them such as labels."""
+    inner = value.values() if isinstance(value, dict) else value
+    return all(
+        not (isinstance(one, dict | list) or (isinstance(one, str) and "\n" in one))
+        or (isinstance(value, dict) and isinstance(one, dict | list) and _is_flat(one))
+        for one in inner
+    )
+
+
+def _text(value: str, indent: int, style: str | None) -> list[str]:
+    pad = " " * max(indent, 1)
+    if "\n" in value:
+        lines = [pad + line if line else "" for line in value.split("\n")]
+        sign = "|-" if not value.endswith("\n") else "|"
+        literal = [sign, *(lines if sign == "|-" else lines[:-1])]
+        if _reads_back("k: " + "\n".join(literal) + "\n", {"k": value}):
+            return literal
+        return [_quoted(value)]
+    if style == ">" and len(value) + indent > WIDTH - 20:
+        wrapped = textwrap.wrap(
+            value, max(WIDTH - indent, 30), break_long_words=False, break_on_hyphens=False
+        )
+        folded = [">-", *(pad + line for line in wrapped)]
+        if _reads_back("k: " + "\n".join(folded) + "\n", {"k": value}):
+            return folded
+    return [scalar(value, style)]
+
+
+def _plain(value: Plain) -> str:
+    if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+        return str(int(value))
+    return "null" if value is None else json.dumps(value)
+
+
+def _word(value: str) -> str:
+    return value if _reads_back(f"[{value}]\n", [value], value) else _quoted(value)
+
+
+def _quoted(value: str) -> str:
+    """In double quotes, with all line breaks that YAML knows written as escapes."""
+    escaped = json.dumps(value, ensure_ascii=False)
+    for mark in ("\x7f", "\x85", "\u2028", "\u2029", "\ufeff"):
+        escaped = escaped.replace(mark, f"\\u{ord(mark):04x}")
+    return escaped
+
+
+def _reads_back(text: str, wanted: Plain, word: str | None = None) -> bool:
+    """Whether the text says just that, to us and (for a `word`) to readers of YAML 1.1 too."""
+    if word is not None and (word != word.strip() or not word or _is_special(word)):
+        return False
+    try:
+        return read_source(text).tree == wanted
+    except ConfigError:
+        return False
+
+
+def _is_special(word: str) -> bool:
+    """Whether readers of YAML 1.1 take the bare word for something else, such as no for false."""
+    tag: str = _RESOLVER.resolve(yaml.ScalarNode, word, (True, False))  # type: ignore[no-untyped-call]
+    return tag != "tag:yaml.org,2002:str"

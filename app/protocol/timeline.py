@@ -1,0 +1,83 @@
+"""How long a visit takes: the plan of one participant with the time of each step.
+
+Timed steps take what the study says: preparation, active time and freeze. Pauses and walks back
+come on top and cannot be planned. All other steps are estimated by the rule below, which is ours
+and rough: a reading speed, a time for each kind of item, and a time to be measured and to be
+dressed. An estimate is always marked as one.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from app.protocol.plan import Step
+from app.protocol.study import StudyProtocol
+from app.science.instruments import Instrument
+
+READING_WORDS_PER_S = 3.0
+"""Unhurried silent reading of instructions, about 180 words a minute."""
+OPENING_S = 10.0
+"""Finding the way into a page or a form."""
+BY_HAND_S = {"height": 60.0, "materialise": 60.0}
+"""Steps in which the experimenter and the participant do something together."""
+ITEM_S = {"likert": 6.0, "boolean": 4.0, "choice": 5.0, "integer": 8.0, "number": 8.0, "text": 20.0}
+"""One answer of each kind, reading the question included."""
+
+
+@dataclass(frozen=True)
+class TimedStep:
+    """A step with its time. `estimated`: by our rule, not by the study. All in seconds."""
+
+    step: Step
+    start_s: float
+    length_s: float
+    estimated: bool
+
+
+def timeline(
+    protocol: StudyProtocol,
+    plan: Sequence[Step],
+    instruments: Mapping[str, Instrument],
+    *,
+    language: str,
+) -> tuple[TimedStep, ...]:
+    """The steps of `plan` one after the other. `language`: in which texts are read."""
+    timed: list[TimedStep] = []
+    start_s = 0.0
+    for step in plan:
+        planned_s = _planned_s(step)
+        estimated = planned_s is None
+        length_s = (
+            _estimated_s(protocol, step, instruments, language)
+            if planned_s is None
+            else (planned_s)
+        )
+        timed.append(TimedStep(step, start_s, length_s, estimated))
+        start_s += length_s
+    return tuple(timed)
+
+
+def total_s(steps: Sequence[TimedStep]) -> float:
+    """Length of the whole visit, seconds."""
+    return sum(step.length_s for step in steps)
+
+
+def form_s(instrument: Instrument) -> float:
+    """The estimated time to fill in an instrument, seconds."""
+    return OPENING_S + sum(ITEM_S[item.type] for item in instrument.items)
+
+
+def _planned_s(step: Step) -> float | None:
+    if step.duration_s is None:
+        return None
+    return (step.preparation_s or 0.0) + step.duration_s + (step.freeze_s or 0.0)
+
+
+def _estimated_s(
+    protocol: StudyProtocol, step: Step, instruments: Mapping[str, Instrument], language: str
+) -> float:
+    if step.instrument is not None:
+        instrument = instruments.get(step.instrument)
+        return OPENING_S if instrument is None else form_s(instrument)
+    wording = protocol.texts.get(step.text, {}) if step.text is not None else {}
+    words = len(wording.get(language, "").split())
+    return round(BY_HAND_S.get(step.kind, OPENING_S) + words / READING_WORDS_PER_S)

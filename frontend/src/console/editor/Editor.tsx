@@ -1,0 +1,235 @@
+/** Writing a study: the form at the left, its YAML at the right, both always the same study. */
+import { ActionIcon, Button, Tabs, Tooltip } from "@mantine/core";
+import { notifications } from "@mantine/notifications";
+import { studies } from "@shared/api/endpoints";
+import { drafts } from "@shared/api/drafts";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { type JSX, type ReactNode, useEffect, useMemo, useRef, useState } from "react";
+import { useLocation } from "wouter";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { instrumentsQuery } from "../queries";
+import { Problems } from "../pages/Problems";
+import { Changes } from "./Changes";
+import { DryRun } from "./DryRun";
+import classes from "./Editor.module.css";
+import { Figures } from "./Figures";
+import { Form } from "./Form";
+import { FormContext, type FormState } from "./formContext";
+import { dropDraft, keepDraft } from "./keptDrafts";
+import { LeaveGuard } from "./LeaveGuard";
+import type { JsonObject } from "./paths";
+import { isList } from "./paths";
+import { specOfFile } from "./schema";
+import { type Draft, useDraft } from "./useDraft";
+import { YamlField } from "./YamlField";
+
+interface EditorProps {
+  /** The study that gets a new version; null makes a new study. */
+  readonly studyKey: string | null;
+  readonly title: string;
+  /** What is stored, and what the writing begins with. */
+  readonly stored: string;
+  readonly initial: string;
+  readonly notice?: ReactNode;
+}
+
+const TABS = ["write", "dryRun", "changes"] as const;
+type Tab = (typeof TABS)[number];
+
+export function Editor({ studyKey, title, stored, initial, notice }: EditorProps): JSX.Element {
+  const { t } = useTexts();
+  const draft = useDraft(initial);
+  const [tab, setTab] = useState<Tab>("write");
+  const id = studyKey ?? "new";
+  const unsaved = draft.text !== stored;
+  useEffect(() => {
+    if (unsaved) keepDraft(id, draft.text);
+    else dropDraft(id);
+  }, [id, unsaved, draft.text]);
+  const tabs = studyKey === null ? TABS.filter((one) => one !== "changes") : TABS;
+  return (
+    <div className={classes.editor}>
+      <LeaveGuard unsaved={unsaved} />
+      <Bar draft={draft} studyKey={studyKey} title={title} unsaved={unsaved} />
+      {notice}
+      <Tabs
+        value={tab}
+        onChange={(value) => setTab((value ?? "write") as Tab)}
+        className={classes.tabs ?? ""}
+      >
+        <Tabs.List>
+          {tabs.map((name) => (
+            <Tabs.Tab key={name} value={name}>
+              {t(`editor.tab.${name}`)}
+            </Tabs.Tab>
+          ))}
+        </Tabs.List>
+        <Tabs.Panel value="write" className={classes.halves ?? ""}>
+          <FormHalf draft={draft} />
+          <TextHalf draft={draft} initial={initial} />
+        </Tabs.Panel>
+        <Tabs.Panel value="dryRun" className={classes.page ?? ""}>
+          {tab === "dryRun" && <DryRun draft={draft} />}
+        </Tabs.Panel>
+        <Tabs.Panel value="changes" className={classes.page ?? ""}>
+          {tab === "changes" && studyKey !== null && <Changes draft={draft} studyKey={studyKey} />}
+        </Tabs.Panel>
+      </Tabs>
+    </div>
+  );
+}
+
+interface BarProps {
+  readonly draft: Draft;
+  readonly studyKey: string | null;
+  readonly title: string;
+  readonly unsaved: boolean;
+}
+
+function Bar({ draft, studyKey, title, unsaved }: BarProps): JSX.Element {
+  const { t } = useTexts();
+  const [, navigate] = useLocation();
+  const queries = useQueryClient();
+  const save = useMutation({
+    mutationFn: () =>
+      studyKey === null ? studies.add(draft.text) : studies.addVersion(studyKey, draft.text),
+    onSuccess: async (study) => {
+      dropDraft(studyKey ?? "new");
+      await queries.invalidateQueries({ queryKey: ["studies"] });
+      notifications.show({ message: t("editor.saved", { version: study.version }) });
+      navigate(`/studies/${study.key}/edit`);
+    },
+  });
+  return (
+    <>
+      <header className={classes.bar}>
+        <div className={classes.title}>
+          <h1>{title}</h1>
+          <Status draft={draft} unsaved={unsaved} />
+        </div>
+        <Figures figures={draft.check?.summary ?? null} />
+        <div className={classes.actions}>
+          <Step label={t("editor.undo")} turned={false} onClick={draft.undo} />
+          <Step label={t("editor.redo")} turned onClick={draft.redo} />
+          <Button
+            leftSection={<Icon name="check" size={17} />}
+            disabled={!unsaved || !draft.upToDate || draft.check?.ok !== true}
+            loading={save.isPending}
+            onClick={() => save.mutate()}
+          >
+            {t(studyKey === null ? "editor.saveNew" : "editor.save")}
+          </Button>
+        </div>
+      </header>
+      {save.isError && <Failure error={save.error} />}
+    </>
+  );
+}
+
+interface StepProps {
+  readonly label: string;
+  readonly turned: boolean;
+  readonly onClick: () => void;
+}
+
+function Step({ label, turned, onClick }: StepProps): JSX.Element {
+  return (
+    <Tooltip label={label}>
+      <ActionIcon variant="default" size="lg" aria-label={label} onClick={onClick}>
+        <span className={turned ? classes.mirrored : undefined}>
+          <Icon name="redo" size={17} />
+        </span>
+      </ActionIcon>
+    </Tooltip>
+  );
+}
+
+function Status({ draft, unsaved }: Pick<BarProps, "draft" | "unsaved">): JSX.Element {
+  const { t } = useTexts();
+  const count = draft.problems.length;
+  return (
+    <p className={classes.status} role="status">
+      {!draft.upToDate ? (
+        t("editor.checking")
+      ) : count > 0 ? (
+        <span className={classes.bad}>
+          <Icon name="alert" size={15} />
+          {t("editor.problems", { count })}
+        </span>
+      ) : (
+        <span className={classes.good}>
+          <Icon name="check" size={15} />
+          {t("editor.fine")}
+        </span>
+      )}
+      <span>{t(unsaved ? "editor.unsaved" : "editor.asStored")}</span>
+    </p>
+  );
+}
+
+const NOBODY: readonly string[] = [];
+
+function FormHalf({ draft }: { readonly draft: Draft }): JSX.Element {
+  const { t } = useTexts();
+  const schema = useQuery({
+    queryKey: ["study-schema"],
+    queryFn: drafts.schema,
+    staleTime: Number.POSITIVE_INFINITY,
+  });
+  const library = useQuery(instrumentsQuery);
+  const spec = useMemo(() => (schema.data === undefined ? null : specOfFile(schema.data)), [schema.data]);
+  const last = useRef<JsonObject | null>(null);
+  const readable = draft.check?.tree ?? null;
+  if (readable !== null) last.current = readable as JsonObject;
+  const tree = last.current;
+  if (schema.isError) return <Failure error={schema.error} onRetry={() => void schema.refetch()} />;
+  if (spec === null || draft.check === undefined) return <div className={classes.half} />;
+  if (tree === null || readable === null) {
+    return (
+      <div className={classes.half}>
+        <Notice tone="warn" title={t("editor.unreadable")}>
+          {t("editor.unreadable.body")}
+        </Notice>
+      </div>
+    );
+  }
+  const state: FormState = {
+    tree,
+    languages: isList(tree.languages) ? tree.languages.map(String) : NOBODY,
+    instruments: library.data?.map(({ key }) => key) ?? NOBODY,
+    problems: draft.problems,
+    change: draft.change,
+    reveal: draft.reveal,
+  };
+  return (
+    <section className={classes.half} aria-label={t("editor.form")}>
+      {draft.error != null && <Failure error={draft.error} />}
+      <FormContext.Provider value={state}>
+        <Form spec={spec} />
+      </FormContext.Provider>
+    </section>
+  );
+}
+
+function TextHalf({ draft, initial }: { readonly draft: Draft; readonly initial: string }) {
+  const { t } = useTexts();
+  return (
+    <section className={classes.textHalf} aria-label={t("editor.text")}>
+      <YamlField
+        initial={initial}
+        label={t("editor.text")}
+        problems={draft.problems}
+        field={draft.field}
+        onChange={draft.onText}
+      />
+      {draft.problems.length > 0 && (
+        <div className={classes.problemList}>
+          <Problems problems={draft.problems} onPick={draft.goTo} />
+        </div>
+      )}
+    </section>
+  );
+}

@@ -1,0 +1,130 @@
+/** The page of a study that is being written: a stored one, or a new one from some beginning. */
+import { Button } from "@mantine/core";
+import { studies } from "@shared/api/endpoints";
+import { drafts } from "@shared/api/drafts";
+import { dateTime } from "@shared/format";
+import { inLanguage } from "@shared/text";
+import { Notice } from "@shared/ui/Notice";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { templatesQuery } from "../queries";
+import { Loaded } from "../ui/Loaded";
+import { useTitle } from "../ui/useTitle";
+import { Editor } from "./Editor";
+import { dropDraft, keptDraft } from "./keptDrafts";
+
+export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.Element {
+  const { t, language } = useTexts();
+  useTitle(t("editor.title", { name: studyKey }));
+  // Always fresh: whoever writes must begin with what is stored now.
+  const query = useQuery({
+    queryKey: ["studies", studyKey, "to-edit"],
+    queryFn: () => studies.get(studyKey),
+    gcTime: 0,
+    staleTime: Number.POSITIVE_INFINITY,
+  });
+  return (
+    <Loaded query={query}>
+      {(study) => (
+        <Begun
+          key={study.content_hash}
+          id={study.key}
+          studyKey={study.key}
+          title={inLanguage(study.protocol.title, language)}
+          stored={study.yaml}
+          begin={study.yaml}
+        />
+      )}
+    </Loaded>
+  );
+}
+
+interface NewStudyEditorProps {
+  /** "template", "study", "empty" or "draft" (what was imported or kept). */
+  readonly from: string;
+  readonly name: string | undefined;
+}
+
+const EMPTY = "# A study is conditions, orders, a procedure, places, colours and texts.\nkey: my-study\n";
+
+export function NewStudyEditor({ from, name = "" }: NewStudyEditorProps): JSX.Element {
+  const { t } = useTexts();
+  useTitle(t("new.title"));
+  const templates = useQuery({ ...templatesQuery, enabled: from === "template" });
+  const source = useQuery({
+    queryKey: ["studies", name, "to-copy"],
+    queryFn: async () => {
+      const study = await studies.get(name);
+      return drafts.edit(study.yaml, [{ path: ["key"], action: "set", value: `${study.key}-copy` }]);
+    },
+    enabled: from === "study",
+    gcTime: 0,
+    staleTime: Number.POSITIVE_INFINITY,
+  });
+  const begin = (text: string) => (
+    <Begun id="new" studyKey={null} title={t("new.title")} stored="" begin={text} fresh={from !== "draft"} />
+  );
+  if (from === "study") return <Loaded query={source}>{({ yaml }) => begin(yaml)}</Loaded>;
+  if (from === "template") {
+    return (
+      <Loaded query={templates}>
+        {(all) => {
+          const found = all.find(({ key }) => key === name);
+          return found === undefined ? <Failure error={new Error(name)} /> : begin(found.yaml);
+        }}
+      </Loaded>
+    );
+  }
+  return begin(EMPTY);
+}
+
+interface BegunProps {
+  readonly id: string;
+  readonly studyKey: string | null;
+  readonly title: string;
+  readonly stored: string;
+  readonly begin: string;
+  /** A beginning that was chosen just now counts more than what was kept. */
+  readonly fresh?: boolean;
+}
+
+/** What was written here before and not saved is there again, and can be dropped. */
+function Begun({ id, studyKey, title, stored, begin, fresh = false }: BegunProps): JSX.Element {
+  const { t, language } = useTexts();
+  const [kept] = useState(() => (fresh ? null : keptDraft(id)));
+  const [dropped, setDropped] = useState(false);
+  const [openedAt] = useState(() => new Date().toISOString());
+  const restored = kept !== null && kept !== stored && !dropped;
+  return (
+    <Editor
+      key={restored ? "kept" : "stored"}
+      studyKey={studyKey}
+      title={title}
+      stored={stored}
+      initial={restored ? kept : begin}
+      notice={
+        restored &&
+        studyKey !== null && (
+          <Notice
+            tone="info"
+            title={t("editor.restored", { time: dateTime(openedAt, language) })}
+            actions={
+              <Button
+                size="xs"
+                variant="default"
+                onClick={() => {
+                  dropDraft(id);
+                  setDropped(true);
+                }}
+              >
+                {t("editor.discard")}
+              </Button>
+            }
+          />
+        )
+      }
+    />
+  );
+}

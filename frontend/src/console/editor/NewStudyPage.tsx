@@ -1,0 +1,117 @@
+/** How a new study begins: from a template, from a study that exists, from a file, from nothing. */
+import { Button, FileButton, Title } from "@mantine/core";
+import type { Template } from "@shared/api/drafts";
+import { inLanguage } from "@shared/text";
+import { Icon } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import type { JSX, ReactNode } from "react";
+import { Link, useLocation } from "wouter";
+import { useTexts } from "../i18n";
+import { studiesQuery, templatesQuery } from "../queries";
+import { Loaded } from "../ui/Loaded";
+import { useTitle } from "../ui/useTitle";
+import { keepDraft } from "./keptDrafts";
+import classes from "./NewStudy.module.css";
+
+export function NewStudyPage(): JSX.Element {
+  const { t } = useTexts();
+  useTitle(t("new.title"));
+  return (
+    <>
+      <Link href="/" className={classes.crumbs ?? ""}>
+        <Icon name="back" size={16} />
+        {t("app.studies")}
+      </Link>
+      <Title order={1}>{t("new.title")}</Title>
+      <p className={classes.lead}>{t("new.lead")}</p>
+      <Title order={2}>{t("new.templates")}</Title>
+      <Loaded query={useQuery(templatesQuery)}>
+        {(templates) => (
+          <ul className={classes.cards}>
+            {templates.map((template) => (
+              <TemplateCard key={template.key} template={template} />
+            ))}
+          </ul>
+        )}
+      </Loaded>
+      <div className={classes.others}>
+        <FromStudy />
+        <FromFile />
+        <Way icon="document" title={t("new.empty")} lead={t("new.empty.lead")}>
+          <Button component={Link} href="/new/empty" variant="default">
+            {t("new.empty.do")}
+          </Button>
+        </Way>
+      </div>
+    </>
+  );
+}
+
+function TemplateCard({ template }: { readonly template: Template }): JSX.Element {
+  const { language } = useTexts();
+  return (
+    <li>
+      <Link href={`/new/template/${template.key}`} className={classes.card ?? ""}>
+        <span className={classes.name}>{inLanguage(template.title, language)}</span>
+        <span className={classes.about}>{inLanguage(template.description, language)}</span>
+      </Link>
+    </li>
+  );
+}
+
+interface WayProps {
+  readonly icon: "document" | "upload" | "add";
+  readonly title: string;
+  readonly lead: string;
+  readonly children: ReactNode;
+}
+
+function Way({ icon, title, lead, children }: WayProps): JSX.Element {
+  return (
+    <section className={classes.way}>
+      <h2>
+        <Icon name={icon} size={18} />
+        {title}
+      </h2>
+      <p>{lead}</p>
+      {children}
+    </section>
+  );
+}
+
+function FromStudy(): JSX.Element {
+  const { t } = useTexts();
+  const studies = useQuery(studiesQuery);
+  return (
+    <Way icon="add" title={t("new.copy")} lead={t("new.copy.lead")}>
+      <ul className={classes.list}>
+        {(studies.data ?? []).map((study) => (
+          <li key={study.key}>
+            <Link href={`/new/study/${study.key}`}>{study.title}</Link>
+          </li>
+        ))}
+      </ul>
+    </Way>
+  );
+}
+
+function FromFile(): JSX.Element {
+  const { t } = useTexts();
+  const [, navigate] = useLocation();
+  const open = async (file: File | null) => {
+    if (file === null) return;
+    keepDraft("new", await file.text());
+    navigate("/new/draft");
+  };
+  return (
+    <Way icon="upload" title={t("new.import")} lead={t("new.import.lead")}>
+      <FileButton accept=".yaml,.yml,text/yaml" onChange={(file) => void open(file)}>
+        {(props) => (
+          <Button {...props} variant="default">
+            {t("import.file")}
+          </Button>
+        )}
+      </FileButton>
+    </Way>
+  );
+}

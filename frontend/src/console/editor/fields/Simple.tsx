@@ -1,0 +1,127 @@
+/** Fields of one value: words, numbers, choices, yes or no. */
+import { Autocomplete, ColorInput, NumberInput, Select, Switch, TextInput } from "@mantine/core";
+import type { JSX } from "react";
+import { useForm, useProblem, useValue } from "../formContext";
+import { useLabels } from "../labels";
+import type { Json, Path } from "../paths";
+import { isList, isObject } from "../paths";
+import type { NumberSpec } from "../schema";
+import { useCommitted } from "../useCommitted";
+
+interface FieldProps {
+  readonly path: Path;
+  readonly label: string;
+}
+
+const shown = (value: Json | undefined): string =>
+  value === undefined || value === null || typeof value === "object" ? "" : String(value);
+
+function useSet(path: Path): (value: Json) => void {
+  const { change } = useForm();
+  return (value) => change([{ path, action: "set", value }]);
+}
+
+export function WordsField({ path, label, pattern }: FieldProps & { readonly pattern: string | null }) {
+  const value = useValue(path);
+  const set = useSet(path);
+  const problem = useProblem(path);
+  const { reveal } = useForm();
+  const { hint } = useLabels();
+  const field = useCommitted(shown(value), set);
+  const known = useKnown(path);
+  const common = {
+    label,
+    description: hint(String(path.at(-1))),
+    error: problem,
+    value: field.value,
+    onBlur: field.onBlur,
+    onFocus: () => reveal(path),
+  };
+  if (pattern?.includes("[0-9a-f]{6}") === true)
+    return <ColorInput {...common} format="hex" onChange={(text) => field.onChange(text)} />;
+  if (known !== null)
+    return <Autocomplete {...common} data={[...known]} onChange={(text) => field.onChange(text)} />;
+  return <TextInput {...common} onChange={(event) => field.onChange(event.currentTarget.value)} />;
+}
+
+/** Keys that exist elsewhere in the file or in the library, for fields that name one. */
+function useKnown(path: Path): readonly string[] | null {
+  const { tree, instruments } = useForm();
+  switch (path.at(-1)) {
+    case "text":
+      return isObject(tree.texts) ? Object.keys(tree.texts) : [];
+    case "instrument":
+    case "questionnaire":
+      return instruments;
+    case "default": {
+      const palettes = isObject(tree.appearance) ? tree.appearance.palettes : undefined;
+      return isList(palettes)
+        ? palettes.flatMap((one) => (isObject(one) ? shown(one.key) : []))
+        : null;
+    }
+    default:
+      return null;
+  }
+}
+
+export function NumberField({ path, label, spec }: FieldProps & { readonly spec: NumberSpec }): JSX.Element {
+  const value = useValue(path);
+  const set = useSet(path);
+  const problem = useProblem(path);
+  const { reveal } = useForm();
+  const { hint } = useLabels();
+  const field = useCommitted(shown(value), (text) => {
+    const parsed = Number(text);
+    set(text.trim() === "" || !Number.isFinite(parsed) ? text : parsed);
+  });
+  return (
+    <NumberInput
+      label={label}
+      description={hint(String(path.at(-1)))}
+      error={problem}
+      value={field.value}
+      allowDecimal={!spec.whole}
+      step={spec.whole ? 1 : 0.01}
+      hideControls={!spec.whole}
+      onChange={(next) => field.onChange(String(next))}
+      onBlur={field.onBlur}
+      onFocus={() => reveal(path)}
+    />
+  );
+}
+
+export function ChoiceField({ path, label, values }: FieldProps & { readonly values: readonly string[] }) {
+  const value = useValue(path);
+  const set = useSet(path);
+  const problem = useProblem(path);
+  const { reveal } = useForm();
+  const labels = useLabels();
+  return (
+    <Select
+      label={label}
+      description={labels.hint(String(path.at(-1)))}
+      error={problem}
+      data={values.map((one) => ({ value: one, label: labels.value(one) }))}
+      value={shown(value) || null}
+      allowDeselect={false}
+      onChange={(next) => next !== null && set(next)}
+      onFocus={() => reveal(path)}
+    />
+  );
+}
+
+export function BooleanField({ path, label }: FieldProps): JSX.Element {
+  const value = useValue(path);
+  const set = useSet(path);
+  const problem = useProblem(path);
+  const { hint } = useLabels();
+  return (
+    <Switch
+      label={label}
+      description={hint(String(path.at(-1)))}
+      error={problem}
+      checked={value === true}
+      onChange={(event) => set(event.currentTarget.checked)}
+    />
+  );
+}

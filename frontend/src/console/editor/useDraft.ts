@@ -1,0 +1,96 @@
+/**
+ * A study file that is being written. The text in the field is the truth: the form asks the server
+ * for the text after a change, and puts the difference into the field, where it can be undone.
+ */
+import { redo, undo } from "@codemirror/commands";
+import { drafts } from "@shared/api/drafts";
+import type { CheckResult } from "@shared/api/types";
+import { useDebouncedValue } from "@mantine/hooks";
+import { keepPreviousData, useQuery } from "@tanstack/react-query";
+import { type RefObject, useEffect, useRef, useState } from "react";
+import { type Change, type Path, pathText } from "./paths";
+import { replaceText, showLine, type YamlText } from "./yamlText";
+
+const PAUSE_MS = 350;
+const NO_PROBLEMS: CheckResult["problems"] = [];
+
+export interface Draft {
+  readonly text: string;
+  readonly field: RefObject<YamlText | null>;
+  readonly onText: (text: string, byForm: boolean) => void;
+  /** Of the newest text that was checked; undefined before the first answer. */
+  readonly check: CheckResult | undefined;
+  readonly problems: CheckResult["problems"];
+  /** Whether the check speaks of the text as it is now. */
+  readonly upToDate: boolean;
+  readonly error: unknown;
+  readonly change: (changes: readonly Change[]) => void;
+  readonly reveal: (path: Path) => void;
+  readonly goTo: (line: number) => void;
+  readonly undo: () => void;
+  readonly redo: () => void;
+}
+
+export function useDraft(initial: string): Draft {
+  const [text, setText] = useState(initial);
+  const [byForm, setByForm] = useState(false);
+  const [settled] = useDebouncedValue(text, PAUSE_MS);
+  const [failure, setFailure] = useState<unknown>(null);
+  const field = useRef<YamlText | null>(null);
+  const queue = useRef(Promise.resolve());
+  useEffect(() => setText(initial), [initial]);
+  const wanted = byForm ? text : settled;
+  const query = useQuery({
+    queryKey: ["check", wanted],
+    queryFn: () => drafts.check(wanted),
+    placeholderData: keepPreviousData,
+    staleTime: Number.POSITIVE_INFINITY,
+    gcTime: 30_000,
+  });
+  const upToDate = wanted === text && !query.isPlaceholderData && query.data !== undefined;
+  const change = (changes: readonly Change[]) => {
+    queue.current = queue.current.then(async () => {
+      try {
+        await apply(field, changes);
+        setFailure(null);
+      } catch (error) {
+        setFailure(error);
+      }
+    });
+  };
+  const problems = query.data?.problems ?? NO_PROBLEMS;
+  return {
+    text,
+    field,
+    onText: (next, fromForm) => {
+      setText(next);
+      setByForm(fromForm);
+    },
+    check: query.data,
+    problems,
+    upToDate,
+    error: failure ?? query.error,
+    change,
+    reveal: (path) => {
+      const line = query.data?.lines?.[pathText(path)];
+      if (line !== undefined && field.current !== null) showLine(field.current.view, line, false);
+    },
+    goTo: (line) => field.current !== null && showLine(field.current.view, line, true),
+    undo: () => field.current !== null && undo(field.current.view),
+    redo: () => field.current !== null && redo(field.current.view),
+  };
+}
+
+/** Somebody may go on typing while the server answers: then the change is asked for anew. */
+async function apply(field: RefObject<YamlText | null>, changes: readonly Change[]): Promise<void> {
+  for (let attempt = 0; attempt < 5; attempt += 1) {
+    const view = field.current?.view;
+    if (view === undefined) return;
+    const before = view.state.doc.toString();
+    const { yaml } = await drafts.edit(before, changes);
+    if (view.state.doc.toString() === before) {
+      replaceText(view, yaml);
+      return;
+    }
+  }
+}

@@ -1,0 +1,87 @@
+/** How devices reach the server: the page Network, and what pairing says about it. */
+export const networkEn = {
+  "network.title": "Network",
+  "network.lead": "How tablets and headsets reach this server.",
+  "network.mode.loopback": "This computer only",
+  "network.mode.loopback.body":
+    "Nobody else can reach the server. Headsets can on a USB cable. For tablets, start it with --lan.",
+  "network.mode.lan": "Encrypted on the lab's network",
+  "network.mode.lan.body": "Tablets and headsets on the same network reach it over https.",
+  "network.mode.without_tls": "On the network without encryption",
+  "network.mode.without_tls.body":
+    "Everybody on it can read passwords, answers and movement. Headsets refuse to enter VR. Start the server with --lan instead.",
+  "network.addresses": "Addresses",
+  "network.addresses.best": "Best",
+  "network.addresses.tablet": "QR code of the tablet's page, {{url}}",
+  "network.addresses.scan": "The tablet's page",
+  "network.local": "This computer",
+  "network.first": "A device for the first time",
+  "network.first.body":
+    "Each device installs the lab's certificate once. This page shows how, for iPad, Android, Meta Quest, Windows, Mac and Linux.",
+  "network.first.qr": "QR code of the page that shows how to install the certificate",
+  "network.certificate": "Certificate",
+  "network.fingerprint": "Fingerprint (SHA-256)",
+  "network.fingerprint.compare":
+    "The help page on the device must show the same digits. If it does not, install nothing.",
+  "network.fingerprint.own": "Of the lab's own certificate.",
+  "network.expires": "Valid until",
+  "network.expires.authority":
+    "{{date}}. Renewed by itself; devices notice nothing until {{authority}}.",
+  "network.expires.own": "{{date}}. Put a new one in its place before; no restart is needed.",
+  "network.uncovered": "Not valid for some addresses of this computer",
+  "network.uncovered.body":
+    "{{addresses}}. Devices there are warned. Run “reembody tls renew --new-authority”; each device then installs the new certificate.",
+  "network.uncovered.own": "{{addresses}}. Devices that use them are warned.",
+  "network.cable": "A headset on a USB cable",
+  "network.cable.body":
+    "Needs neither network nor certificate. Connect the headset, allow debugging in it, and run on this computer:",
+  "network.cable.then": "Then open in the headset's browser:",
+  "network.none": "No address on a network",
+  "network.none.body": "This computer is on no network now. Addresses appear here within a minute.",
+  "pairing.first": "First time with this device? Install the certificate",
+  "pairing.first.qr": "QR code of the page that helps to install the certificate",
+};
+
+export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
+  "network.title": "Netzwerk",
+  "network.lead": "Wie Tablets und Headsets diesen Server erreichen.",
+  "network.mode.loopback": "Nur dieser Rechner",
+  "network.mode.loopback.body":
+    "Niemand sonst erreicht den Server. Headsets können es über ein USB-Kabel. Für Tablets mit --lan starten.",
+  "network.mode.lan": "Verschlüsselt im Netz des Labors",
+  "network.mode.lan.body": "Tablets und Headsets im selben Netz erreichen ihn über https.",
+  "network.mode.without_tls": "Im Netz ohne Verschlüsselung",
+  "network.mode.without_tls.body":
+    "Jeder darin kann Kennwörter, Antworten und Bewegung lesen. Headsets gehen nicht in VR. Den Server stattdessen mit --lan starten.",
+  "network.addresses": "Adressen",
+  "network.addresses.best": "Beste",
+  "network.addresses.tablet": "QR-Code der Seite für das Tablet, {{url}}",
+  "network.addresses.scan": "Seite für das Tablet",
+  "network.local": "Dieser Rechner",
+  "network.first": "Ein Gerät zum ersten Mal",
+  "network.first.body":
+    "Jedes Gerät installiert das Zertifikat des Labors einmal. Diese Seite zeigt wie, für iPad, Android, Meta Quest, Windows, Mac und Linux.",
+  "network.first.qr": "QR-Code der Seite, die zeigt, wie das Zertifikat installiert wird",
+  "network.certificate": "Zertifikat",
+  "network.fingerprint": "Fingerabdruck (SHA-256)",
+  "network.fingerprint.compare":
+    "Die Hilfeseite auf dem Gerät muss dieselben Ziffern zeigen. Sonst nichts installieren.",
+  "network.fingerprint.own": "Des eigenen Zertifikats des Labors.",
+  "network.expires": "Gültig bis",
+  "network.expires.authority":
+    "{{date}}. Erneuert sich von selbst; Geräte merken nichts bis {{authority}}.",
+  "network.expires.own": "{{date}}. Vorher ein neues an seine Stelle legen; ohne Neustart.",
+  "network.uncovered": "Für manche Adressen dieses Rechners nicht gültig",
+  "network.uncovered.body":
+    "{{addresses}}. Geräte werden dort gewarnt. „reembody tls renew --new-authority“ ausführen; jedes Gerät installiert dann das neue Zertifikat.",
+  "network.uncovered.own": "{{addresses}}. Geräte, die sie benutzen, werden gewarnt.",
+  "network.cable": "Ein Headset am USB-Kabel",
+  "network.cable.body":
+    "Braucht weder Netz noch Zertifikat. Headset verbinden, darin Debugging erlauben, und auf diesem Rechner ausführen:",
+  "network.cable.then": "Dann im Browser des Headsets öffnen:",
+  "network.none": "Keine Adresse in einem Netz",
+  "network.none.body":
+    "Dieser Rechner ist gerade in keinem Netz. Adressen erscheinen hier binnen einer Minute.",
+  "pairing.first": "Zum ersten Mal mit diesem Gerät? Zertifikat installieren",
+  "pairing.first.qr": "QR-Code der Seite, die beim Installieren des Zertifikats hilft",
+};

@@ -1,0 +1,156 @@
+/** Writing an instrument: its file at the left, the form it makes at the right. */
+import { Button } from "@mantine/core";
+import { useDebouncedValue } from "@mantine/hooks";
+import { notifications } from "@mantine/notifications";
+import { instruments } from "@shared/api/drafts";
+import { inLanguage } from "@shared/text";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { keepPreviousData, useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { type JSX, useEffect, useRef, useState } from "react";
+import { useLocation } from "wouter";
+import layout from "../editor/Editor.module.css";
+import { dropDraft, keepDraft, keptDraft } from "../editor/keptDrafts";
+import { LeaveGuard } from "../editor/LeaveGuard";
+import { YamlField } from "../editor/YamlField";
+import { showLine, type YamlText } from "../editor/yamlText";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { Problems } from "../pages/Problems";
+import { Loaded } from "../ui/Loaded";
+import { useTitle } from "../ui/useTitle";
+import { EXAMPLE } from "./example";
+import classes from "./Instruments.module.css";
+import { TryIt } from "./TryIt";
+
+export function EditInstrumentPage({ name }: { readonly name: string }): JSX.Element {
+  const query = useQuery({
+    queryKey: ["instruments", name, "to-edit"],
+    queryFn: () => instruments.get(name),
+    gcTime: 0,
+    staleTime: Number.POSITIVE_INFINITY,
+  });
+  const { language } = useTexts();
+  return (
+    <Loaded query={query}>
+      {(instrument) => (
+        <InstrumentEditor
+          key={instrument.content_hash}
+          id={instrument.key}
+          title={inLanguage(instrument.title, language)}
+          stored={instrument.yaml}
+          begin={instrument.yaml}
+        />
+      )}
+    </Loaded>
+  );
+}
+
+export function NewInstrumentPage(): JSX.Element {
+  const { t } = useTexts();
+  return <InstrumentEditor id="new" title={t("instrumentEditor.new")} stored="" begin={EXAMPLE} />;
+}
+
+interface InstrumentEditorProps {
+  readonly id: string;
+  readonly title: string;
+  readonly stored: string;
+  readonly begin: string;
+}
+
+const NO_PROBLEMS = [] as const;
+
+function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): JSX.Element {
+  const { t } = useTexts();
+  useTitle(t("instrumentEditor.title", { name: title }));
+  const [, navigate] = useLocation();
+  const queries = useQueryClient();
+  const kept = `instrument.${id}`;
+  const [initial] = useState(() => keptDraft(kept) ?? begin);
+  const [text, setText] = useState(initial);
+  const [settled] = useDebouncedValue(text, 350);
+  const field = useRef<YamlText | null>(null);
+  const query = useQuery({
+    queryKey: ["check-instrument", settled],
+    queryFn: () => instruments.check(settled),
+    placeholderData: keepPreviousData,
+    staleTime: Number.POSITIVE_INFINITY,
+    gcTime: 30_000,
+  });
+  const unsaved = text !== stored && text !== begin;
+  useEffect(() => {
+    if (unsaved) keepDraft(kept, text);
+    else dropDraft(kept);
+  }, [kept, unsaved, text]);
+  const upToDate = settled === text && !query.isPlaceholderData;
+  const check = query.data;
+  const problems = check?.problems ?? NO_PROBLEMS;
+  const save = useMutation({
+    mutationFn: () => instruments.save(text),
+    onSuccess: async (instrument) => {
+      dropDraft(kept);
+      await queries.invalidateQueries({ queryKey: ["instruments"] });
+      notifications.show({ message: t("instrumentEditor.saved", { key: instrument.key }) });
+      navigate(`/instruments/${instrument.key}`);
+    },
+  });
+  const preview = check?.preview ?? null;
+  return (
+    <div className={layout.editor}>
+      <LeaveGuard unsaved={unsaved && !save.isSuccess} />
+      <header className={layout.bar}>
+        <div className={layout.title}>
+          <h1>{title}</h1>
+          <p className={layout.status} role="status">
+            {!upToDate
+              ? t("editor.checking")
+              : problems.length > 0
+                ? t("editor.problems", { count: problems.length })
+                : t(check?.known === true ? "instrumentEditor.known" : "editor.fine")}
+          </p>
+        </div>
+        <div className={layout.actions}>
+          <Button
+            leftSection={<Icon name="check" size={17} />}
+            disabled={!upToDate || check?.ok !== true || check.known}
+            loading={save.isPending}
+            onClick={() => save.mutate()}
+          >
+            {t("instrumentEditor.save")}
+          </Button>
+        </div>
+      </header>
+      <p className={classes.lead}>
+        {t(check?.replaces === true ? "instrumentEditor.replaces" : "instrumentEditor.lead")}
+      </p>
+      {save.isError && <Failure error={save.error} />}
+      {query.isError && <Failure error={query.error} onRetry={() => void query.refetch()} />}
+      <div className={layout.halves}>
+        <section className={layout.textHalf} aria-label={t("instrumentEditor.text")}>
+          <YamlField
+            initial={initial}
+            label={t("instrumentEditor.text")}
+            problems={problems}
+            field={field}
+            onChange={setText}
+          />
+          {problems.length > 0 && (
+            <div className={layout.problemList}>
+              <Problems
+                problems={problems}
+                onPick={(line) => field.current !== null && showLine(field.current.view, line, true)}
+              />
+            </div>
+          )}
+        </section>
+        <section className={classes.preview} aria-label={t("instrumentEditor.preview")}>
+          {preview === null ? (
+            <Notice tone="info" title={t("instrumentEditor.broken")} />
+          ) : (
+            <TryIt preview={preview} yaml={settled} />
+          )}
+        </section>
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,41 @@
+"""People of every role, each with one study of their own and one that is none of their business."""
+
+from dataclasses import dataclass
+
+from fastapi.testclient import TestClient
+
+from app.features.accounts.people import give_studies
+from app.features.accounts.service import create_account, issue_token
+from tests.features.lab import STUDY, Json, Lab, ok
+
+ROLES = ("admin", "experimenter", "operator", "analyst")
+FOREIGN = "somebody-elses"
+
+
+@dataclass(frozen=True)
+class Place:
+    """A study with a session in it."""
+
+    key: str
+    session_id: str
+
+
+def sign_in(lab: Lab, role: str, *, studies: list[str] | None = None, name: str = "") -> TestClient:
+    """A client of a new person with that role, for these studies or all."""
+    now = lab.context.clock.utc_now()
+    with lab.database.writing() as db:
+        name = name or f"{role}-{len(ok(lab.operator.get('/api/accounts')))}"
+        account = create_account(db, username=name, password="a long password", role=role, now=now)
+        give_studies(db, account, studies)
+        token = issue_token(db, account, purpose="script", now=now, hours=1.0).token
+    client = lab.stranger()
+    client.headers["authorization"] = f"Bearer {token}"
+    return client
+
+
+def foreign_study(lab: Lab) -> Place:
+    """A second study with a session, which people of the first must not learn of."""
+    wish = {"key": FOREIGN}
+    ok(lab.operator.post(f"/api/studies/{STUDY}/duplicate", json=wish))
+    view: Json = ok(lab.operator.post(f"/api/studies/{FOREIGN}/sessions", json={}))
+    return Place(FOREIGN, view["id"])

@@ -1,0 +1,133 @@
+"""Every route x everybody x own and foreign objects, made from the policy table (fault 33).
+
+A leak is an answer that is not refused where the table refuses it, or a foreign object that is
+answered differently from one that was never there.
+"""
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import pytest
+from fastapi.testclient import TestClient
+from httpx2 import Response
+
+from app.features.policy import ANYONE, POLICY, TABLET
+from tests.api.people import ROLES, Place, foreign_study, sign_in
+from tests.faults.figures import note
+from tests.features.lab import STUDY, Lab
+
+ROUTES = sorted(name for name in POLICY if not name.startswith("WEBSOCKET"))
+ENDLESS = "/live"
+NOWHERE = Place("never-there", "0" * 32)
+OTHER_IDS = "f" * 32
+
+
+@dataclass(frozen=True)
+class Bench:
+    """The people, and where they are at home or not."""
+
+    lab: Lab
+    people: dict[str, TestClient]
+    devices: dict[str, TestClient]
+    nobody: TestClient
+    own: Place
+    foreign: Place
+
+
+@pytest.fixture(scope="module")
+def bench(lab: Lab) -> Bench:
+    """One person of each role for one study, and a tablet and a headset of its session."""
+    own = Place(STUDY, lab.join()["id"])
+    foreign = foreign_study(lab)
+    headset = lab.stranger()
+    headset.headers["authorization"] = f"Bearer {lab.headset_token(own.session_id)}"
+    return Bench(
+        lab,
+        {role: sign_in(lab, role, studies=[STUDY]) for role in ROLES},
+        {"tablet": lab.tablet(own.session_id), "headset": headset},
+        lab.stranger(),
+        own,
+        foreign,
+    )
+
+
+def ask(client: TestClient, route: str, place: Place) -> Response:
+    """Call a route on the objects of a place, with an empty body."""
+    method, template = route.split()
+    path = template.replace("{session_id}", place.session_id)
+    if template.startswith("/api/studies/{key}"):
+        path = path.replace("{key}", place.key)
+    path = path.replace("{number}", "1")
+    return client.request(method, re.sub(r"\{\w+\}", OTHER_IDS, path), json={})
+
+
+def of_a_study(route: str) -> bool:
+    """Whether the route is about a study's object that its path names."""
+    return "/api/studies/{key}" in route or "{session_id}" in route
+
+
+def outsiders(bench: Bench, route: str) -> Iterator[tuple[str, TestClient]]:
+    """Nobody, and the devices that the route is not for."""
+    yield "nobody", bench.nobody
+    for name, client in bench.devices.items():
+        if POLICY[route] != {name}:
+            yield name, client
+
+
+def test_nobody_gets_more_than_the_table_gives(bench: Bench) -> None:
+    """Refusals are 401 for strangers, 403 for the wrong role; foreign objects do not exist."""
+    leaks: list[str] = []
+    asked: Counter[str] = Counter()
+    for route in ROUTES:
+        if POLICY[route] == ANYONE:
+            continue
+        for name, client in outsiders(bench, route):
+            asked["stranger"] += 1
+            if ask(client, route, bench.own).status_code != 401:
+                leaks.append(f"{name}: {route}")
+        for role, client in bench.people.items():
+            leaks += [f"{role}: {leak}" for leak in leaks_of(bench, role, client, route, asked)]
+    for what, count in sorted(asked.items()):
+        note(33, "every route x role x object", f"asked: {what}", count)
+    note(33, "every route x role x object", "leaks", len(leaks))
+    assert leaks == []
+    assert sum(asked.values()) >= 4 * len(ROUTES)
+
+
+def leaks_of(
+    bench: Bench, role: str, client: TestClient, route: str, asked: Counter[str]
+) -> Iterator[str]:
+    """What one person gets by one route that they should not."""
+    if role not in POLICY[route]:
+        asked["wrong role"] += 1
+        expected = 401 if POLICY[route] == TABLET else 403
+        if ask(client, route, bench.own).status_code != expected:
+            yield f"{route} in spite of the role"
+        return
+    if not of_a_study(route):
+        return
+    asked["foreign object"] += 1
+    there, never = ask(client, route, bench.foreign), ask(client, route, NOWHERE)
+    told = there.text.replace(bench.foreign.session_id, "?").replace(bench.foreign.key, "?")
+    untold = never.text.replace(NOWHERE.session_id, "?").replace(NOWHERE.key, "?")
+    if there.status_code != 404 or told != untold:
+        yield f"{route} of a foreign study: {there.status_code}"
+    if not route.endswith(ENDLESS):
+        asked["own object"] += 1
+        if ask(client, route, bench.own).status_code in (401, 403):
+            yield f"{route} is refused although the table allows it"
+
+
+def test_lists_hold_own_studies_only(bench: Bench) -> None:
+    """No list names what is not theirs."""
+    for role, client in bench.people.items():
+        listed = client.get("/api/studies").json()
+        assert [study["key"] for study in listed] == [STUDY], role
+
+
+def test_an_unlisted_route_is_closed(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not in the table is refused for everybody, admins included."""
+    monkeypatch.delitem(POLICY, "GET /api/studies")
+    assert bench.lab.operator.get("/api/studies").status_code == 403

@@ -1,0 +1,176 @@
+"""Two devices on the lab's network: one has installed the certificate, the other has not yet."""
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Error, Page, expect
+
+from app.wire.messages import PROTOCOL_VERSION, SUBPROTOCOL
+from tests.e2e.people import Experimenter, Participant
+from tests.faults.streaming import pair_headsets
+from tests.support.browser import (
+    ARGUMENTS,
+    ColorScheme,
+    ContextFactory,
+    PageWatch,
+    watched_contexts,
+)
+from tests.support.chromium_binary import find_chromium
+from tests.support.lan import LanServer
+from tests.support.nss_trust import TrustUnavailableError, trusting_home
+
+GREETED = """([url, protocols, hello]) => new Promise((resolve) => {
+    const socket = new WebSocket(url, protocols);
+    socket.onopen = () => socket.send(JSON.stringify(hello));
+    socket.onmessage = ({ data }) => { socket.close(); resolve(JSON.parse(data).type); };
+    socket.onerror = () => resolve("error");
+})"""
+STUDY = "reembodiment-latency"
+
+
+@pytest.fixture(scope="module")
+def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
+    """A server with the built-in authority."""
+    with LanServer(tmp_path_factory.mktemp("lan")) as server:
+        yield server
+
+
+@pytest.fixture(scope="module")
+def trusting_browser(
+    browser: Browser, lan: LanServer, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Browser]:
+    """A browser whose user has installed the certificate of the help page, and that alone."""
+    home, chromium = tmp_path_factory.mktemp("trusting"), find_chromium()
+    certificate = home / "reembody-ca.crt"
+    certificate.write_bytes(lan.authority())
+    try:
+        trusting_home(home, certificate)
+    except TrustUnavailableError as error:
+        pytest.skip(f"no second trust store can be made here: {error}")
+    trusting = browser.browser_type.launch(
+        executable_path=chromium.executable,
+        args=list(ARGUMENTS),
+        env={**os.environ, **chromium.environment, "HOME": str(home)},
+    )
+    yield trusting
+    trusting.close()
+
+
+@pytest.fixture
+def trusting(trusting_browser: Browser, page_watch: PageWatch) -> Iterator[ContextFactory]:
+    """Contexts of the browser that trusts the lab."""
+    with watched_contexts(trusting_browser, page_watch) as factory:
+        yield factory
+
+
+def test_with_the_certificate_the_lab_works_over_https_and_wss(
+    lan: LanServer, trusting: ContextFactory
+) -> None:
+    """Sign in, pair a tablet by its QR code's address, and a headset's socket is greeted."""
+    operator = Experimenter(trusting().new_page(), lan.secure_url)
+    operator.log_in()
+    assert operator.page.evaluate("window.isSecureContext") is True
+    (cookie,) = operator.page.context.cookies()
+    assert cookie["name"] == "__Host-reembody_login"
+    assert (cookie["secure"], cookie["httpOnly"], cookie["path"]) == (True, True, "/")
+    operator.open_tab(STUDY)
+    operator.create_session()
+    tablet = Participant(trusting((1180, 820)).new_page(), lan.secure_url)
+    tablet.pair(operator.code_for("tablet"))
+    expect(operator.page.get_by_text("Tablet").first).to_be_visible()
+    (headset,) = pair_headsets(lan, 1)
+    hello = {"type": "hello", "protocol": PROTOCOL_VERSION, "client": "test"}
+    socket = f"wss://127.0.0.1:{lan.lan_port}/api/vr/stream"
+    protocols = [SUBPROTOCOL, f"bearer.{headset.token}"]
+    assert operator.page.evaluate(GREETED, [socket, protocols, hello]) == "welcome"
+
+
+def test_without_it_the_device_is_refused_and_helped(
+    lan: LanServer, new_context: ContextFactory, page_watch: PageWatch
+) -> None:
+    """The browser shows no page of ours over https; the help page leads the way, over plain http."""
+    page_watch.allow("ERR_CERT_AUTHORITY_INVALID")
+    page = new_context((390, 844), locale="de-DE").new_page()
+    with pytest.raises(Error, match="ERR_CERT_AUTHORITY_INVALID"):
+        page.goto(f"{lan.secure_url}/tablet")
+    page.goto(lan.help_url)
+    expect(page.get_by_role("heading", name="Dieses Gerät verbinden")).to_be_visible()
+    page.get_by_role("link", name="English").click()
+    expect(page.get_by_role("heading", name="Connect this device")).to_be_visible()
+    onward = page.get_by_role("link", name="Open the tablet's page")
+    expect(onward).to_have_attribute("href", f"{lan.secure_url}/tablet")
+    with page.expect_download() as download:
+        page.get_by_role("link", name="as PEM file").click()
+    assert Path(download.value.path()).read_bytes().startswith(b"-----BEGIN CERTIFICATE")
+    socket = f"wss://127.0.0.1:{lan.lan_port}/api/vr/stream"
+    page.goto(f"{lan.url}/tablet")
+    assert page.evaluate(GREETED, [socket, [SUBPROTOCOL], {}]) == "error"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [(390, 844), (1180, 820)])
+def test_the_help_page_fits_and_can_be_read(
+    lan: LanServer,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+    scheme: ColorScheme,
+    size: tuple[int, int],
+) -> None:
+    """Nothing is cut off on a phone, nothing is serious to axe; in both languages."""
+    page = page_factory(size, scheme)
+    for language in ("en", "de"):
+        page.goto(f"{lan.help_url}/?lang={language}")
+        for section in page.locator("details").all():
+            section.evaluate("(section) => { section.open = true; }")
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+        assert axe(page) == []
+        screenshot(page, f"help-{language}-{size[0]}-{scheme}")
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("size", [(1280, 800), (1180, 820)])
+def test_the_console_shows_how_to_reach_the_lab(
+    lan: LanServer,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+    scheme: ColorScheme,
+    size: tuple[int, int],
+) -> None:
+    """Addresses, fingerprint, the help page's QR code and the cable, by a link in the header."""
+    operator = Experimenter(page_factory(size, scheme), lan.url)
+    operator.log_in()
+    page = operator.page
+    page.get_by_role("link", name="Network").click()
+    expect(page.get_by_role("heading", name="Network", exact=True)).to_be_visible()
+    expect(page.get_by_text(lan.secure_url).first).to_be_visible()
+    expect(page.get_by_text(f"adb reverse tcp:{lan.port} tcp:{lan.port}")).to_be_visible()
+    fingerprint = page.get_by_role("main").inner_text().replace("\n", ":")
+    with lan.client() as client:
+        shown = client.get(lan.help_url).text.partition('class="fingerprint">')[2]
+    assert shown.partition("</span>")[0].removeprefix("<span>") in fingerprint
+    assert axe(page) == []
+    screenshot(page, f"network-{size[0]}-{scheme}")
+
+
+def test_pairing_offers_the_certificate_first(
+    lan: LanServer,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+) -> None:
+    """The tablet's address is the network's, and the help page is one click away."""
+    operator = Experimenter(page_factory(), lan.url)
+    operator.log_in()
+    operator.open_tab(STUDY)
+    operator.create_session()
+    page = operator.page
+    page.get_by_role("button", name="Pair the tablet").click()
+    expect(page.get_by_text(f"{lan.secure_url}/tablet?code=")).to_be_visible()
+    page.get_by_text("First time with this device?").click()
+    expect(page.get_by_text(lan.help_url)).to_be_visible()
+    assert axe(page) == []
+    screenshot(page, "pairing-first-time")

@@ -1,0 +1,104 @@
+"""Which doors are opened, and which are refused."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.clock import Clock
+from app.errors import InvalidInput, NotAllowed
+from app.lan.certificates import LabAuthority, OwnFiles
+from app.lan.network import Reach
+from app.lan.plan import EVERYWHERE, Plan, make_plan
+from app.settings import Settings
+from tests.lan.machines import LAB_PC
+
+
+def plan_for(tmp_path: Path, **given: Any) -> Plan:
+    """The plan for these settings."""
+    return make_plan(Settings(data_dir=tmp_path, **given), Clock())
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "localhost", "::1", "127.0.0.2"])
+def test_this_machine_alone_needs_nothing(tmp_path: Path, host: str) -> None:
+    """Plain http on the loopback."""
+    plan = plan_for(tmp_path, host=host)
+    assert (plan.mode, plan.lan_hosts, plan.certificates) == ("loopback", (), None)
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "labpc.local"])  # noqa: S104
+def test_others_are_not_let_in_without_encryption(tmp_path: Path, host: str) -> None:
+    """Refused with three ways out and the name of the flag that insists."""
+    with pytest.raises(NotAllowed) as refused:
+        plan_for(tmp_path, host=host)
+    for way in ("--certificate", "--lan ", "USB", "--without-tls"):
+        assert way in refused.value.remedy
+
+
+def test_who_insists_gets_plain_http(tmp_path: Path) -> None:
+    """And the reach says so."""
+    plan = plan_for(tmp_path, host="192.168.7.20", without_tls=True)
+    assert plan.reach(LAB_PC, None) == Reach(
+        mode="without_tls",
+        local_url="http://192.168.7.20:8321",
+        urls=("http://192.168.7.20:8321",),
+    )
+    everywhere = plan_for(tmp_path, lan=True, without_tls=True)
+    assert everywhere.local_hosts == EVERYWHERE
+    assert everywhere.certificates is None
+
+
+def test_the_network_gets_https_and_a_help_page(tmp_path: Path) -> None:
+    """With the built-in authority; plain http stays on this machine."""
+    plan = plan_for(tmp_path, lan=True)
+    source = plan.certificates
+    assert isinstance(source, LabAuthority)
+    assert plan.local_hosts == ("127.0.0.1",)
+    reach = plan.reach(LAB_PC, source.current(LAB_PC))
+    assert reach.urls == (
+        "https://192.168.7.20:8443",
+        "https://[fd12::20]:8443",
+        "https://labpc.local:8443",
+        "https://labpc.psy.example:8443",
+    )
+    assert reach.help_url == "http://192.168.7.20:8080"
+
+
+def test_own_certificates_need_no_help_page(tmp_path: Path) -> None:
+    """Nothing is to be installed, so no plain port is opened."""
+    plan = plan_for(tmp_path, lan=True, certificate=tmp_path / "a", key=tmp_path / "b")
+    assert isinstance(plan.certificates, OwnFiles)
+    assert plan.help_port is None
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"lan": True, "certificate": Path("a")},
+        {"lan": True, "key": Path("a")},
+        {"lan": True, "lan_host": "labpc"},
+        {"lan": True, "host": "192.168.1.5"},
+        {"host": "labpc", "without_tls": True},
+    ],
+)
+def test_half_a_wish_is_refused_with_the_other_half(tmp_path: Path, given: dict[str, Any]) -> None:
+    """Each says what is missing or contradicts."""
+    with pytest.raises(InvalidInput) as refused:
+        plan_for(tmp_path, **given)
+    assert refused.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("asked_at", "given"),
+    [
+        ("http://localhost:8321/", "https://192.168.7.20:8443"),
+        ("http://127.0.0.1:8321/", "https://192.168.7.20:8443"),
+        ("http://[::1]:8321/", "https://192.168.7.20:8443"),
+        ("https://labpc.local:8443/", "https://labpc.local:8443"),
+    ],
+)
+def test_a_device_is_never_sent_to_its_own_localhost(asked_at: str, given: str) -> None:
+    """Whoever pairs from this machine hands out the network's address, others their own."""
+    reach = Reach(mode="lan", urls=("https://192.168.7.20:8443",))
+    assert reach.for_devices(asked_at) == given
+    assert Reach().for_devices("http://localhost:8321/") == "http://localhost:8321"

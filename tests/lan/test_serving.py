@@ -1,0 +1,277 @@
+"""The real server on the lab's network: three doors, one application."""
+
+import asyncio
+import json
+import socket
+import ssl
+import subprocess
+from collections.abc import Iterator
+from contextlib import nullcontext
+from pathlib import Path
+
+import httpx2
+import pytest
+from websockets.asyncio.client import connect
+from websockets.exceptions import InvalidStatus
+
+from app.wire.messages import PROTOCOL_VERSION, SUBPROTOCOL
+from tests.features.lab import STUDY, ok
+from tests.support.lan import LanServer
+from tests.support.server import ADMIN_PASSWORD, REEMBODY, free_port
+
+CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}
+
+
+@pytest.fixture(scope="module")
+def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
+    """A server with the built-in authority."""
+    with LanServer(tmp_path_factory.mktemp("lan")) as server:
+        yield server
+
+
+def raw(port: int, request: bytes) -> bytes:
+    """Exactly these bytes over plain TCP, and all that comes back."""
+    with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
+        connection.sendall(request)
+        answer = b""
+        while chunk := connection.recv(65536):
+            answer += chunk
+    return answer
+
+
+def pair_headset(client: httpx2.Client) -> tuple[str, str]:
+    """A session's id, and the token of the headset that is paired with it."""
+    session = ok(client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"}))
+    shown = ok(client.post(f"/api/sessions/{session['id']}/pairings", json={"device": "headset"}))
+    paired = ok(client.post("/api/devices/pair", json={"code": shown["code"]}))
+    return session["id"], paired["token"]
+
+
+async def greeted(url: str, token: str, **options: object) -> dict[str, object]:
+    """Connect as a headset and take the welcome."""
+    async with connect(
+        f"{url.replace('http', 'ws', 1)}/api/vr/stream",
+        subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]
+        **options,  # type: ignore[arg-type]
+    ) as connection:
+        await connection.send(
+            json.dumps({"type": "hello", "protocol": PROTOCOL_VERSION, "client": "test"})
+        )
+        answer: dict[str, object] = json.loads(await connection.recv())
+        return answer
+
+
+def test_all_doors_lead_to_one_application(lan: LanServer) -> None:
+    """A session made over plain http on this machine is there over https."""
+    with lan.client() as here, lan.secure_client() as there:
+        ok(here.post("/api/login", json=CREDENTIALS))
+        ok(there.post("/api/login", json=CREDENTIALS))
+        made = ok(here.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"}))
+        assert ok(there.get(f"/api/sessions/{made['id']}"))["id"] == made["id"]
+
+
+def test_cookies_over_https_are_bound_to_the_host(lan: LanServer) -> None:
+    """`__Host-`, Secure, every path; over http plain; each is read on its own door only."""
+    with lan.client() as here, lan.secure_client() as there:
+        plain = here.post("/api/login", json=CREDENTIALS).headers["set-cookie"]
+        bound = there.post("/api/login", json=CREDENTIALS).headers["set-cookie"]
+        assert plain.startswith("reembody_login=")
+        assert "secure" not in plain.lower()
+        assert bound.startswith("__Host-reembody_login=")
+        assert {"secure", "path=/", "httponly", "samesite=strict"} <= {
+            part.strip().lower() for part in bound.split(";")
+        }
+        assert "domain" not in bound.lower()
+        token = bound.partition("=")[2].partition(";")[0]
+    for name in ("reembody_login", "__Host-reembody_login"):
+        cookie = {"cookie": f"{name}={token}"}
+        with lan.client() as here, lan.secure_client() as there:
+            over_http = ok(here.get("/api/me", headers=cookie))["account"]
+            over_https = ok(there.get("/api/me", headers=cookie))["account"]
+        assert (over_http is None, over_https is None) == (
+            name.startswith("__Host-"),
+            not name.startswith("__Host-"),
+        )
+
+
+def test_signing_out_over_https_takes_the_cookie_away(lan: LanServer) -> None:
+    """The browser obeys only if the deletion carries the same attributes."""
+    with lan.secure_client() as client:
+        ok(client.post("/api/login", json=CREDENTIALS))
+        gone = client.post("/api/logout").headers["set-cookie"].lower()
+        assert gone.startswith("__host-reembody_login=")
+        assert "secure" in gone
+        assert "path=/" in gone
+        assert ok(client.get("/api/me"))["account"] is None
+
+
+def test_headsets_are_served_over_wss(lan: LanServer) -> None:
+    """The same handshake as over ws, with the page's own origin; a foreign one is refused."""
+    with lan.secure_client() as client:
+        ok(client.post("/api/login", json=CREDENTIALS))
+        _, token = pair_headset(client)
+    trust = lan.trusting()
+    secure = asyncio.run(greeted(lan.secure_url, token, ssl=trust, origin=lan.secure_url))
+    plain = asyncio.run(greeted(lan.url, token, origin=lan.url))
+    assert secure["type"] == plain["type"] == "welcome"
+    for url, options in ((lan.secure_url, {"ssl": trust}), (lan.url, {})):
+        with pytest.raises(InvalidStatus):
+            asyncio.run(greeted(url, token, origin="https://evil.example", **options))
+
+
+def test_old_tls_is_refused(lan: LanServer) -> None:
+    """1.2 and 1.3 work; 1.1 gets no handshake."""
+    for version, works in (
+        (ssl.TLSVersion.TLSv1_1, False),
+        (ssl.TLSVersion.TLSv1_2, True),
+        (ssl.TLSVersion.TLSv1_3, True),
+    ):
+        context = lan.trusting()
+        with pytest.warns(DeprecationWarning, match="TLSv1_1") if not works else nullcontext():
+            context.minimum_version = context.maximum_version = version
+        assert _handshake(lan, context) is works
+
+
+def test_who_does_not_trust_the_authority_is_not_let_in(lan: LanServer) -> None:
+    """The system's own trust knows nothing of the lab."""
+    assert not _handshake(lan, ssl.create_default_context())
+
+
+def test_nothing_promises_https_for_ever(lan: LanServer) -> None:
+    """No Strict-Transport-Security on any door: it would lock devices out of the help page."""
+    with lan.client() as here, lan.secure_client() as there:
+        answers = [here.get("/api/health"), there.get("/api/health"), httpx2.get(lan.help_url)]
+    for answer in answers:
+        assert answer.status_code == 200
+        assert "strict-transport-security" not in answer.headers
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        *("/api/health", "/api/login", "/tablet", "//", "/../tls/authority.pem", "/..%2ftls"),
+        *("/assets/../../data/tls/authority.pem", "http://127.0.0.1/api/health", "/%00"),
+    ],
+)
+def test_the_help_port_serves_nothing_else(lan: LanServer, path: str) -> None:
+    """Asked by exact bytes, so that no client tidies the path up: 404, no redirect."""
+    answer = raw(
+        lan.help_port,
+        f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n".encode(),
+    )
+    status = answer.split(b"\r\n", 1)[0]
+    assert b"404" in status or b"400" in status, status
+    assert b"location:" not in answer.lower()
+    assert b"PRIVATE" not in answer
+
+
+def test_the_help_port_takes_no_websocket(lan: LanServer) -> None:
+    """The headset's socket is on the other doors."""
+    with pytest.raises(InvalidStatus):
+        asyncio.run(greeted(lan.help_url, "token"))
+
+
+def test_the_terminal_and_the_console_tell_the_same(lan: LanServer) -> None:
+    """Addresses, fingerprint and help page: what a person compares is equal everywhere."""
+    with lan.client() as client:
+        ok(client.post("/api/login", json=CREDENTIALS))
+        told = ok(client.get("/api/network"))
+        shown = ok(
+            client.post(
+                f"/api/sessions/{pair_headset(client)[0]}/pairings", json={"device": "tablet"}
+            )
+        )
+    assert told["mode"] == "lan"
+    assert [one["url"] for one in told["addresses"]] == [lan.secure_url]
+    assert told["help"]["url"] == lan.help_url
+    fingerprint = told["certificate"]["fingerprint"]
+    assert fingerprint[:47] in lan.log
+    assert fingerprint[48:] in lan.log
+    assert fingerprint[:11] in httpx2.get(lan.help_url).text
+    assert told["cable"] == {
+        "command": f"adb reverse tcp:{lan.port} tcp:{lan.port}",
+        "url": f"http://localhost:{lan.port}",
+    }
+    # The console was open at localhost; the tablet must not be sent to its own.
+    assert shown["url"] == f"{lan.secure_url}/tablet?code={shown['code']}"
+    assert shown["help_url"] == lan.help_url
+
+
+def test_a_restart_and_a_renewal_leave_devices_paired(tmp_path: Path) -> None:
+    """Token, authority and fingerprint stay; only the server's own certificate is another."""
+    with LanServer(tmp_path) as server:
+        trust = server.trusting()
+        with server.secure_client() as client:
+            ok(client.post("/api/login", json=CREDENTIALS))
+            _, token = pair_headset(client)
+            before = ok(client.get("/api/network"))["certificate"]
+        assert asyncio.run(greeted(server.secure_url, token, ssl=trust))["type"] == "welcome"
+        server.stop()
+        renewed = _command(server, "tls", "renew", "--json")
+        server.start()
+        # `trust` is what the device installed before.
+        assert asyncio.run(greeted(server.secure_url, token, ssl=trust))["type"] == "welcome"
+        with httpx2.Client(base_url=server.secure_url, verify=trust) as client:
+            ok(client.post("/api/login", json=CREDENTIALS))
+            after = ok(client.get("/api/network"))["certificate"]
+    assert after["fingerprint"] == before["fingerprint"] == renewed["authority_fingerprint_sha256"]
+    assert after["server_fingerprint"] == renewed["server_fingerprint_sha256"]
+    assert after["server_fingerprint"] != before["server_fingerprint"]
+
+
+def test_an_open_address_without_tls_is_refused(tmp_path: Path) -> None:
+    """It ends before it listens or touches the data, and says three ways out."""
+    result = subprocess.run(
+        [*REEMBODY, "serve", "--host", "0.0.0.0", "--port", str(free_port())],  # noqa: S104
+        env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert result.returncode == 2
+    assert "--lan" in result.stderr
+    assert "--without-tls" in result.stderr
+    assert not (tmp_path / "data").exists()
+
+
+def test_a_taken_port_is_named(lan: LanServer, tmp_path: Path) -> None:
+    """With the option that chooses another one, before the data are touched."""
+    result = subprocess.run(
+        [
+            *(*REEMBODY, "serve", "--port", str(free_port()), "--lan", "--lan-host", "127.0.0.1"),
+            *("--lan-port", str(lan.lan_port), "--help-port", str(free_port())),
+        ],
+        env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert result.returncode == 2
+    assert f"port {lan.lan_port}" in result.stderr
+    assert "--lan-port" in result.stderr
+    assert not (tmp_path / "data" / "reembody.sqlite").exists()
+
+
+def _command(server: LanServer, *arguments: str) -> dict[str, str]:
+    result = subprocess.run(
+        [*REEMBODY, *arguments],
+        env={"REEMBODY_DATA_DIR": str(server.data_dir)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    told: dict[str, str] = json.loads(result.stdout)
+    return told
+
+
+def _handshake(server: LanServer, context: ssl.SSLContext) -> bool:
+    try:
+        with (
+            socket.create_connection(("127.0.0.1", server.lan_port), timeout=20) as plain,
+            context.wrap_socket(plain, server_hostname="127.0.0.1"),
+        ):
+            return True
+    except (ssl.SSLError, ConnectionResetError):
+        return False

@@ -1,0 +1,49 @@
+"""The real server with its door to the lab's network open, on the loopback only."""
+
+import ssl
+from collections.abc import Sequence
+from pathlib import Path
+
+import httpx2
+
+from tests.support.server import LiveServer, free_port
+
+
+class LanServer(LiveServer):
+    """`reembody serve --lan` with https and the help page on 127.0.0.1, each on a free port."""
+
+    def __init__(self, folder: Path, *, arguments: Sequence[str] = ()) -> None:
+        self.lan_port, self.help_port = free_port(), free_port()
+        self._folder = folder
+        super().__init__(
+            folder,
+            arguments=(
+                *("--lan", "--lan-host", "127.0.0.1"),
+                *("--lan-port", str(self.lan_port), "--help-port", str(self.help_port)),
+                *arguments,
+            ),
+        )
+
+    @property
+    def secure_url(self) -> str:
+        """The address of https."""
+        return f"https://127.0.0.1:{self.lan_port}"
+
+    @property
+    def help_url(self) -> str:
+        """The address of the help page."""
+        return f"http://127.0.0.1:{self.help_port}"
+
+    def authority(self) -> bytes:
+        """The authority's certificate as a device gets it, DER."""
+        return httpx2.get(f"{self.help_url}/reembody-ca.crt").raise_for_status().content
+
+    def trusting(self) -> ssl.SSLContext:
+        """A device's trust after it installed the authority's certificate, and nothing else."""
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+        context.load_verify_locations(cadata=self.authority())
+        return context
+
+    def secure_client(self) -> httpx2.Client:
+        """A client over https that trusts the authority."""
+        return httpx2.Client(base_url=self.secure_url, verify=self.trusting(), timeout=30.0)
