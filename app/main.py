@@ -14,10 +14,12 @@ from app.api.router import build_router
 from app.clock import Clock
 from app.database import open_database
 from app.features.accounts.service import ensure_admin
+from app.features.analysis.drawing import Drawings
 from app.features.context import AppContext
 from app.features.live import Hub
 from app.features.opening.service import bring_up_to_date
 from app.features.rate_limit import RateLimiter
+from app.features.rights.service import finish_erasures
 from app.features.sessions.recovery import stop_running_clocks
 from app.features.storage_health import StorageHealth
 from app.features.studies.service import add_shipped
@@ -58,6 +60,7 @@ def create_app(
         storage=storage,
         login_limiter=RateLimiter(LOGIN_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
         pairing_limiter=RateLimiter(PAIRING_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
+        drawings=Drawings(settings.resolved_database_url, clock.utc_now),
         network=network or Network(),
     )
     summariser = Summariser(context)
@@ -74,13 +77,14 @@ def create_app(
         writer.stop()
         folder.stop()
         summariser.stop()
+        context.drawings.end()
         context.database.close()
 
     app = FastAPI(
         title="Reembody",
         version=__version__,
         lifespan=lifespan,
-        docs_url="/api/docs",
+        docs_url=None,
         redoc_url=None,
         openapi_url="/api/openapi.json",
     )
@@ -89,7 +93,11 @@ def create_app(
     install_error_handler(app)
     app.include_router(build_router())
     install_pages(app, static_dir())
-    app.add_middleware(Guards, max_body_bytes=settings.max_body_bytes)
+    app.add_middleware(
+        Guards,
+        max_body_bytes=settings.max_body_bytes,
+        host_names=lambda: (*settings.host_names, *context.network.reach.names),
+    )
     return app
 
 
@@ -104,6 +112,7 @@ def _prepare(context: AppContext, on_first_password: Callable[[str], None] | Non
         add_shipped(db, now)
     if made is not None and on_first_password is not None:
         on_first_password(made)
+    finish_erasures(context)
     paused = stop_running_clocks(context)
     if paused:
         log.warning("%d running phase(s) were paused: the server had stopped in between", paused)

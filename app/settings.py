@@ -16,11 +16,12 @@ class Settings(BaseSettings):
     `database_url` empty means the embedded SQLite in `data_dir`. `admin_password` is for scripts;
     without it the first start makes a random one and prints it once. Below `low_disk_bytes` of free
     space in `data_dir` the console warns. A running phase is paused after `headset_silent_s`
-    without a frame. `production` switches the interactive API pages off.
+    without a frame.
 
-    `lan` opens https on `lan_port` of every address (or of `lan_host`), with `certificate` and `key`
-    or with the built-in authority, whose help page is on `help_port`. An address that others can
-    reach is refused without TLS unless `without_tls` is set (docs/lab-network.md).
+    `lan` opens https on `lan_port` of every address (or of `lan_host`), with `certificate` and
+    `key` or with the built-in authority, whose help page is on `help_port`. An address that others
+    can reach is refused without TLS unless `without_tls` is set (docs/lab-network.md). `host_names`
+    are full names that the lab's name server has for this machine.
     """
 
     model_config = SettingsConfigDict(env_prefix="REEMBODY_", frozen=True, extra="ignore")
@@ -37,6 +38,7 @@ class Settings(BaseSettings):
     certificate: Path | None = None
     key: Path | None = None
     without_tls: bool = False
+    host_names: tuple[str, ...] = ()
     commit_interval_s: float = 0.05
     login_hours: float = 12.0
     pairing_minutes: float = 10.0

@@ -1,16 +1,17 @@
-"""What stands before every route: size limit, same-origin check, response headers.
+"""What stands before every route: the name asked for, size limit, same-origin check, headers.
 
 Cookies are SameSite=Strict already; the origin check is the second lock for requests that change
 something, and the first for WebSockets, which no cookie rule of the browser covers.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.errors import error_response
+from app.api.host_names import require_known_host
 from app.errors import NotAllowed, ReembodyError, TooLarge
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -33,9 +34,12 @@ SECURITY_HEADERS: Mapping[str, str] = {
 class Guards:
     """ASGI middleware around the whole application."""
 
-    def __init__(self, app: ASGIApp, *, max_body_bytes: int) -> None:
+    def __init__(
+        self, app: ASGIApp, *, max_body_bytes: int, host_names: Callable[[], Iterable[str]]
+    ) -> None:
         self._app = app
         self._max_body_bytes = max_body_bytes
+        self._host_names = host_names
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Check, then pass on."""
@@ -56,6 +60,7 @@ class Guards:
             await self._app(scope, _Limited(receive, self._max_body_bytes), _headed(scope, send))
 
     def _check(self, scope: Scope, headers: Headers) -> None:
+        require_known_host(headers.get("host", ""), self._host_names())
         declared = headers.get("content-length", "0")
         if declared.isdigit() and int(declared) > self._max_body_bytes:
             raise _too_large(int(declared), self._max_body_bytes)

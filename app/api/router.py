@@ -2,7 +2,7 @@
 
 import asyncio
 from datetime import datetime
-from typing import Literal
+from typing import Any, Literal
 
 from fastapi import APIRouter, WebSocket
 from pydantic import BaseModel
@@ -14,6 +14,7 @@ from app.features.accounts.people_endpoints import router as people
 from app.features.alarms.endpoints import router as alarms
 from app.features.analysis.endpoints import router as analysis
 from app.features.audit.endpoints import router as audit
+from app.features.calibrations.endpoints import router as calibrations
 from app.features.context import AppContext
 from app.features.dependencies import API_PREFIX, Context
 from app.features.devices.endpoints import router as devices
@@ -23,9 +24,12 @@ from app.features.instruments.endpoints import router as instruments
 from app.features.network.endpoints import router as network
 from app.features.participants.endpoints import router as participants
 from app.features.receipts.endpoints import router as receipts
+from app.features.rights.endpoints import router as rights
+from app.features.sessions.consent_endpoints import router as consents
 from app.features.sessions.endpoints import router as sessions
 from app.features.sessions.watching import router as watching
 from app.features.studies.endpoints import router as studies
+from app.features.suggestions.endpoints import router as suggestions
 from app.features.tablet.endpoints import router as tablet
 from app.features.telemetry.writer import TelemetryWriter
 
@@ -45,13 +49,39 @@ class Health(BaseModel):
     low_disk: bool
 
 
+class Refusal(BaseModel):
+    """Why something was refused (app.errors): what happened, the value, what is valid, the way on.
+
+    `details` lists single problems of a file or form, each with its place.
+    """
+
+    code: str
+    message: str
+    value: Any
+    valid: Any
+    remedy: str
+    details: list[dict[str, Any]]
+
+
+class ErrorBody(BaseModel):
+    """The body of every answer that is not a success."""
+
+    error: Refusal
+
+
+REFUSALS: dict[int | str, dict[str, Any]] = {
+    "4XX": {"model": ErrorBody, "description": "Refused, with the reason and the way out."},
+    "503": {"model": ErrorBody, "description": "Cannot be stored now, so nothing was promised."},
+}
+
+
 def build_router() -> APIRouter:
     """The routes under /api."""
-    router = APIRouter(prefix=API_PREFIX)
+    router = APIRouter(prefix=API_PREFIX, responses=REFUSALS)
     parts = (
         *(accounts, people, audit, studies, instruments, participants, sessions, watching),
-        *(devices, tablet, alarms),
-        *(analysis, exports, receipts, network),
+        *(devices, tablet, alarms, consents, suggestions, calibrations),
+        *(analysis, exports, receipts, rights, network),
     )
     for part in parts:
         router.include_router(part)

@@ -11,9 +11,12 @@ from types import TracebackType
 from sqlalchemy.exc import DBAPIError
 
 from app.clock import Clock
+from app.database import Database
 from app.errors import NotDurable
 from app.features.backups.service import BackedUp, back_up
 from app.features.opening.service import existing_database
+from app.features.rights.service import COMMAND_LINE, record_copy
+from app.schema_revisions import newest_revision
 from app.settings import Settings
 
 
@@ -27,9 +30,32 @@ def back_up_to(to: Path, *, as_json: bool) -> str:
         try:
             with Counter("backing up") as counter:
                 done = back_up(database, to, clock=Clock(), progress=counter)
+            _put_on_record(database, done)
         finally:
             database.close()
     return as_text(done) if as_json else _sentence(done)
+
+
+def _put_on_record(database: Database, done: BackedUp) -> None:
+    """A copy left the database; a backup is whole even where that cannot be written down."""
+    if done.revision != newest_revision():
+        return
+    try:
+        with database.writing() as db:
+            record_copy(
+                db,
+                kind="backup",
+                place=str(done.path.absolute()),
+                by=COMMAND_LINE,
+                now=done.made_at,
+                size_bytes=done.size_bytes,
+            )
+    except DBAPIError as error:
+        print(
+            f"reembody: the backup is whole, but could not be put on record ({error.orig}): "
+            "keep its place in mind when a participant's data are erased",
+            file=sys.stderr,
+        )
 
 
 @contextmanager

@@ -5,8 +5,11 @@ from pathlib import Path
 
 from app.cli.installation import opened_database
 from app.clock import Clock
+from app.database import Database
 from app.features.analysis.tables import KINDS, Kind
-from app.features.exports.service import export_study, usual_kind
+from app.features.exports.service import Exported, export_study, usual_kind
+from app.features.rights.service import COMMAND_LINE, record_copy
+from app.features.studies.service import study_by_key
 
 
 def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
@@ -19,7 +22,23 @@ def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
     with opened_database() as database, database.reading() as db:
         chosen = usual_kind(db, study) if kind is None else _known(kind)
         done = export_study(db, study, chosen, to, now=Clock().utc_now(), progress=_tell_progress)
+        _put_on_record(database, study, done)
     return f"{done.sessions} session(s) of kind {done.kind} in {done.files} files: {to}"
+
+
+def _put_on_record(database: Database, study: str, done: Exported) -> None:
+    """A copy left the database."""
+    with database.writing() as db:
+        record_copy(
+            db,
+            kind="export",
+            study_id=study_by_key(db, study).id,
+            session_kind=done.kind,
+            place=str(done.to.absolute()),
+            by=COMMAND_LINE,
+            now=Clock().utc_now(),
+            sessions=done.sessions,
+        )
 
 
 def _known(kind: str) -> Kind:

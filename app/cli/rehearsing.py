@@ -75,6 +75,9 @@ def _own_server(data: Path | None) -> Iterator[tuple[str, str]]:
             "REEMBODY_DATA_DIR": str(data or scratch),
             "REEMBODY_DATABASE_URL": "",
             "REEMBODY_ADMIN_PASSWORD": password,
+            # Whatever the installation opens, this one is for the rehearsal alone.
+            "REEMBODY_LAN": "false",
+            "REEMBODY_HOST": "127.0.0.1",
         }
         process = subprocess.Popen(  # noqa: S603 - our own command
             [sys.executable, "-m", "app.cli", "serve", "--port", str(port)],
@@ -112,11 +115,13 @@ def _free_port() -> int:
 
 
 def _text(report: RehearsalReport) -> str:
-    phases = [phase for phase in report.phases if phase["limb"] is not None]
+    phases = [phase for phase in report.phases if phase["kind"] == "task"]
+    practised = sum(phase["kind"] == "practice" for phase in report.phases)
     lines = [
         f"SIMULATED session {report.session_id}: {report.duration_s:.1f} s at {report.speed:g}x",
         f"frames sent {report.frames_sent}, stored {report.frames_stored}",
         f"{len(phases)} task phases, {report.questionnaires} questionnaires",
+        *([f"{practised} practice phases, which no analysis uses"] if practised else []),
         f"{report.completions} completions, {report.contacts} contacts",
         f"{report.side_contacts} contacts with the sides of boxes",
     ]

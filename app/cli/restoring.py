@@ -7,9 +7,16 @@ from sqlalchemy.exc import DBAPIError
 
 from app.cli.backing_up import Counter, as_text, told_plainly
 from app.clock import Clock
+from app.errors import ReembodyError
 from app.features.backups.service import Restored, checked_backup, restore
 from app.features.context import AppContext
 from app.features.opening.service import backups_of, bring_up_to_date, put_away_if_damaged
+from app.features.rights.service import (
+    ErasuresKept,
+    expect_erasure,
+    finish_erasures,
+    forget_erasure,
+)
 from app.features.sessions.recovery import stop_running_clocks
 from app.main import create_app
 from app.settings import Settings
@@ -31,6 +38,7 @@ def restore_from(path: Path, *, replace: bool, even_though_active: bool, as_json
         bring_up_to_date(settings, clock)
         # Complete, but not started: what is done to sessions needs its parts.
         context: AppContext = create_app(settings, clock=clock).state.context
+        expected = expect_erasure(settings)
         done = restore(
             context.database,
             backup,
@@ -38,10 +46,26 @@ def restore_from(path: Path, *, replace: bool, even_though_active: bool, as_json
             clock=clock,
             replace=replace,
             even_though_active=even_though_active,
+            erasures=ErasuresKept(context),
             progress=counter,
         )
+    if expected and not done.erasures_reapplied:
+        forget_erasure(settings)
+    _overwrite(context)
     _stop_clocks(context)
     return as_text(done) if as_json else _sentences(done)
+
+
+def _overwrite(context: AppContext) -> None:
+    """What was erased again was in the file for a moment; the next start does the same."""
+    try:
+        finish_erasures(context)
+    except (DBAPIError, ReembodyError) as error:
+        print(
+            f"reembody: restored, but erased rows are still to be overwritten ({error}): "
+            "start the server again",
+            file=sys.stderr,
+        )
 
 
 def _stop_clocks(context: AppContext) -> None:
@@ -66,6 +90,11 @@ def _sentences(done: Restored) -> str:
     ]
     if done.before is not None:
         lines.append(f"What was there before: {done.before}")
+    if done.erasures_reapplied:
+        lines.append(
+            f"{done.erasures_reapplied} participant(s) in it had been erased since, and were "
+            "erased again"
+        )
     if done.unpaired:
         lines.append(f"{done.unpaired} headset(s) of sessions that are not over: pair them again")
     return "\n".join(lines)

@@ -140,6 +140,12 @@ class Tablet:
         )
         return state
 
+    async def consent(self, step_index: int, given: Json) -> Json:
+        """Consent with ticked lines and a signature."""
+        body = {"step_index": step_index, **given}
+        state: Json = await call_again(self.client, "POST", "/api/tablet/consent", body)
+        return state
+
     async def submit(self, administration: Json, answers: Json, idempotency_key: str) -> Json:
         """Send a filled-in form."""
         body = {

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from app.clock import Clock
 from app.database import Database
+from app.features.analysis.drawing import Drawings
 from app.features.live import Hub
 from app.features.rate_limit import RateLimiter
 from app.features.storage_health import StorageHealth
@@ -22,4 +23,5 @@ class AppContext:
     storage: StorageHealth
     login_limiter: RateLimiter
     pairing_limiter: RateLimiter
+    drawings: Drawings
     network: Network = field(default_factory=Network)

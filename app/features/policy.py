@@ -57,6 +57,13 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/studies/check": READERS,
     "POST /api/studies/edit": READERS,
     "POST /api/studies/timeline": READERS,
+    "GET /api/studies/{key}/suggestions": LAB,
+    "POST /api/studies/{key}/suggestions": RUNNERS,
+    "POST /api/suggestions/{suggestion_id}/decision": DESIGNERS,
+    # How slow the equipment itself is.
+    "GET /api/calibrations": LAB,
+    "POST /api/calibrations": DESIGNERS,
+    "POST /api/calibrations/{calibration_id}/retire": DESIGNERS,
     # Instruments hold no study's secrets.
     "GET /api/instruments": LAB,
     "GET /api/instruments/{key}": LAB,
@@ -67,6 +74,13 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/studies/{key}/codebook": READERS,
     "GET /api/studies/{key}/dashboard": READERS,
     "GET /api/studies/{key}/export": READERS,
+    # What participants may ask for.
+    "GET /api/studies/{key}/participants": DESIGNERS,
+    "POST /api/studies/{key}/participants/{participant_id}/erasure": DESIGNERS,
+    "GET /api/studies/{key}/participants/{participant_id}/access": DESIGNERS,
+    "POST /api/sessions/{session_id}/submissions/{submission_id}/corrections": DESIGNERS,
+    "GET /api/studies/{key}/copies": DESIGNERS,
+    "POST /api/copies/{copy_id}/destroyed": DESIGNERS,
     # One session.
     "GET /api/sessions/{session_id}": LAB,
     "GET /api/sessions/{session_id}/live": LAB,
@@ -76,6 +90,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/sessions/{session_id}/streams": LAB,
     "GET /api/sessions/{session_id}/answers": LAB,
     "GET /api/sessions/{session_id}/administration": RUNNERS,
+    "GET /api/sessions/{session_id}/consent": RUNNERS,
     "POST /api/sessions/{session_id}/commands": RUNNERS,
     "POST /api/sessions/{session_id}/submissions": RUNNERS,
     "POST /api/sessions/{session_id}/pairings": RUNNERS,
@@ -83,6 +98,7 @@ POLICY: dict[str, frozenset[str]] = {
     "DELETE /api/sessions/{session_id}/devices/{device_id}": RUNNERS,
     # A paired device, for its own session.
     "GET /api/tablet/state": TABLET,
+    "POST /api/tablet/consent": TABLET,
     "GET /api/tablet/live": TABLET,
     "PUT /api/tablet/language": TABLET,
     "POST /api/tablet/acknowledge": TABLET,

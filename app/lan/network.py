@@ -41,6 +41,11 @@ class Reach:
     certificate: ShownCertificate | None = None
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """The host names of the addresses: the lab's own certificate may be for a full name."""
+        return tuple(urlsplit(url).hostname or "" for url in self.urls)
+
+    @property
     def port(self) -> int:
         """The port on this machine, which a USB cable leads to."""
         return urlsplit(self.local_url).port or DEFAULT_PORT

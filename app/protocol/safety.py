@@ -12,7 +12,7 @@ from app.protocol.common import Key, Strict, refusal
 
 FormKey = Annotated[
     str,
-    StringConstraints(pattern=r"^form\.[a-z][a-z0-9_]{0,39}(\.[2-9])?$"),
+    StringConstraints(min_length=1, max_length=80),
     Field(description="the key of a form before the blocks, such as form.fms"),
 ]
 

@@ -152,4 +152,8 @@ def _try(task: HandTask | FootTask) -> None:
     try:
         task.layout()
     except LayoutError as error:
-        raise refusal(f"The boxes cannot be built: {error}") from error
+        raise refusal(
+            f"The boxes cannot be built: {error}",
+            valid="boxes numbered 1, 2, ... from the left, apart from each other and the target",
+            remedy="Change the numbers, places or sizes of this task as the message says.",
+        ) from error

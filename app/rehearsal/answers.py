@@ -9,6 +9,18 @@ from app.rehearsal.body import Person
 from app.science.simulation.answers import Aspect, SimulatedItem, simulated_answers
 
 OPEN_PROMPT = "Simulated answer of a rehearsal."
+SIGNATURE = "M80 150L120 60L160 150M100 115L145 115M200 150L200 60L260 150L260 60"
+"""Two letters, drawn by nobody."""
+
+
+def agreement(form: dict[str, Any]) -> dict[str, Any]:
+    """A consent as the simulated participant gives it: everything ticked that is not optional."""
+    lines = enumerate(form["statements"])
+    return {
+        "ticked": [at for at, line in lines if not line["optional"]],
+        "name": "Simulated participant" if form["signature"] == "typed" else None,
+        "signature": SIGNATURE if form["signature"] == "drawn" else None,
+    }
 
 
 def fill_in(

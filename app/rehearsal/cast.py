@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from app.client.http import Operator, ServerRefusedError, Tablet
-from app.rehearsal.answers import fill_in
+from app.rehearsal.answers import agreement, fill_in
 from app.rehearsal.body import Person
 from app.rehearsal.headset import Headset
 
@@ -64,6 +64,9 @@ async def operate(cast: Cast) -> None:
 def _next_action(view: Json, person: Person) -> tuple[str, Json] | None:
     if view["status"] == "planned":
         return "start", {}
+    if view["held"] is not None:
+        # A simulated participant is never unwell; that the rule works is seen all the same.
+        return "override_stop", {"reason": "Rehearsal: nobody is unwell."}
     current = view["current"]
     step = view["steps"][current["index"]]
     connected = any(one["kind"] == "headset" and one["connected"] for one in view["devices"])
@@ -88,7 +91,9 @@ async def answer(cast: Cast) -> None:
         match state["screen"]:
             case "finished":
                 return
-            case "consent" | "instructions":
+            case "consent":
+                await cast.tablet.consent(state["step_index"], agreement(state["consent"]))
+            case "instructions":
                 await cast.tablet.acknowledge(state["step_index"])
             case "form":
                 await _fill_in(cast, state["administration"])

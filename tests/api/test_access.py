@@ -3,8 +3,11 @@
 import re
 
 import pytest
+from starlette.websockets import WebSocketDisconnect
 
 from app.features.policy import ANYONE, POLICY
+from app.wire.messages import SUBPROTOCOL
+from tests.faults.figures import note
 from tests.features.lab import Lab, error
 
 PUBLIC = {
@@ -106,3 +109,61 @@ def test_reading_is_left_to_the_browsers_own_rules(lab: Lab) -> None:
     """A link from another site may open a page; it changes nothing."""
     answer = lab.operator.get("/api/health", headers={"sec-fetch-site": "cross-site"})
     assert answer.status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("host", "status"),
+    [
+        ("testserver", 200),
+        ("localhost:8321", 200),
+        ("127.0.0.1:8321", 200),
+        ("[::1]:8321", 200),
+        ("192.168.1.20:8443", 200),
+        ("lab-pc.local:8443", 200),
+        ("rebound.example.com", 403),
+        ("rebound.example.com:8321", 403),
+        ("127.0.0.1.rebound.example.com", 403),
+        ("local", 200),
+        ("evil.notlocal", 403),
+    ],
+)
+def test_a_name_of_the_internet_does_not_lead_here(lab: Lab, host: str, status: int) -> None:
+    """A hostile page that makes its name lead to this address gets nothing (DNS rebinding)."""
+    assert lab.stranger().get("/api/health", headers={"host": host}).status_code == status
+
+
+def test_no_foreign_page_gets_anything_changed_anywhere(lab: Lab) -> None:
+    """Every changing route, with an operator's login, asked by three kinds of foreign pages."""
+    foreign = (
+        {"origin": "https://elsewhere.example"},
+        {"origin": "null"},
+        {"sec-fetch-site": "cross-site"},
+    )
+    changing = [route for route in routes(lab) if route[0] != "get"]
+    passes = [
+        (method, path, headers)
+        for method, path in changing
+        for headers in foreign
+        if lab.operator.request(
+            method, re.sub(r"\{\w+\}", "x", path), json={}, headers=headers
+        ).status_code
+        != 403
+    ]
+    note(32, "requests of foreign pages", "changing routes asked", len(changing) * len(foreign))
+    note(32, "requests of foreign pages", "passes", len(passes))
+    assert passes == []
+
+
+@pytest.mark.parametrize("origin", ["https://elsewhere.example", "null", "http://testserver:99"])
+def test_a_foreign_page_opens_no_socket(lab: Lab, origin: str) -> None:
+    """A WebSocket's handshake from another origin is refused, whatever token it brings."""
+    token = lab.headset_token(lab.join()["id"])
+    headers = {"origin": origin, "host": "testserver"}
+    offered = [SUBPROTOCOL, f"bearer.{token}"]
+    with (
+        pytest.raises(WebSocketDisconnect) as refused,
+        lab.operator.websocket_connect("/api/vr/stream", subprotocols=offered, headers=headers),
+    ):
+        pass
+    assert refused.value.code == 4403
+    note(32, "sockets of foreign pages", f"origin {origin}: close code", refused.value.code)

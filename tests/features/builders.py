@@ -15,7 +15,7 @@ from app.features.participants.service import close_attempt, hold_slot, take_slo
 from app.features.sessions.contents import store_content
 from app.features.sessions.engine import events as e
 from app.features.sessions.engine import initial_state, state_to_json
-from app.features.sessions.engine.state import StepState, StepStatus
+from app.features.sessions.engine.state import SessionStatus, StepState, StepStatus
 from app.features.sessions.journal import append_events
 from app.features.studies.service import (
     add_shipped,
@@ -88,7 +88,8 @@ def _snapshot(plan: Sequence[Step], spec: SessionSpec) -> dict[str, object]:
     for step in plan:
         status = StepStatus.SKIPPED if step.key in spec.skipped else StepStatus.DONE
         steps.append(StepState(status, attempt=2 if step.key in spec.redone else 1))
-    state = replace(initial_state(len(plan)), steps=tuple(steps))
+    ended = replace(initial_state(len(plan)), version=2, status=SessionStatus(spec.status))
+    state = replace(ended, steps=tuple(steps))
     assert asdict(state)
     return state_to_json(state)
 

@@ -5,6 +5,7 @@ import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
@@ -124,9 +125,13 @@ def error(response: Response, status: int, code: str) -> Json:
 
 
 @contextmanager
-def running_lab(database_url: str, clock: Clock | None = None) -> Iterator[Lab]:
+def running_lab(
+    database_url: str, clock: Clock | None = None, data_dir: Path | None = None
+) -> Iterator[Lab]:
     """Start the application on `database_url` and stop it afterwards."""
     settings = Settings(database_url=database_url, admin_password=SecretStr(PASSWORD))
+    if data_dir is not None:
+        settings = settings.model_copy(update={"data_dir": data_dir})
     app = create_app(settings, clock=clock)
     with TestClient(app) as operator:
         lab = Lab(app, operator)

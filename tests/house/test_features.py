@@ -11,6 +11,8 @@ ALSO = {
     "sessions": {
         "engine",  # commands and state are the words in which features speak of a session
         "contents",  # words beside the event log
+        "consent",  # the tablet hands in what the participant agreed to
+        "consent_schemas",
         "journal",  # the log's canonical JSON and its hash chain
         "capture",  # whose sessions take no more data
     },

@@ -1,25 +1,18 @@
 """The real server on the lab's network: three doors, one application."""
 
 import asyncio
-import json
 import socket
 import ssl
-import subprocess
 from collections.abc import Iterator
 from contextlib import nullcontext
-from pathlib import Path
 
 import httpx2
 import pytest
-from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 
-from app.wire.messages import PROTOCOL_VERSION, SUBPROTOCOL
 from tests.features.lab import STUDY, ok
+from tests.lan.devices import CREDENTIALS, greeted, pair_headset
 from tests.support.lan import LanServer
-from tests.support.server import ADMIN_PASSWORD, REEMBODY, free_port
-
-CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}
 
 
 @pytest.fixture(scope="module")
@@ -37,28 +30,6 @@ def raw(port: int, request: bytes) -> bytes:
         while chunk := connection.recv(65536):
             answer += chunk
     return answer
-
-
-def pair_headset(client: httpx2.Client) -> tuple[str, str]:
-    """A session's id, and the token of the headset that is paired with it."""
-    session = ok(client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"}))
-    shown = ok(client.post(f"/api/sessions/{session['id']}/pairings", json={"device": "headset"}))
-    paired = ok(client.post("/api/devices/pair", json={"code": shown["code"]}))
-    return session["id"], paired["token"]
-
-
-async def greeted(url: str, token: str, **options: object) -> dict[str, object]:
-    """Connect as a headset and take the welcome."""
-    async with connect(
-        f"{url.replace('http', 'ws', 1)}/api/vr/stream",
-        subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]
-        **options,  # type: ignore[arg-type]
-    ) as connection:
-        await connection.send(
-            json.dumps({"type": "hello", "protocol": PROTOCOL_VERSION, "client": "test"})
-        )
-        answer: dict[str, object] = json.loads(await connection.recv())
-        return answer
 
 
 def test_all_doors_lead_to_one_application(lan: LanServer) -> None:
@@ -195,75 +166,6 @@ def test_the_terminal_and_the_console_tell_the_same(lan: LanServer) -> None:
     # The console was open at localhost; the tablet must not be sent to its own.
     assert shown["url"] == f"{lan.secure_url}/tablet?code={shown['code']}"
     assert shown["help_url"] == lan.help_url
-
-
-def test_a_restart_and_a_renewal_leave_devices_paired(tmp_path: Path) -> None:
-    """Token, authority and fingerprint stay; only the server's own certificate is another."""
-    with LanServer(tmp_path) as server:
-        trust = server.trusting()
-        with server.secure_client() as client:
-            ok(client.post("/api/login", json=CREDENTIALS))
-            _, token = pair_headset(client)
-            before = ok(client.get("/api/network"))["certificate"]
-        assert asyncio.run(greeted(server.secure_url, token, ssl=trust))["type"] == "welcome"
-        server.stop()
-        renewed = _command(server, "tls", "renew", "--json")
-        server.start()
-        # `trust` is what the device installed before.
-        assert asyncio.run(greeted(server.secure_url, token, ssl=trust))["type"] == "welcome"
-        with httpx2.Client(base_url=server.secure_url, verify=trust) as client:
-            ok(client.post("/api/login", json=CREDENTIALS))
-            after = ok(client.get("/api/network"))["certificate"]
-    assert after["fingerprint"] == before["fingerprint"] == renewed["authority_fingerprint_sha256"]
-    assert after["server_fingerprint"] == renewed["server_fingerprint_sha256"]
-    assert after["server_fingerprint"] != before["server_fingerprint"]
-
-
-def test_an_open_address_without_tls_is_refused(tmp_path: Path) -> None:
-    """It ends before it listens or touches the data, and says three ways out."""
-    result = subprocess.run(
-        [*REEMBODY, "serve", "--host", "0.0.0.0", "--port", str(free_port())],  # noqa: S104
-        env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=60,
-    )
-    assert result.returncode == 2
-    assert "--lan" in result.stderr
-    assert "--without-tls" in result.stderr
-    assert not (tmp_path / "data").exists()
-
-
-def test_a_taken_port_is_named(lan: LanServer, tmp_path: Path) -> None:
-    """With the option that chooses another one, before the data are touched."""
-    result = subprocess.run(
-        [
-            *(*REEMBODY, "serve", "--port", str(free_port()), "--lan", "--lan-host", "127.0.0.1"),
-            *("--lan-port", str(lan.lan_port), "--help-port", str(free_port())),
-        ],
-        env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=60,
-    )
-    assert result.returncode == 2
-    assert f"port {lan.lan_port}" in result.stderr
-    assert "--lan-port" in result.stderr
-    assert not (tmp_path / "data" / "reembody.sqlite").exists()
-
-
-def _command(server: LanServer, *arguments: str) -> dict[str, str]:
-    result = subprocess.run(
-        [*REEMBODY, *arguments],
-        env={"REEMBODY_DATA_DIR": str(server.data_dir)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    told: dict[str, str] = json.loads(result.stdout)
-    return told
 
 
 def _handshake(server: LanServer, context: ssl.SSLContext) -> bool:

@@ -133,9 +133,12 @@ def take_screenshot(page: Page, folder: Path, name: str) -> Path:
     return path
 
 
-MOVEMENTS_DONE = """() => Promise.all(document.getAnimations()
-    .filter((one) => Number.isFinite(one.effect?.getComputedTiming().endTime))
-    .map((one) => one.finished.catch(() => undefined)))"""
+# A movement that was held, or that begins again and again, would be waited for in vain.
+MOVEMENTS_DONE = """() => Promise.race([
+    new Promise((resolve) => setTimeout(resolve, 3000)),
+    Promise.all(document.getAnimations()
+        .filter((one) => Number.isFinite(one.effect?.getComputedTiming().endTime))
+        .map((one) => one.finished.catch(() => undefined)))]).then(() => undefined)"""
 
 
 def accessibility_violations(page: Page) -> list[str]:

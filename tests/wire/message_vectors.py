@@ -111,6 +111,7 @@ STATE: Json = {
         "completions": 1,
         "pausing": False,
         "resuming": False,
+        "until_completions": None,
     },
     "participant": {"handedness": "right", "footedness": "both", "stature_m": 1.72},
 }
@@ -123,6 +124,12 @@ STATE_BEFORE: Json = {
     "recording": False,
     "phase": None,
     "participant": {"handedness": None, "footedness": None, "stature_m": None},
+}
+STATE_OF_PRACTICE: Json = {
+    **STATE,
+    "step_index": 5,
+    "step_kind": "practice",
+    "phase": {**STATE["phase"], "kind": "practice", "latency_ms": 0.0, "until_completions": 2},
 }
 POSITIONS: list[Json] = [
     {"stream": "target", "epoch": 1, "next_seq": 540},
@@ -169,6 +176,7 @@ ANSWER: Json = {
 FROM_SERVER: list[tuple[str, Json]] = [
     ("welcome", WELCOME),
     ("state", STATE),
+    ("state_of_a_practice", STATE_OF_PRACTICE),
     ("state_before_the_start", STATE_BEFORE),
     ("ack", {"type": "ack", "positions": POSITIONS}),
     ("resend", {"type": "resend", **POSITIONS[0]}),

@@ -24,7 +24,7 @@ SEVERITIES: dict[str, Severity] = {
     "stop_rule_near": "warning",
     "stop_rule_unknown": "warning",
 }
-"""Every alarm there is. Critical: data are being lost now, a phase stands, or somebody is unwell."""
+"""Every alarm there is. Critical: data are being lost, a phase stands, or somebody is unwell."""
 
 STANDING = ("stop_rule_met", "stop_rule_near", "stop_rule_unknown")
 """Alarms about the participant: they hold until a person or a form says otherwise, whatever becomes

@@ -18,10 +18,10 @@ from app.features.analysis.figures import (
     joint_error_map_drawing,
     progress_drawing,
 )
-from app.features.analysis.schemas import DashboardKind, DashboardView, FigureView
+from app.features.analysis.schemas import DashboardFigures, DashboardKind, FigureView
 from app.features.analysis.tables import (
     contacts_table,
-    joint_errors_table,
+    joint_angles_table,
     phases_table,
     scores_table,
     sessions_table,
@@ -34,14 +34,14 @@ TITLE_PREFIX = {"people": "", "simulated": "Simulated: ", "test": "Test: "}
 BLINDED_NOTE = "The study is blinded: measures of sessions that are still open are left out."
 
 
-def build_dashboard(db: Session, study_key: str, kind: DashboardKind) -> DashboardView:
+def build_dashboard(db: Session, study_key: str, kind: DashboardKind) -> DashboardFigures:
     """Every figure of a study's sessions of one kind; raises NotFound for an unknown study."""
     protocol = protocol_of(newest_version(db, study_by_key(db, study_key)))
     sessions = sessions_table(db, study_key, kind)
     prefix = TITLE_PREFIX[kind]
     note = BLINDED_NOTE if protocol.blinding.operator else ""
     drawings = _drawings(db, protocol, sessions, kind)
-    return DashboardView(
+    return DashboardFigures(
         kind=kind,
         simulated=kind == "simulated",
         n_sessions=len(sessions),
@@ -59,7 +59,7 @@ def _drawings(
     chosen = set(visible["session_id"])
     scores, phases, contacts, errors = (
         _counting(table(db, key, kind), chosen)
-        for table in (scores_table, phases_table, contacts_table, joint_errors_table)
+        for table in (scores_table, phases_table, contacts_table, joint_angles_table)
     )
     yield from embodiment_drawings(scores)
     yield joint_error_drawing(errors)

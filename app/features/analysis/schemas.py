@@ -1,5 +1,6 @@
 """A dashboard and a codebook as they travel to a page."""
 
+from datetime import datetime
 from typing import Any, Literal
 
 from pydantic import BaseModel
@@ -19,7 +20,7 @@ class FigureView(BaseModel):
     n: int
 
 
-class DashboardView(BaseModel):
+class DashboardFigures(BaseModel):
     """The figures of a study's sessions of one kind."""
 
     kind: str
@@ -28,6 +29,13 @@ class DashboardView(BaseModel):
     n_completed: int
     avatar: list[str]
     figures: list[FigureView]
+
+
+class DashboardView(DashboardFigures):
+    """Figures as they were drawn at `drawn_at`; not `current`: newer data are being drawn."""
+
+    drawn_at: datetime
+    current: bool
 
 
 class ColumnView(BaseModel):

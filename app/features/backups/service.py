@@ -5,6 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import Protocol
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -42,7 +43,8 @@ class Restored:
     """A restore that is committed.
 
     `made_at`: of the backup. `before`: where the rows that were replaced are kept, if there were
-    any. `unpaired`: headsets that have to be paired again.
+    any. `unpaired`: headsets that have to be paired again. `erasures_reapplied`: participants in
+    the backup whose data had been erased since, and were erased again.
     """
 
     path: Path
@@ -52,6 +54,17 @@ class Restored:
     sha256: str
     before: Path | None
     unpaired: int
+    erasures_reapplied: int
+
+
+class Outliving(Protocol):
+    """What a restore must not undo; called inside its transaction."""
+
+    def before(self, db: Session) -> None:
+        """The rows are still those that will be replaced."""
+
+    def behind(self, db: Session) -> int:
+        """The backup's rows are there; how many changes were made to them."""
 
 
 def back_up(database: Database, to: Path, *, clock: Clock, progress: Progress = silent) -> BackedUp:
@@ -93,6 +106,7 @@ def restore(
     clock: Clock,
     replace: bool,
     even_though_active: bool = False,
+    erasures: Outliving | None = None,
     progress: Progress = silent,
 ) -> Restored:
     """Put the backup in the place of everything in `database`, whose schema must be the newest.
@@ -108,8 +122,8 @@ def restore(
     Raises Conflict where sessions are active or rows would be replaced and the caller did not
     allow it, NotDurable where there is no room; then nothing has changed.
 
-    Erasing a participant's data does not exist yet. Once it does, erasures made after the backup
-    must be made again here, inside the transaction, behind `replace_rows`.
+    `erasures`, which every command that restores must give, makes erasures again that are newer
+    than the backup: nobody ever sees the data come back.
     """
     began_ns = clock.monotonic_ns()
     with database.writing() as db:
@@ -117,11 +131,14 @@ def restore(
         hold_still(target, backup.shapes)
         if not even_though_active:
             _refuse_if_active(db)
+        if erasures is not None:
+            erasures.before(db)
         before = None
         if not is_empty(target, backup.shapes):
             before = _place_before(backup.path, keep_in, clock.utc_now(), replace=replace)
             write_backup(target, before, now=clock.utc_now(), progress=progress)
         replace_rows(target, backup, progress)
+        reapplied = 0 if erasures is None else erasures.behind(db)
         unpaired = _unpair_headsets(db, clock.utc_now())
     return Restored(
         path=backup.path,
@@ -131,6 +148,7 @@ def restore(
         sha256=backup.manifest.sha256,
         before=before,
         unpaired=unpaired,
+        erasures_reapplied=reapplied,
     )
 
 

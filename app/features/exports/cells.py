@@ -8,7 +8,7 @@ a number stays a number, also a negative one.
 import csv
 import io
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import pandas as pd
@@ -53,7 +53,16 @@ _WRITERS: dict[ColumnType, Callable[[Any], str]] = {
 }
 
 
-def _lines(rows: Iterable[Sequence[str]]) -> bytes:
+def _lines(rows: Sequence[Sequence[str]]) -> bytes:
+    if any("\r" in cell for row in rows for cell in row):
+        return b"".join(_line_with_returns(row) for row in rows)
     buffer = io.StringIO(newline="")
     csv.writer(buffer, lineterminator="\n").writerows(rows)
     return buffer.getvalue().encode()
+
+
+def _line_with_returns(row: Sequence[str]) -> bytes:
+    """Python up to 3.12 quotes a carriage return only if lines end with one; readers need it."""
+    buffer = io.StringIO(newline="")
+    csv.writer(buffer, lineterminator="\r\n").writerow(row)
+    return buffer.getvalue().removesuffix("\r\n").encode() + b"\n"

@@ -19,10 +19,12 @@ from app.features.analysis.tables import (
     Kind,
     alarms_table,
     answers_table,
+    calibrations_table,
     clock_mapping_table,
     clock_probes_table,
     completions_table,
     contacts_table,
+    corrections_table,
     events_table,
     joint_errors_table,
     phases_table,
@@ -43,6 +45,7 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "phases": phases_table,
     "answers": answers_table,
     "scores": scores_table,
+    "corrections": corrections_table,
     "contacts": contacts_table,
     "completions": completions_table,
     "joint_errors": joint_errors_table,
@@ -55,7 +58,9 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
 README = "README.txt"
 FOLDERS = {"samples": ".csv", "receipts": ".json"}
 """The folders of an export, and how their files end."""
-TOP_LEVEL = frozenset({*(f"{name}.csv" for name in (*TABLE_FILES, "codebook")), README})
+TOP_LEVEL = frozenset(
+    {*(f"{name}.csv" for name in (*TABLE_FILES, "calibrations", "codebook")), README}
+)
 
 
 @dataclass(frozen=True)
@@ -68,22 +73,28 @@ class Member:
 
 @dataclass
 class Contents:
-    """The members of one export. Iterate once; `files` and `sessions` fill as members are used."""
+    """The members of one export. Iterate once; `files` and `sessions` fill as members are used.
+
+    `only`: leave out every session but these, as for one participant's own copy.
+    """
 
     db: Session
     study_key: str
     kind: Kind
     now: datetime
+    only: frozenset[str] | None = None
     files: list[FileCount] = field(default_factory=list)
     sessions: int = 0
 
     def members(self) -> Iterator[Member]:
         """Tables, codebook, frames and receipt of each session, and the README last."""
-        sessions = sessions_table(self.db, self.study_key, self.kind)
+        sessions = self._table(sessions_table)
         self.sessions = len(sessions)
         for name, table in TABLE_FILES.items():
-            frame = sessions if name == "sessions" else table(self.db, self.study_key, self.kind)
+            frame = sessions if name == "sessions" else self._table(table)
             yield self._member(f"{name}.csv", csv_pieces(name, frame))
+        equipment = calibrations_table(self.db)
+        yield self._member("calibrations.csv", csv_pieces("calibrations", equipment))
         yield self._member("codebook.csv", csv_pieces("codebook", codebook_frame()))
         rows = sessions[["participant_code", "session_id", "simulated", "avatar"]]
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
@@ -91,6 +102,10 @@ class Contents:
             yield self._member(samples_path(code, session_id), samples.pieces())
             yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         yield Member(README, iter([self._readme(sessions).encode()]))
+
+    def _table(self, table: Callable[[Session, str, Kind], pd.DataFrame]) -> pd.DataFrame:
+        frame = table(self.db, self.study_key, self.kind)
+        return frame if self.only is None else frame[frame["session_id"].isin(list(self.only))]
 
     def _receipt(self, session_id: str) -> Iterator[bytes]:
         """What of the session is there, and the proof; told by this very export's record."""

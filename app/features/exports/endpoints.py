@@ -8,8 +8,9 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
 from app.features.analysis.schemas import Kind
-from app.features.dependencies import Context, Reading, SignedIn
+from app.features.dependencies import Context, SignedIn, Writing
 from app.features.exports.names import archive_name
+from app.features.rights.service import in_browser_of, record_copy, sessions_in
 from app.features.studies.service import study_by_key
 
 router = APIRouter(tags=["exports"])
@@ -21,7 +22,7 @@ router = APIRouter(tags=["exports"])
     responses={200: {"content": {"application/zip": {}}, "description": "A ZIP of CSV files."}},
 )
 def get_export(
-    key: str, db: Reading, context: Context, _: SignedIn, kind: Kind = "people"
+    key: str, db: Writing, context: Context, caller: SignedIn, kind: Kind = "people"
 ) -> StreamingResponse:
     """The study's sessions of one kind as CSV files in a ZIP, sent while it is made."""
     # Loads pandas, which the start of the server need not wait for.
@@ -29,6 +30,17 @@ def get_export(
 
     study = study_by_key(db, key)
     now = context.clock.utc_now()
+    # Before it is sent: one that breaks off has left the database, too.
+    record_copy(
+        db,
+        kind="export",
+        study_id=study.id,
+        session_kind=kind,
+        place=in_browser_of(caller.actor),
+        by=caller.actor,
+        now=now,
+        sessions=sessions_in(db, study, kind),
+    )
     pieces = study_archive(context.database, study.key, kind, now=now)
     name = archive_name(study.key, kind)
     return StreamingResponse(

@@ -23,7 +23,12 @@ Reading the files
   receipts/ holds one file per session that says how many frames were made, stored and are missing,
   whether the event log was changed, whether the completions follow from the contacts, and which
   latency the avatar really had. "complete": true means that nothing is missing.
-  The hips carry no latency. latency_ms is what was added to the delay of the equipment.
+  The hips carry no latency. latency_ms is what was added to the delay of the equipment, which
+  calibrations.csv tells as far as it was measured.
+  consent_given and consent_at_utc in sessions.csv say that and when consent was given. The signed
+  records hold names: they stay with the lab and are in no export.
+  Rows with phase_kind = practice or free_roam come before the blocks: never analyse them with
+  those of tasks.
 """
 
 

@@ -1,8 +1,9 @@
 """Exporting a study: one consistent look at the database, as a folder or as an archive."""
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
+from itertools import chain
 from pathlib import Path
 
 from sqlalchemy import select
@@ -11,10 +12,21 @@ from sqlalchemy.orm import Session
 from app.database import Database
 from app.features.analysis.tables import Kind
 from app.features.exports.archive import zip_pieces
-from app.features.exports.contents import Contents
+from app.features.exports.contents import Contents, Member
 from app.features.exports.folder import Progress, silent, write_folder
+from app.features.exports.names import safe_name
 from app.features.studies.service import study_by_key
 from app.models import StudySession
+
+__all__ = [
+    "Exported",
+    "Member",
+    "export_study",
+    "person_archive",
+    "safe_name",
+    "study_archive",
+    "usual_kind",
+]
 
 
 @dataclass(frozen=True)
@@ -52,6 +64,20 @@ def study_archive(
     """The same as one ZIP file, in pieces; close the iterator to stop early."""
     with database.reading() as db:
         yield from zip_pieces(Contents(db, study_key, kind, now).members(), now)
+
+
+def person_archive(
+    db: Session,
+    study_key: str,
+    kind: Kind,
+    sessions: frozenset[str],
+    more: Iterable[Member],
+    *,
+    now: datetime,
+) -> Iterator[bytes]:
+    """`more` and the files of these sessions only, as one ZIP file in pieces."""
+    contents = Contents(db, study_key, kind, now, only=sessions)
+    return zip_pieces(chain(more, contents.members()), now)
 
 
 def usual_kind(db: Session, study_key: str) -> Kind:

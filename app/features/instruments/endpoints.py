@@ -6,6 +6,7 @@ from fastapi import APIRouter
 from sqlalchemy import select
 
 from app.errors import InvalidInput
+from app.features.access import is_theirs
 from app.features.config_problems import problem_views
 from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.instruments.schemas import (
@@ -32,25 +33,25 @@ router = APIRouter(tags=["instruments"])
 
 
 @router.get("/instruments")
-def get_instruments(db: Reading, _: SignedIn) -> list[InstrumentSummary]:
+def get_instruments(db: Reading, caller: SignedIn) -> list[InstrumentSummary]:
     """The newest version of every instrument."""
     rows = db.scalars(
         select(InstrumentVersion).order_by(
             InstrumentVersion.key, InstrumentVersion.created_at, InstrumentVersion.id
         )
     )
-    used = uses(db)
+    used = uses(db, is_theirs(caller))
     by_key = groupby(rows, key=lambda row: row.key)
     return [summary_of(list(versions), used) for _, versions in by_key]
 
 
 @router.post("/instruments", status_code=201)
 def post_instrument(
-    file: InstrumentFile, db: Writing, context: Context, _: SignedIn
+    file: InstrumentFile, db: Writing, context: Context, caller: SignedIn
 ) -> InstrumentDetail:
     """Store a version. Studies that exist keep the wording they were made with."""
     row = save_instrument(db, file.yaml, context.clock.utc_now())
-    return detail_of(db, row.key)
+    return detail_of(db, row.key, is_theirs(caller))
 
 
 @router.post("/instruments/check")
@@ -91,6 +92,6 @@ def post_score(request: TryRequest, db: Reading, _: SignedIn) -> TryResult:
 
 
 @router.get("/instruments/{key}")
-def get_instrument(key: str, db: Reading, _: SignedIn) -> InstrumentDetail:
+def get_instrument(key: str, db: Reading, caller: SignedIn) -> InstrumentDetail:
     """One instrument in full, with all its versions."""
-    return detail_of(db, key)
+    return detail_of(db, key, is_theirs(caller))

@@ -3,7 +3,7 @@
 from datetime import datetime
 from functools import lru_cache
 
-from sqlalchemy import select
+from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
@@ -80,16 +80,17 @@ def save_instrument(db: Session, text: str, now: datetime) -> InstrumentVersion:
     return row
 
 
-def uses(db: Session) -> dict[tuple[str, str], list[str]]:
+def uses(db: Session, seen: ColumnElement[bool]) -> dict[tuple[str, str], list[str]]:
     """Which studies ask which wording: (instrument key, content hash) -> study keys.
 
     Counted are the newest versions, of studies that are not archived: those that new sessions take.
+    `seen`: the condition under which the reader may know of a study.
     """
     found: dict[tuple[str, str], list[str]] = {}
     rows = db.execute(
         select(Study.key, StudyVersion.instruments)
         .join(StudyVersion, StudyVersion.study_id == Study.id)
-        .where(Study.archived_at.is_(None))
+        .where(Study.archived_at.is_(None), seen)
         .order_by(Study.key, StudyVersion.number)
     ).all()
     newest = {key: instruments for key, instruments in rows}  # noqa: C416 - the last one counts

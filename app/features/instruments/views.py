@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from sqlalchemy import ColumnElement
 from sqlalchemy.orm import Session
 
 from app.features.instruments.schemas import (
@@ -53,10 +54,10 @@ def summary_of(versions: Sequence[InstrumentVersion], used: Uses) -> InstrumentS
     )
 
 
-def detail_of(db: Session, key: str) -> InstrumentDetail:
-    """An instrument in full. Raises NotFound."""
+def detail_of(db: Session, key: str, seen: ColumnElement[bool]) -> InstrumentDetail:
+    """An instrument in full; `seen` as for `uses`. Raises NotFound."""
     versions = versions_of_instrument(db, key)
-    used = uses(db)
+    used = uses(db, seen)
     newest = versions[-1]
     return InstrumentDetail(
         **summary_of(versions, used).model_dump(),

@@ -15,6 +15,7 @@ from app.features.studies.schemas import AttemptView, LedgerView, SequenceRow, S
 from app.features.studies.service import newest_version, protocol_of, study_by_key
 
 router = APIRouter(tags=["participants"])
+GIVEN_UP = ("aborted", "withdrawn")
 
 
 @router.get("/studies/{key}/ledger")
@@ -64,14 +65,14 @@ def _row(db: Session, view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
         state=view.state,
         attempts=[
             AttemptView(
-                session_id=session.id,
-                participant_code=participant.code,
+                session_id=attempt.session_id,
+                participant_code=code,
                 outcome=attempt.outcome,
                 opened_at=attempt.opened_at,
                 closed_at=attempt.closed_at,
-                reason=end_reason(db, session.id) if attempt.closed_at else None,
+                reason=end_reason(db, attempt.session_id) if attempt.outcome in GIVEN_UP else None,
             )
-            for attempt, session, participant in view.attempts
+            for attempt, code in view.attempts
         ],
     )
 

@@ -3,7 +3,7 @@
 The ledger is an immutable list of slots, every order in every replicate, with the slots permuted
 within each block by a stored seed. A session holds a slot by an attempt. When it is withdrawn or
 aborted the attempt closes with its data and the same slot is the next to be taken, so balance
-counts completed sessions. People, simulated and test sessions have ledgers of their own.
+counts completed sessions. People, simulated, test and expert sessions have ledgers of their own.
 """
 
 import re
@@ -16,6 +16,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput
 from app.models import (
+    Erasure,
     Ledger,
     LedgerSlot,
     Participant,
@@ -29,20 +30,20 @@ from app.protocol.orders import ledger_block
 
 HOLDING = ("open", "completed")
 _CODE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
-_PREFIX = {"people": "P", "simulated": "SIM", "test": "TEST"}
+_PREFIX = {"people": "P", "simulated": "SIM", "test": "TEST", "expert": "EXPERT"}
 
 
 @dataclass(frozen=True)
 class SlotView:
-    """A slot with everybody who ever held it: (attempt, session, participant) oldest first."""
+    """A slot with everybody who ever held it: (attempt, participant's code), oldest first."""
 
     slot: LedgerSlot
-    attempts: tuple[tuple[SlotAttempt, StudySession, Participant], ...]
+    attempts: tuple[tuple[SlotAttempt, str], ...]
 
     @property
     def state(self) -> str:
         """free, open or completed."""
-        outcomes = {attempt.outcome for attempt, _, _ in self.attempts}
+        outcomes = {attempt.outcome for attempt, _ in self.attempts}
         if "completed" in outcomes:
             return "completed"
         return "open" if "open" in outcomes else "free"
@@ -167,6 +168,12 @@ def find_or_add_participant(
     )
     if known is None:
         return _add_participant(db, study_id, kind, code, now)
+    if db.scalar(select(Erasure.id).where(Erasure.participant_id == known.id)) is not None:
+        raise Conflict(
+            f"the data of {code} were erased, and nobody can be added to what is left",
+            value=code,
+            remedy="Use another code.",
+        )
     busy = db.scalar(
         select(StudySession).where(
             StudySession.participant_id == known.id,
@@ -244,16 +251,17 @@ def ledger_of(db: Session, version: StudyVersion, kind: str) -> tuple[SlotView, 
         select(LedgerSlot).where(LedgerSlot.ledger_id == ledger.id).order_by(LedgerSlot.position)
     ).all()
     rows = db.execute(
-        select(SlotAttempt, StudySession, Participant)
+        select(SlotAttempt, Participant.code)
+        .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
         .join(StudySession, StudySession.id == SlotAttempt.session_id)
         .join(Participant, Participant.id == StudySession.participant_id)
-        .where(SlotAttempt.slot_id.in_([slot.id for slot in slots]))
+        .where(LedgerSlot.ledger_id == ledger.id)
         .order_by(SlotAttempt.opened_at)
-    ).all()
-    return tuple(
-        SlotView(slot, tuple((a, s, p) for a, s, p in rows if a.slot_id == slot.id))
-        for slot in slots
     )
+    held: dict[str, list[tuple[SlotAttempt, str]]] = {}
+    for attempt, code in rows:
+        held.setdefault(attempt.slot_id, []).append((attempt, code))
+    return tuple(SlotView(slot, tuple(held.get(slot.id, ()))) for slot in slots)
 
 
 def planned_slots(protocol: StudyProtocol) -> Sequence[tuple[tuple[str, ...], int]]:

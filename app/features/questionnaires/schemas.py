@@ -79,7 +79,8 @@ class CorrectionView(BaseModel):
 class StoredAnswers(StoredScores):
     """One stored form with the answers that count: as given, unless they were corrected since.
 
-    `corrections`: oldest first; the first one's `previous` is the answer as given.
+    `corrections`: oldest first; the first one's `previous` is the answer as given. `definition`:
+    the exact instrument, for the wordings.
     """
 
     submission_id: str
@@ -88,3 +89,4 @@ class StoredAnswers(StoredScores):
     submitted_at: datetime
     answers: dict[str, AnswerValue]
     corrections: list[CorrectionView]
+    definition: dict[str, Any]

@@ -18,6 +18,7 @@ from app.features.questionnaires.schemas import (
     AnswerValue,
     SubmissionRequest,
 )
+from app.features.questionnaires.stop_rules import judge, tell
 from app.features.questionnaires.stored import (
     answers_of,
     correct_answer,
@@ -26,7 +27,6 @@ from app.features.questionnaires.stored import (
     stored_scores,
 )
 from app.features.sessions.capture import require_capture
-from app.features.questionnaires.stop_rules import judge, tell
 from app.features.sessions.engine import SessionState
 from app.features.sessions.engine.commands import SubmitForm
 from app.features.sessions.journal import canonical

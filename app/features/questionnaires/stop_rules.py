@@ -44,9 +44,7 @@ def judge(db: Session, session: StudySession, submission: Submission) -> Judgeme
     return Judgement(levels, met)
 
 
-def tell(
-    db: Session, session: StudySession, judgement: Judgement, now: datetime
-) -> None:
+def tell(db: Session, session: StudySession, judgement: Judgement, now: datetime) -> None:
     """Raise the alarms that follow from the levels, and clear the warnings that are over."""
     safety = protocol_of_session(db, session).safety
     if safety is None:

@@ -4,6 +4,7 @@ An answer row is never changed. A correction stands beside it, the newest one co
 are those of the answers that count. What the scores were at first follows from the answer rows.
 """
 
+import json
 from collections.abc import Mapping
 from datetime import datetime, timedelta
 
@@ -173,6 +174,7 @@ def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
         submitted_at=submission.submitted_at,
         answers=_as_sent(answers_of(db, submission.id)),
         corrections=[_correction_view(row) for row in _corrections(db, own)],
+        definition=json.loads(version.canonical_json),
         scores=scores,
         score_views=[
             ScoreView(

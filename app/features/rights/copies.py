@@ -1,21 +1,23 @@
 """Copies of data that left the database: an erasure cannot reach them, so it lists them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from pathlib import Path
 
-from sqlalchemy import ColumnElement, and_, or_, select
+from sqlalchemy import ColumnElement, and_, func, or_, select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
 from app.features.audit.service import record
 from app.features.backups.service import ENDING
 from app.features.opening.service import backups_of
-from app.models import CopyMade, Participant, StudySession
+from app.models import CopyMade, Participant, Study, StudySession
 from app.settings import Settings
 
 LONGEST_PLACE = 400
 FOUND_BY = "system"
+COMMAND_LINE = "command line"
+"""Who makes a copy with a command: nobody is signed in there."""
 
 
 def record_copy(
@@ -51,6 +53,12 @@ def record_copy(
     return row
 
 
+def sessions_in(db: Session, study: Study, kind: str) -> int:
+    """How many sessions an export of this kind holds."""
+    query = select(func.count()).select_from(StudySession).where(StudySession.study_id == study.id)
+    return db.scalar(query if kind == "all" else query.where(StudySession.kind == kind)) or 0
+
+
 def in_browser_of(actor: str) -> str:
     """The place of a copy that somebody downloaded: nobody knows where they put it."""
     return f"downloaded by {actor.removeprefix('account:')}"
@@ -60,6 +68,30 @@ def copies_of_study(db: Session, study_id: str) -> list[CopyMade]:
     """Exports and access copies of a study, and backups, which hold every study; newest first."""
     of_study = or_(CopyMade.study_id == study_id, CopyMade.study_id.is_(None))
     return list(db.scalars(select(CopyMade).where(of_study).order_by(CopyMade.at.desc())))
+
+
+def copies_by_participant(
+    db: Session, study: Study, people: Sequence[Participant], began: Mapping[str, datetime]
+) -> dict[str, list[CopyMade]]:
+    """For each of a study's participants, whose first session `began`: copies that may hold them.
+
+    The same as `copies_holding` for each, with one look at the table.
+    """
+    of_study = (CopyMade.study_id == study.id) | (CopyMade.kind == "backup")
+    query = select(CopyMade).where(CopyMade.destroyed_at.is_(None), of_study)
+    copies = db.scalars(query.order_by(CopyMade.at)).all()
+    return {
+        one.id: [copy for copy in copies if copy.at >= began[one.id] and _holds(copy, one)]
+        for one in people
+        if one.id in began
+    }
+
+
+def _holds(copy: CopyMade, participant: Participant) -> bool:
+    """The rule of `_may_hold` for a copy of the participant's study, or a backup."""
+    if copy.kind == "export":
+        return copy.session_kind in (participant.kind, "all")
+    return copy.kind == "backup" or copy.participant_id == participant.id
 
 
 def copies_holding(db: Session, participant: Participant) -> list[CopyMade]:

@@ -46,27 +46,7 @@ def erase(
     while a session of theirs is active.
     """
     sessions = locked_sessions(db, participant)
-    if erasure_of(db, participant.id) is not None:
-        raise Conflict(
-            "the data of this participant were erased before",
-            value=participant.code,
-            remedy="There is nothing left to erase; the list shows what was done.",
-        )
-    if confirm != participant.code:
-        raise InvalidInput(
-            "the code that was typed is not this participant's",
-            value=confirm,
-            valid=participant.code,
-            remedy="Type the code as it stands in the list, to be sure whom you mean.",
-        )
-    active = [session.id for session in sessions if session.status == "active"]
-    if active:
-        raise NotNow(
-            "a session of this participant is active",
-            value=active,
-            valid=[],
-            remedy="Withdraw it first: that stops the recording at once. Then erase.",
-        )
+    require_erasable(db, participant, confirm)
     now = context.clock.utc_now()
     erasure = erase_now(
         db, context, participant, sessions, erasure_id=new_id(), by=actor, at=now, why=reason_code
@@ -86,6 +66,35 @@ def erase(
         now=now,
     )
     return erasure
+
+
+def require_erasable(db: Session, participant: Participant, confirm: str) -> None:
+    """Raise Conflict, InvalidInput or NotNow where `erase` would."""
+    if erasure_of(db, participant.id) is not None:
+        raise Conflict(
+            "the data of this participant were erased before",
+            value=participant.code,
+            remedy="There is nothing left to erase; the list shows what was done.",
+        )
+    if confirm != participant.code:
+        raise InvalidInput(
+            "the code that was typed is not this participant's",
+            value=confirm,
+            valid=participant.code,
+            remedy="Type the code as it stands in the list, to be sure whom you mean.",
+        )
+    active = db.scalars(
+        select(StudySession.id).where(
+            StudySession.participant_id == participant.id, StudySession.status == "active"
+        )
+    ).all()
+    if active:
+        raise NotNow(
+            "a session of this participant is active",
+            value=list(active),
+            valid=[],
+            remedy="Withdraw it first: that stops the recording at once. Then erase.",
+        )
 
 
 def erase_now(

@@ -32,46 +32,69 @@ ROOM = 1.2
 """How much of the database's size must be free to write it anew."""
 
 
-def expect_erasure(settings: Settings) -> None:
-    """Remember that bytes will have to be overwritten, before the rows go."""
-    folder = backups_of(settings).parent
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / MARKER).touch()
+def expect_erasure(settings: Settings) -> bool:
+    """Remember that bytes will have to be overwritten, before the rows go; whether that is new."""
+    marker = _marker(settings)
+    new = not marker.exists()
+    marker.parent.mkdir(parents=True, exist_ok=True)
+    marker.touch()
+    return new
 
 
-def overwrite(database: Database, settings: Settings) -> bool:
+def is_overwritten(settings: Settings) -> bool:
+    """Whether no byte of erased rows is left in the database."""
+    return not _marker(settings).exists()
+
+
+def forget_erasure(settings: Settings) -> None:
+    """Nothing was erased after all."""
+    _marker(settings).unlink(missing_ok=True)
+
+
+def overwrite(database: Database, settings: Settings, *, starting: bool = False) -> bool:
     """Overwrite what the erased rows left behind; whether nothing is left to do.
 
-    Call it outside of any transaction. What could not be done now is done at the next start.
+    Call it outside of any transaction. What could not be done now is done at the next start;
+    `starting`: this is it, and no session is held up.
     """
-    marker = backups_of(settings).parent / MARKER
     try:
-        done = _sqlite(database) if database.is_sqlite else _postgresql(database)
+        done = _anew(database, starting=starting)
     except DBAPIError as error:
         log.warning("erased rows are still to be overwritten: %s", error.orig)
         return False
     if done:
-        marker.unlink(missing_ok=True)
+        forget_erasure(settings)
     return done
 
 
 def overwrite_what_is_left(database: Database, settings: Settings) -> bool:
     """At a start: finish what an earlier erasure could not; whether there was anything."""
-    if not (backups_of(settings).parent / MARKER).exists():
+    if is_overwritten(settings):
         return False
-    overwrite(database, settings)
+    overwrite(database, settings, starting=True)
     return True
 
 
-def _sqlite(database: Database) -> bool:
+def _anew(database: Database, *, starting: bool) -> bool:
+    if database.is_sqlite:
+        return _sqlite(database, starting=starting)
+    return _postgresql(database)
+
+
+def _marker(settings: Settings) -> Path:
+    return backups_of(settings).parent / MARKER
+
+
+def _sqlite(database: Database, *, starting: bool) -> bool:
     # Nobody else copies the log, and nobody writes, from the first cut to the last.
     with database.commits.copying, database.write_turn():
         cut = _cut_log(database)
-        anew = cut and _nobody_waits(database) and _has_room(database)
+        anew = cut and (starting or _nobody_waits(database)) and _has_room(database)
         if anew:
             _execute(database, "VACUUM")
             cut = _cut_log(database)
-        database.commits.copied = database.commits.number
+        if cut:
+            database.commits.copied = database.commits.number
     return cut and anew
 
 

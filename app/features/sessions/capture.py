@@ -6,8 +6,8 @@ more is taken, from wherever it comes: it is refused with the reason, and not st
 
 from collections.abc import Collection
 
-from sqlalchemy import select
-from sqlalchemy.orm import Session
+from sqlalchemy import ColumnElement, select
+from sqlalchemy.orm import InstrumentedAttribute, Session, aliased
 
 from app.errors import Withdrawn
 from app.models import Erasure, StudySession
@@ -39,6 +39,25 @@ def closed_sessions(db: Session, session_ids: Collection[str]) -> frozenset[str]
         erased = set(db.scalars(query))
         closed.update(one for one, participant in ended.items() if participant in erased)
     return frozenset(closed)
+
+
+def erased_session(db: Session, session_id: str) -> bool:
+    """Whether the data of a session's participant were erased; lock the session first."""
+    query = select(StudySession.id).where(
+        StudySession.id == session_id, ~not_erased(StudySession.id)
+    )
+    return db.scalar(query) is not None
+
+
+def not_erased(session_id: InstrumentedAttribute[str]) -> ColumnElement[bool]:
+    """The condition under which a row's session still has its data."""
+    mine, erasure = aliased(StudySession), aliased(Erasure)
+    found = (
+        select(erasure.id)
+        .join(mine, mine.participant_id == erasure.participant_id)
+        .where(mine.id == session_id)
+    )
+    return ~found.exists()
 
 
 def require_capture(db: Session, session_id: str) -> None:

@@ -4,14 +4,16 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.context import AppContext
+from app.features.sessions.consent import ConsentDesk
 from app.features.sessions.contents import store_content
 from app.features.sessions.engine import Command, ContentRef
 from app.features.sessions.engine import commands as c
 from app.features.sessions.schemas import CommandRequest
-from app.features.sessions.service import state_of
+from app.features.sessions.service import plan_of, state_of
 from app.models import StudySession
+from app.protocol import Step
 
-_NEEDS_REASON = ("redo", "skip", "abort", "withdraw")
+_NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop")
 _STARTS = ("start", "begin_phase")
 
 
@@ -32,8 +34,7 @@ def command_of(
         return _with_reason(request, store.put("reason", reason))
     match request.type:
         case "complete_step":
-            body = request.height_m.model_dump() if request.height_m else None
-            content = store.put("height", body) if body else None
+            content = _completing(store, request)
             return c.CompleteStep(by="operator", step=request.step_index, content=content)
         case "begin_phase":
             return c.BeginPhase(headset_connected=connected)
@@ -70,10 +71,22 @@ def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:
             return c.Redo(content=reason, step=request.step_index)
         case "skip":
             return c.Skip(content=reason)
+        case "override_stop":
+            return c.OverrideStop(content=reason)
         case "abort":
             return c.Stop(status="aborted", content=reason)
         case _:
             return c.Stop(status="withdrawn", content=reason)
+
+
+def _completing(store: "_Store", request: CommandRequest) -> ContentRef | None:
+    """What comes with a step that is done: a consent's record, or the heights."""
+    step = store.current_step()
+    late = step is not None and request.step_index not in (None, step.index)
+    if step is not None and step.kind == "consent" and not late:
+        return store.consents.from_operator(step, request.paper_consent)
+    body = request.height_m.model_dump() if request.height_m else None
+    return store.put("height", body) if body else None
 
 
 class _Store:
@@ -81,6 +94,12 @@ class _Store:
 
     def __init__(self, db: Session, context: AppContext, session: StudySession, actor: str) -> None:
         self._db, self._context, self._session, self._actor = db, context, session, actor
+        self.consents = ConsentDesk(db, context, session, actor)
+
+    def current_step(self) -> Step | None:
+        """The step that the session stands at, if it stands anywhere."""
+        current = state_of(self._session).current
+        return None if current is None else plan_of(self._db, self._session)[current]
 
     def put(self, kind: str, body: object) -> ContentRef:
         return store_content(

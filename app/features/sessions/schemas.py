@@ -7,9 +7,10 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.features.alarms.schemas import AlarmView
 from app.features.questionnaires.schemas import StoredScores
+from app.features.sessions.consent_schemas import ConsentForm, PaperConsent
 from app.protocol.plan import StepKind
 
-Kind = Literal["people", "simulated", "test"]
+Kind = Literal["people", "simulated", "test", "expert"]
 Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]
 StepStatus = Literal["pending", "current", "done", "skipped"]
 CurrentStatus = Literal["ready", "preparing", "running", "paused", "walk_back", "freezing"]
@@ -26,6 +27,7 @@ CommandType = Literal[
     "skip",
     "abort",
     "withdraw",
+    "override_stop",
     "note",
 ]
 
@@ -64,6 +66,7 @@ class CommandRequest(BaseModel):
     text: str | None = Field(default=None, max_length=4000)
     step_index: int | None = Field(default=None, ge=0, lt=1000)
     height_m: Height | None = None
+    paper_consent: PaperConsent | None = None
 
 
 class Reveal(BaseModel):
@@ -99,6 +102,8 @@ class StepView(BaseModel):
     status: StepStatus
     attempt: int
     reason: str | None
+    consent: ConsentForm | None = None
+    until_completions: int | None = None
 
 
 class CurrentView(BaseModel):
@@ -111,6 +116,16 @@ class CurrentView(BaseModel):
     pausing: bool
     resuming: bool
     pause_reason: str | None
+
+
+class HeldView(BaseModel):
+    """Which stop rule holds the session: the limit `stop_at` on a score, or on its rise."""
+
+    rule: int
+    instrument: str
+    score: str
+    stop_at: float
+    is_rise: bool
 
 
 class DeviceView(BaseModel):
@@ -196,6 +211,7 @@ class SessionView(SessionSummary):
     slot: SlotInfo
     steps: list[StepView]
     current: CurrentView | None
+    held: HeldView | None
     allowed: list[AllowedType]
     devices: list[DeviceView]
     alarms: list[AlarmView]

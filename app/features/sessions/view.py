@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 
 from sqlalchemy import select
-from sqlalchemy.orm import Session
+from sqlalchemy.orm import Session, defer
 
 from app.features.access import Caller, is_blind
 from app.features.alarms.service import open_alarms
@@ -12,8 +12,10 @@ from app.features.context import AppContext
 from app.features.devices.service import devices_of_session
 from app.features.participants.service import slot_of
 from app.features.questionnaires.service import stored_scores
+from app.features.sessions.consent import consent_form
 from app.features.sessions.contents import content_body, contents_of
 from app.features.sessions.engine import SessionState, allowed_commands
+from app.features.sessions.held import held_view
 from app.features.sessions.journal import events_of
 from app.features.sessions.phase_views import phase_views
 from app.features.sessions.schemas import (
@@ -27,7 +29,7 @@ from app.features.sessions.schemas import (
     StepView,
 )
 from app.features.sessions.service import plan_of, state_of
-from app.features.studies.service import protocol_of
+from app.features.studies.service import protocol_of, versions_of
 from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
 from app.protocol import StudyProtocol
 from app.protocol.plan import Step
@@ -57,6 +59,7 @@ def session_view(
         slot=SlotInfo(index=slot.position, block=slot.block, replicate=slot.replicate),
         steps=[_step(step, state, reasons, blinded=blinded) for step in plan],
         current=_current(plan, state),
+        held=held_view(db, version, protocol, state),
         allowed=allowed_commands(plan, state),
         devices=_devices(db, context, session),
         alarms=open_alarms(db, session.id),
@@ -71,18 +74,21 @@ def list_sessions(
 ) -> list[SessionSummary]:
     """All sessions of a study, newest first; orders are left out where `caller` is blind."""
     query = (
-        select(StudySession, StudyVersion, Participant.code, LedgerSlot.sequence)
-        .join(StudyVersion, StudyVersion.id == StudySession.study_version_id)
+        select(StudySession, Participant.code, LedgerSlot.sequence)
         .join(Participant, Participant.id == StudySession.participant_id)
         .join(SlotAttempt, SlotAttempt.session_id == StudySession.id)
         .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
         .where(StudySession.study_id == study.id)
         .order_by(StudySession.created_at.desc())
+        # A thousand snapshots, or the protocol a thousand times over, would be most of the work.
+        .options(defer(StudySession.snapshot, raiseload=True))
     )
     if kind is not None:
         query = query.where(StudySession.kind == kind)
+    versions = {version.id: version for version in versions_of(db, study)}
     summaries = []
-    for session, version, code, sequence in db.execute(query):
+    for session, code, sequence in db.execute(query):
+        version = versions[session.study_version_id]
         protocol = protocol_of(version)
         blinded = is_blind(db, caller, protocol, session)
         summaries.append(_summary(session, protocol, version, code, sequence, blinded=blinded))
@@ -165,6 +171,8 @@ def _step(
         status=str(own.status),
         attempt=own.attempt,
         reason=reasons.get(step.index),
+        consent=consent_form(step, "en"),
+        until_completions=step.until_completions,
     )
 
 

@@ -68,9 +68,7 @@ class Reader:
         return ServerSentEvent(data=view, event="session", id=str(view.version))
 
 
-def _reader(
-    request: Request, context: Context, _: SignedIn, session_id: KnownSession
-) -> Reader:
+def _reader(request: Request, context: Context, _: SignedIn, session_id: KnownSession) -> Reader:
     return Reader(request, context, session_id)
 
 

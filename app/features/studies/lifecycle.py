@@ -44,23 +44,23 @@ def duplicate(
 def archive(db: Session, study: Study, now: datetime) -> None:
     """Put the study away: it takes no new sessions. Repeating it changes nothing.
 
-    Raises NotNow while sessions of people or simulations are planned or running.
+    A session that was made before and not started yet keeps its slot and may still be run. Raises
+    NotNow while one is running.
     """
     if study.archived_at is not None:
         return
-    # Joins lock the study's ledgers, not the study; the row is locked so that two do not cross.
+    # The row is locked so that it is decided once, whoever asks at the same moment.
     db.execute(select(Study.id).where(Study.id == study.id).with_for_update(key_share=True))
-    rows = db.execute(
-        select(StudySession.status, func.count())
-        .where(StudySession.study_id == study.id, StudySession.status.in_(UNDER_WAY))
-        .group_by(StudySession.status)
-    ).all()
-    if rows:
-        counts: dict[str, int] = {status: count for status, count in rows}  # noqa: C416 - typed
-        told = " and ".join(f"{count} {status}" for status, count in sorted(counts.items()))
+    running = db.scalar(
+        select(func.count())
+        .select_from(StudySession)
+        .where(StudySession.study_id == study.id, StudySession.status == "active")
+    )
+    if running:
         raise NotNow(
-            f"the study has sessions that are not over: {told}",
-            value=counts,
+            f"the study has {running} session{'s' if running > 1 else ''} running",
+            value=running,
+            valid=0,
             remedy="Finish, abort or withdraw them first. Their data stay in any case.",
         )
     study.archived_at = now

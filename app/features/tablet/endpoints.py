@@ -5,18 +5,22 @@ from collections.abc import AsyncIterator
 
 from fastapi import APIRouter
 from fastapi.sse import EventSourceResponse, ServerSentEvent
+from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.context import AppContext
 from app.features.dependencies import Context, PairedTablet, Reading, Writing
 from app.features.questionnaires.schemas import Receipt, SubmissionRequest
 from app.features.questionnaires.service import submit
+from app.features.sessions.consent import ConsentDesk
+from app.features.sessions.consent_schemas import ConsentGiven
 from app.features.sessions.engine.commands import CompleteStep
-from app.features.sessions.service import apply_command, plan_of, session_by_id
+from app.features.sessions.service import apply_command, plan_of, session_by_id, state_of
 from app.features.studies.service import protocol_of
 from app.features.tablet.schemas import Acknowledgement, LanguageChoice, TabletState
 from app.features.tablet.service import tablet_state
-from app.models import Device, StudyVersion
+from app.models import Device, StudySession, StudyVersion
+from app.protocol import Step
 
 router = APIRouter(prefix="/tablet", tags=["tablet"])
 HEARTBEAT_S = 10.0
@@ -46,26 +50,58 @@ def put_language(
     return tablet_state(db, session)
 
 
+@router.post("/consent")
+def post_consent(
+    given: ConsentGiven, db: Writing, context: Context, tablet: PairedTablet
+) -> TabletState:
+    """A consent with what the study asks for; sending it twice does no harm."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    step = _own_step(db, session, given.step_index, ("consent",))
+    _complete(db, context, session, step, f"tablet:{tablet.id}", given)
+    return tablet_state(db, session)
+
+
 @router.post("/acknowledge")
 def post_acknowledge(
     request: Acknowledgement, db: Writing, context: Context, tablet: PairedTablet
 ) -> TabletState:
     """Consent given, or instructions read; sending it twice does no harm."""
     session = session_by_id(db, tablet.session_id, lock=True)
+    step = _own_step(db, session, request.step_index, ("consent", "instructions"))
+    given = ConsentGiven(step_index=step.index) if step.kind == "consent" else None
+    _complete(db, context, session, step, f"tablet:{tablet.id}", given)
+    return tablet_state(db, session)
+
+
+def _own_step(db: Session, session: StudySession, index: int, kinds: tuple[str, ...]) -> Step:
+    """The step that a tablet wants to complete; raises InvalidInput where it is not its own."""
     plan = plan_of(db, session)
-    step = plan[request.step_index] if request.step_index < len(plan) else None
-    if step is None or step.kind not in ("consent", "instructions"):
+    step = plan[index] if index < len(plan) else None
+    if step is None or step.kind not in kinds:
         raise InvalidInput(
             "this step is not the tablet's to complete",
-            value=request.step_index,
-            valid=[one.index for one in plan if one.kind in ("consent", "instructions")],
+            value=index,
+            valid=[one.index for one in plan if one.kind in kinds],
             remedy="Wait for the experimenter.",
         )
-    status = session.snapshot["steps"][request.step_index]["status"]
-    if status not in ("done", "skipped"):
-        command = CompleteStep(by="tablet", step=request.step_index)
-        apply_command(db, context, session, command, actor=f"tablet:{tablet.id}")
-    return tablet_state(db, session)
+    return step
+
+
+def _complete(
+    db: Session,
+    context: AppContext,
+    session: StudySession,
+    step: Step,
+    actor: str,
+    given: ConsentGiven | None,
+) -> None:
+    """Complete the step, once, with the record of a consent."""
+    if state_of(session).steps[step.index].status in ("done", "skipped"):
+        return
+    desk = ConsentDesk(db, context, session, actor)
+    content = None if given is None else desk.from_tablet(step, given)
+    command = CompleteStep(by="tablet", step=step.index, content=content)
+    apply_command(db, context, session, command, actor=actor)
 
 
 @router.post("/submissions")

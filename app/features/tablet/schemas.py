@@ -5,12 +5,16 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.features.questionnaires.schemas import Administration
+from app.features.sessions.consent_schemas import ConsentForm
 
-Screen = Literal["waiting", "consent", "instructions", "form", "finished"]
+Screen = Literal["waiting", "held", "consent", "instructions", "form", "finished"]
 
 
 class TabletState(BaseModel):
-    """What the tablet shows now; `next` says what comes next, in the participant's language."""
+    """What the tablet shows now; `next` says what comes next, in the participant's language.
+
+    `held`: the participant waits for the experimenter, and nothing on the tablet goes on.
+    """
 
     session_id: str
     version: int
@@ -23,6 +27,7 @@ class TabletState(BaseModel):
     text: str | None
     next: str | None
     administration: Administration | None
+    consent: ConsentForm | None = None
 
 
 class Acknowledgement(BaseModel):

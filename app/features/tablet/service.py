@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy.orm import Session
 
 from app.features.questionnaires.service import current_administration
+from app.features.sessions.consent import consent_form
 from app.features.sessions.engine import SessionState
 from app.features.sessions.service import plan_of, state_of
 from app.features.studies.service import protocol_of
@@ -27,7 +28,7 @@ def tablet_state(db: Session, session: StudySession) -> TabletState:
     plan, state = plan_of(db, session), state_of(session)
     step = None if state.current is None else plan[state.current]
     ended = state.status in ("completed", "aborted", "withdrawn")
-    screen = _screen(step, ended=ended)
+    screen = _screen(step, ended=ended, held=state.held is not None)
     language = session.language
     return TabletState(
         session_id=session.id,
@@ -39,14 +40,17 @@ def tablet_state(db: Session, session: StudySession) -> TabletState:
         step_index=state.current,
         title=None if step is None else _text(step.title, language),
         text=_words(protocol, plan, step, language, screen),
-        next=_next(plan, state, language),
+        next=None if screen == "held" else _next(plan, state, language),
         administration=current_administration(db, session) if screen == "form" else None,
+        consent=consent_form(step, language) if step and screen == "consent" else None,
     )
 
 
-def _screen(step: Step | None, *, ended: bool) -> Screen:
+def _screen(step: Step | None, *, ended: bool, held: bool) -> Screen:
     if ended:
         return "finished"
+    if held:
+        return "held"
     return "waiting" if step is None else _SCREENS.get(step.kind, "waiting")
 
 
@@ -57,7 +61,9 @@ def _words(
     language: str,
     screen: Screen,
 ) -> str | None:
-    """The text of the step, or the study's calm waiting text."""
+    """The text of the step, or the study's calm waiting text; the tablet's own when held."""
+    if screen == "held":
+        return None
     if screen == "finished":
         # Debriefing is the last thing a participant reads.
         step = next((late for late in reversed(plan) if late.kind == "debrief"), None)

@@ -13,6 +13,8 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
 from app.features.context import AppContext
+from app.features.sessions.capture import erased_session, not_erased
+from app.features.sessions.service import session_by_id
 from app.features.telemetry.joint_errors import joint_error_rows
 from app.features.telemetry.latencies import history_s, latency_rows
 from app.features.telemetry.movement import Run, phase_runs
@@ -56,7 +58,7 @@ class Summariser:
         with self.context.database.reading() as db:
             missing = db.execute(
                 select(Phase.session_id, Phase.phase_id)
-                .where(Phase.status == "done", ~has_quality.exists())
+                .where(Phase.status == "done", ~has_quality.exists(), not_erased(Phase.session_id))
                 .order_by(Phase.session_id, Phase.phase_id)
             ).all()
         for session_id, phase_id in missing:
@@ -71,6 +73,9 @@ class Summariser:
             with self.context.database.reading() as db:
                 rows = summary_rows(db, session_id, phase_id)
             with self.context.database.writing() as db:
+                session_by_id(db, session_id, lock=True)
+                if erased_session(db, session_id):
+                    return
                 replace_rows(db, session_id, phase_id, rows)
         except Exception:
             log.exception("summaries of phase %s of %s failed", phase_id, session_id)

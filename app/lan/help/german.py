@@ -99,7 +99,7 @@ GERMAN = HelpTexts(
                     "Ohne Kabel: die Adresse aus Schritt 4 im Browser des Headsets öffnen. Bei der"
                     " Warnung *Erweitert*, dann *Weiter* wählen. Der Browser merkt sich das"
                     " eine Weile;"
-                    " bitte tun, bevor die Versuchsperson kommt."
+                    " am besten erledigen, bevor die Versuchsperson kommt."
                 ),
             ),
             ("OculusBrowser", "Quest"),

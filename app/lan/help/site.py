@@ -68,7 +68,7 @@ class HelpSite:
         same = [one for one in reach.urls if urlsplit(one).hostname == host]
         facts = HelpFacts(
             here=reach.help_url or "",
-            secure=(same or list(reach.urls))[0],
+            secure=next(iter((*same, *reach.urls)), reach.local_url),
             port=reach.port,
             fingerprint=fingerprint(certificate),
             authority_ends=certificate.not_valid_after_utc,

@@ -1,22 +1,27 @@
 /** Header and routes of the signed-in console. */
-import {
-  ActionIcon,
-  Button,
-  Menu,
-  useComputedColorScheme,
-  useMantineColorScheme,
-} from "@mantine/core";
+import { ActionIcon, Button, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
+import type { Role } from "@shared/api/people";
 import type { Account } from "@shared/api/types";
-import { Icon } from "@shared/ui/Icon";
+import { Icon, type IconName } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
-import { useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link, Route, Router, Switch } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
-import { signOut, useSignInAgain } from "./account";
+import { useSignInAgain } from "./account";
 import { SessionPage } from "./cockpit/SessionPage";
-import { useTexts } from "./i18n";
+import { EditStudyPage, NewStudyEditor } from "./editor/EditorPage";
+import { NewStudyPage } from "./editor/NewStudyPage";
+import { type Key, useTexts } from "./i18n";
+import { EditInstrumentPage, NewInstrumentPage } from "./instruments/InstrumentEditor";
+import { InstrumentPage } from "./instruments/InstrumentPage";
+import { InstrumentsPage } from "./instruments/InstrumentsPage";
+import { type Act, may } from "./may";
+import { AccountMenu } from "./pages/account/AccountMenu";
+import { ConsentPage } from "./pages/consent/ConsentPage";
+import { EquipmentPage } from "./pages/equipment/EquipmentPage";
+import { Only } from "./pages/NotForRole";
 import { NetworkPage } from "./pages/network/NetworkPage";
+import { PeoplePage } from "./pages/people/PeoplePage";
 import { StudiesPage } from "./pages/Studies";
 import { StudyPage } from "./pages/study/StudyPage";
 import classes from "./Shell.module.css";
@@ -35,7 +40,7 @@ export function Shell({ account }: { readonly account: Account }): JSX.Element {
           {t("app.name")}
         </Link>
         <div className={classes.tools}>
-          <NetworkLink />
+          <Places role={account.role} />
           <LanguageButton />
           <AppearanceButton />
           <AccountMenu account={account} />
@@ -43,11 +48,79 @@ export function Shell({ account }: { readonly account: Account }): JSX.Element {
       </nav>
       <main id="main" tabIndex={-1}>
         <Switch>
+          <Route path="/sessions/:id/consent">
+            {({ id }) => (
+              <Only act="run">
+                <ConsentPage key={id} id={id} />
+              </Only>
+            )}
+          </Route>
+          <Route path="/equipment">
+            <div className={classes.main}>
+              <EquipmentPage />
+            </div>
+          </Route>
           <Route path="/sessions/:id">{({ id }) => <SessionPage key={id} id={id} />}</Route>
           <Route path="/network">
+            <Only act="network">
+              <div className={classes.main}>
+                <NetworkPage />
+              </div>
+            </Only>
+          </Route>
+          <Route path="/people/:tab?">
+            {({ tab }) => (
+              <Only act="people">
+                <div className={classes.main}>
+                  <PeoplePage account={account} tab={tab} />
+                </div>
+              </Only>
+            )}
+          </Route>
+          <Route path="/new">
+            <Only act="design">
+              <div className={classes.main}>
+                <NewStudyPage />
+              </div>
+            </Only>
+          </Route>
+          <Route path="/new/:from/:name?">
+            {({ from, name }) => (
+              <Only act="design">
+                <NewStudyEditor key={`${from} ${name}`} from={from} name={name} />
+              </Only>
+            )}
+          </Route>
+          <Route path="/instruments">
             <div className={classes.main}>
-              <NetworkPage />
+              <InstrumentsPage />
             </div>
+          </Route>
+          <Route path="/instruments/new">
+            <Only act="design">
+              <NewInstrumentPage />
+            </Only>
+          </Route>
+          <Route path="/instruments/:name/edit">
+            {({ name }) => (
+              <Only act="design">
+                <EditInstrumentPage key={name} name={name} />
+              </Only>
+            )}
+          </Route>
+          <Route path="/instruments/:name/:tab?">
+            {({ name, tab }) => (
+              <div className={classes.main}>
+                <InstrumentPage name={name} tab={tab} />
+              </div>
+            )}
+          </Route>
+          <Route path="/studies/:key/edit">
+            {({ key }) => (
+              <Only act="design">
+                <EditStudyPage key={key} studyKey={key} />
+              </Only>
+            )}
           </Route>
           <Route path="/studies/:key/:tab?">
             {({ key, tab }) => (
@@ -72,20 +145,40 @@ function focusMain(): void {
   document.getElementById("main")?.focus();
 }
 
-function NetworkLink(): JSX.Element {
+interface Place {
+  readonly href: string;
+  readonly icon: IconName;
+  readonly name: Key;
+  /** Shown to those who may do it; to everybody where there is none. */
+  readonly act?: Act;
+}
+
+const PLACES: readonly Place[] = [
+  { href: "/instruments", icon: "form", name: "instruments.title" },
+  { href: "/equipment", icon: "headset", name: "equipment.title" },
+  { href: "/network", icon: "link", name: "network.title", act: "network" },
+  { href: "/people", icon: "people", name: "people.title", act: "people" },
+];
+
+function Places({ role }: { readonly role: Role }): JSX.Element {
   const { t } = useTexts();
   return (
-    <Button
-      component={Link}
-      href="/network"
-      variant="subtle"
-      color="gray"
-      fw={450}
-      size="compact-sm"
-      leftSection={<Icon name="link" size={16} />}
-    >
-      {t("network.title")}
-    </Button>
+    <>
+      {PLACES.filter(({ act }) => act === undefined || may(role, act)).map((place) => (
+        <Button
+          key={place.href}
+          component={Link}
+          href={place.href}
+          variant="subtle"
+          color="gray"
+          fw={450}
+          size="compact-sm"
+          leftSection={<Icon name={place.icon} size={16} />}
+        >
+          {t(place.name)}
+        </Button>
+      ))}
+    </>
   );
 }
 
@@ -120,30 +213,5 @@ function AppearanceButton(): JSX.Element {
     >
       <Icon name={other === "dark" ? "moon" : "sun"} />
     </ActionIcon>
-  );
-}
-
-function AccountMenu({ account }: { readonly account: Account }): JSX.Element {
-  const { t } = useTexts();
-  const queries = useQueryClient();
-  return (
-    <Menu position="bottom-end" width={260}>
-      <Menu.Target>
-        <Button
-          variant="subtle"
-          color="gray"
-          size="compact-sm"
-          rightSection={<Icon name="down" size={14} />}
-        >
-          {account.username}
-        </Button>
-      </Menu.Target>
-      <Menu.Dropdown>
-        <Menu.Label>
-          {t("app.signedInAs", { name: account.username, role: account.role })}
-        </Menu.Label>
-        <Menu.Item onClick={() => void signOut(queries)}>{t("app.logout")}</Menu.Item>
-      </Menu.Dropdown>
-    </Menu>
   );
 }

@@ -6,6 +6,8 @@ import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-quer
 import { useEffect } from "react";
 
 const KEY = ["account"] as const;
+/** Whose sign-in ended while the page was in use, and whose page is kept until it goes on. */
+const ENDED = ["account", "ended"] as const;
 
 /** The account, or null when nobody is signed in. */
 export function useAccount() {
@@ -16,31 +18,77 @@ export function useAccount() {
   });
 }
 
+/** Who was signed in when the sign-in ended by itself; null else. */
+export function useEnded(): Account | null {
+  const ended = useQuery<Account | null>({
+    queryKey: ENDED,
+    queryFn: () => null,
+    initialData: null,
+    staleTime: Number.POSITIVE_INFINITY,
+    gcTime: Number.POSITIVE_INFINITY,
+  });
+  return ended.data;
+}
+
 export async function signIn(queries: QueryClient, username: string, password: string) {
   const { account } = await accounts.login(username, password);
+  begin(queries, account);
+}
+
+/** Somebody has a sign-in now; nothing of anybody else stays in the page's memory. */
+export function begin(queries: QueryClient, account: Account): void {
+  const before = queries.getQueryData<Account | null>(ENDED);
+  if (before?.id !== account.id) forget(queries);
+  queries.setQueryData(ENDED, null);
   queries.setQueryData(KEY, account);
+  // The same person goes on where they were; what they see may have changed meanwhile.
+  void queries.invalidateQueries({ predicate: isData });
 }
 
 /** Leave nothing of this person's data in the page's memory. */
 export async function signOut(queries: QueryClient) {
   await accounts.logout().catch(() => undefined);
-  queries.clear();
+  forget(queries);
+  queries.setQueryData(ENDED, null);
   queries.setQueryData(KEY, null);
+}
+
+const isData = ({ queryKey }: { readonly queryKey: readonly unknown[] }): boolean =>
+  queryKey[0] !== KEY[0];
+
+function forget(queries: QueryClient): void {
+  queries.removeQueries({ predicate: isData });
+  queries.getMutationCache().clear();
+}
+
+/** Ask who is signed in, because something hints that nobody is; a lost line says nothing. */
+export async function lookAgain(queries: QueryClient): Promise<void> {
+  const who = await accounts.me().catch(() => undefined);
+  if (who?.account === null) end(queries);
 }
 
 /** Any answer "nobody is signed in" means that the sign-in has ended: show its page again. */
 export function useSignInAgain(): void {
   const queries = useQueryClient();
   useEffect(() => {
-    const look = (error: unknown) => {
-      if (isUnauthorised(error)) queries.setQueryData(KEY, null);
+    // Only an error that has just come: an old one is still there when the same person goes on.
+    const look = (news: { readonly type: string; readonly action?: unknown }) => {
+      const action = news.action as { readonly type: string; readonly error?: unknown } | undefined;
+      if (news.type !== "updated" || action?.type !== "error") return;
+      if (isUnauthorised(action.error)) end(queries);
     };
     const stops = [
-      queries.getQueryCache().subscribe(({ query }) => look(query.state.error)),
-      queries.getMutationCache().subscribe(({ mutation }) => look(mutation?.state.error)),
+      queries.getQueryCache().subscribe(look),
+      queries.getMutationCache().subscribe(look),
     ];
     return () => {
       for (const stop of stops) stop();
     };
   }, [queries]);
+}
+
+function end(queries: QueryClient): void {
+  const account = queries.getQueryData<Account | null>(KEY);
+  if (account != null) queries.setQueryData(ENDED, account);
+  queries.setQueryData(KEY, null);
 }

@@ -1,7 +1,11 @@
 /** The console's reads of the server, each with the key under which it is kept. */
+import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
-import type { Kind } from "@shared/api/types";
-import { keepPreviousData, queryOptions } from "@tanstack/react-query";
+import { type AuditFilter, audit, invitations, people } from "@shared/api/people";
+import { calibrations, consents, suggestions } from "@shared/api/records";
+import { rights } from "@shared/api/rights";
+import type { DataKind, Kind } from "@shared/api/types";
+import { infiniteQueryOptions, keepPreviousData, queryOptions } from "@tanstack/react-query";
 
 /** Looked at again now and then: a laptop that joins another network gets other addresses. */
 export const networkQuery = queryOptions({
@@ -11,6 +15,31 @@ export const networkQuery = queryOptions({
 });
 
 export const studiesQuery = queryOptions({ queryKey: ["studies"], queryFn: studies.list });
+
+export const archivedQuery = queryOptions({
+  queryKey: ["studies", "", "archived"],
+  queryFn: versions.archived,
+});
+
+export const templatesQuery = queryOptions({
+  queryKey: ["templates"],
+  queryFn: drafts.templates,
+  staleTime: Number.POSITIVE_INFINITY,
+});
+
+export const instrumentsQuery = queryOptions({
+  queryKey: ["instruments"],
+  queryFn: instruments.list,
+});
+
+export const instrumentQuery = (key: string) =>
+  queryOptions({ queryKey: ["instruments", key], queryFn: () => instruments.get(key) });
+
+export const versionDiffQuery = (key: string, from: number, to: number) =>
+  queryOptions({
+    queryKey: ["studies", key, "diff", from, to],
+    queryFn: () => versions.diff(key, from, to),
+  });
 
 export const studyQuery = (key: string) =>
   queryOptions({ queryKey: ["studies", key], queryFn: () => studies.get(key) });
@@ -24,14 +53,21 @@ export const ledgerQuery = (key: string, kind: Kind) =>
 export const sessionsQuery = (key: string) =>
   queryOptions({ queryKey: ["studies", key, "sessions"], queryFn: () => studies.sessions(key) });
 
-export const dashboardQuery = (key: string, kind: Kind) =>
+export const dashboardQuery = (key: string, kind: DataKind) =>
   queryOptions({
     queryKey: ["studies", key, "dashboard", kind],
     queryFn: () => studies.dashboard(key, kind),
+    // The server tells what it drew last, and draws anew where there is more.
+    refetchInterval: ({ state }) => (state.data?.current === false ? 1500 : false),
   });
 
+/** Kept for a day, so that a page whose sign-in has ended is there again with what was typed. */
 export const sessionQuery = (id: string) =>
-  queryOptions({ queryKey: ["sessions", id], queryFn: () => sessions.get(id) });
+  queryOptions({
+    queryKey: ["sessions", id],
+    queryFn: () => sessions.get(id),
+    gcTime: 24 * 60 * 60_000,
+  });
 
 export const answersQuery = (id: string, version: number) =>
   queryOptions({
@@ -59,3 +95,42 @@ export const codebookQuery = (key: string) =>
     queryFn: () => studies.codebook(key),
     staleTime: Number.POSITIVE_INFINITY,
   });
+
+export const consentQuery = (id: string) =>
+  queryOptions({ queryKey: ["sessions", id, "consent"], queryFn: () => consents.ofSession(id) });
+
+export const suggestionsQuery = (key: string) =>
+  queryOptions({
+    queryKey: ["studies", key, "suggestions"],
+    queryFn: () => suggestions.ofStudy(key),
+  });
+
+export const calibrationsQuery = queryOptions({
+  queryKey: ["calibrations"],
+  queryFn: calibrations.list,
+});
+
+export const peopleQuery = queryOptions({ queryKey: ["people"], queryFn: people.list });
+
+export const invitationsQuery = queryOptions({
+  queryKey: ["invitations"],
+  queryFn: invitations.list,
+});
+
+export const auditQuery = (filter: AuditFilter) =>
+  infiniteQueryOptions({
+    queryKey: ["audit", filter.actor, filter.action],
+    queryFn: ({ pageParam }) => audit.page(filter, pageParam),
+    initialPageParam: null as number | null,
+    getNextPageParam: (page) => page.next_before,
+  });
+
+export const participantsQuery = (key: string) =>
+  queryOptions({
+    queryKey: ["studies", key, "participants"],
+    queryFn: () => rights.participants(key),
+  });
+
+/** Everything that was answered in a session, with the wordings; it changes with each correction. */
+export const formsQuery = (id: string) =>
+  queryOptions({ queryKey: ["sessions", id, "forms"], queryFn: () => rights.answers(id) });

@@ -10,6 +10,7 @@ export const STEP_ICONS: Readonly<Record<string, IconName>> = {
   height: "height",
   materialise: "body",
   free_roam: "walk",
+  practice: "hand",
   task: "hand",
   questionnaire: "form",
   debrief: "flag",
@@ -33,15 +34,19 @@ export function stepNameKey(kind: string): Key {
 
 type Named = Pick<Step, "kind" | "limb">;
 
-export const stepName = (step: Named): Key =>
-  step.kind === "task" && step.limb !== null ? `step.task.${step.limb}` : stepNameKey(step.kind);
+/** Steps that are done with a hand or a foot, at the boxes. */
+const hasBoxes = (kind: string): kind is "task" | "practice" =>
+  kind === "task" || kind === "practice";
 
-export const stepIcon = (step: Named): IconName =>
-  step.kind === "task" && step.limb !== null ? step.limb : (STEP_ICONS[step.kind] ?? "flag");
+export const stepName = ({ kind, limb }: Named): Key =>
+  hasBoxes(kind) && limb !== null ? `step.${kind}.${limb}` : stepNameKey(kind);
+
+export const stepIcon = ({ kind, limb }: Named): IconName =>
+  hasBoxes(kind) && limb !== null ? limb : (STEP_ICONS[kind] ?? "flag");
 
 /** Steps that run on the phase clock, in the headset. */
 export const isTimed = (step: Pick<Step, "kind">): boolean =>
-  step.kind === "task" || step.kind === "free_roam";
+  hasBoxes(step.kind) || step.kind === "free_roam";
 
 /** Steps that are answered at the tablet (or read out by the operator). */
 export const isForm = (step: Pick<Step, "kind">): boolean =>

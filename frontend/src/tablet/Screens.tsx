@@ -1,6 +1,7 @@
 /** The frame of every screen, and the choice of the screen. */
 import { SegmentedControl } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
+import type { ConsentForm } from "@shared/api/records";
 import type { TabletState } from "@shared/api/types";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { Icon } from "@shared/ui/Icon";
@@ -10,8 +11,10 @@ import { type JSX, useEffect } from "react";
 import { useSweep } from "./drafts/useSweep";
 import { useTexts } from "./i18n";
 import classes from "./Screens.module.css";
+import { Consent } from "./screens/Consent";
 import { Finished } from "./screens/Finished";
 import { FormScreen } from "./screens/FormScreen";
+import { Held } from "./screens/Held";
 import { Reading } from "./screens/Reading";
 import { Waiting } from "./screens/Waiting";
 import { STATE_KEY } from "./useTabletState";
@@ -51,7 +54,13 @@ export function Screens({ state, connected, refresh }: ScreensProps): JSX.Elemen
 
 function Screen({ state, refresh }: Omit<ScreensProps, "connected">): JSX.Element {
   switch (state.screen) {
+    case "held":
+      return <Held />;
     case "consent":
+      if (state.consent != null && asksMore(state.consent)) {
+        return <Consent key={state.step_index} state={state} form={state.consent} />;
+      }
+      return <Reading key={state.step_index} state={state} screen="consent" />;
     case "instructions":
       return (
         <Reading key={`${state.screen} ${state.step_index}`} state={state} screen={state.screen} />
@@ -72,6 +81,10 @@ function Screen({ state, refresh }: Omit<ScreensProps, "connected">): JSX.Elemen
       return <Waiting state={state} />;
   }
 }
+
+/** Whether a consent wants more than one press. */
+const asksMore = (form: ConsentForm): boolean =>
+  form.signature !== "none" || form.statements.length > 0;
 
 function LanguageChoice({ state }: { readonly state: TabletState }): JSX.Element | null {
   const { t } = useTexts();

@@ -54,7 +54,7 @@ def test_closing_clears_everything_and_says_why() -> None:
 
 
 def test_every_alarm_has_a_severity() -> None:
-    """Only silence and loss are critical: then a phase stands."""
+    """Only silence, loss and a person who is unwell are critical: then a phase stands."""
     critical = {code for code, severity in SEVERITIES.items() if severity == "critical"}
-    assert critical == {"silent", "disconnected", "storage"}
+    assert critical == {"silent", "disconnected", "storage", "stop_rule_met"}
     assert GAP.severity == "warning"

@@ -9,7 +9,7 @@ import pytest
 from app.database import Database
 from app.errors import NotFound
 from app.features.analysis.dashboard import build_dashboard
-from app.features.analysis.schemas import DashboardKind, DashboardView
+from app.features.analysis.schemas import DashboardFigures, DashboardKind
 from app.features.studies.service import add_version, study_by_key, versions_of
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 
@@ -26,7 +26,7 @@ KEYS = [
 ]
 
 
-def _dashboard(database: Database, kind: DashboardKind = "people") -> DashboardView:
+def _dashboard(database: Database, kind: DashboardKind = "people") -> DashboardFigures:
     with database.reading() as db:
         return build_dashboard(db, STUDY, kind)
 
@@ -37,7 +37,7 @@ def _build(database: Database, *specs: SessionSpec) -> None:
             build_session(db, spec)
 
 
-def _figures(view: DashboardView) -> dict[str, dict[str, Any]]:
+def _figures(view: DashboardFigures) -> dict[str, dict[str, Any]]:
     return {figure.key: figure.figure for figure in view.figures if figure.figure is not None}
 
 

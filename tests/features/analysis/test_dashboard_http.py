@@ -1,5 +1,6 @@
 """The dashboard over HTTP."""
 
+import time
 from collections.abc import Iterator
 
 import pytest
@@ -27,7 +28,8 @@ def client(sqlite_url: str) -> Iterator[TestClient]:
 def test_a_dashboard_has_its_shape(client: TestClient) -> None:
     """Kind, counts, avatars, and figures with words for people and a figure for plotly.js."""
     view = client.get(f"/api/studies/{STUDY}/dashboard", params={"kind": "simulated"}).json()
-    assert set(view) == {"kind", "simulated", "n_sessions", "n_completed", "avatar", "figures"}
+    about = {"kind", "simulated", "n_sessions", "n_completed", "avatar", "drawn_at", "current"}
+    assert set(view) == about | {"figures"}
     assert (view["kind"], view["simulated"], view["n_completed"]) == ("simulated", True, 2)
     for entry in view["figures"]:
         assert set(entry) == {"key", "title", "caption", "figure", "empty", "n"}
@@ -47,3 +49,18 @@ def test_nobody_sees_it_without_signing_in(client: TestClient) -> None:
     assert client.get("/api/studies/nothing/dashboard").status_code == 404
     client.cookies.clear()
     assert client.get(f"/api/studies/{STUDY}/dashboard").status_code == 401
+
+
+def test_a_page_gets_what_was_drawn_last_while_newer_data_are_drawn(client: TestClient) -> None:
+    """The old figures come at once and say so; soon the new ones are there."""
+    path, people = f"/api/studies/{STUDY}/dashboard", {"kind": "people"}
+    assert client.get(path, params=people).json()["current"] is True
+    with client.app.state.context.database.writing() as db:  # type: ignore[attr-defined]
+        build_session(db, SessionSpec("P-0001"))
+    older = client.get(path, params=people).json()
+    deadline = time.monotonic() + 60.0
+    while not (view := client.get(path, params=people).json())["current"]:
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    assert (older["current"], older["n_sessions"]) in ((False, 0), (True, 1))
+    assert view["n_sessions"] == 1

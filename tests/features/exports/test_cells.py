@@ -9,6 +9,7 @@ import pytest
 from app.features.analysis.codebook import columns_of
 from app.features.analysis.tables.context import finished
 from app.features.exports.cells import csv_pieces, safe_text
+from tests.faults.figures import note
 
 
 def _answers(**columns: object) -> pd.DataFrame:
@@ -47,6 +48,34 @@ def _read(text: str) -> dict[str, str]:
 def test_no_text_is_run(text: str) -> None:
     """Whatever a spreadsheet would run as a formula gets an apostrophe in front."""
     assert safe_text(text) == f"'{text}"
+
+
+def test_no_cell_of_a_table_of_formulas_is_live() -> None:
+    """Every sign that begins a formula, behind everything that spreadsheets skip (fault 35)."""
+    signs = ("=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20")
+    skipped = (
+        "",
+        " ",
+        "  ",
+        "\n",
+        "\t",
+        "\r",
+        "\r\n",
+        '"',
+        "'",
+        "\ufeff",
+        "\u200b",
+        " \u00a0",
+        '\ufeff "',
+    )
+    texts = [f"{before}{sign}1+1" for before in skipped for sign in signs]
+    read = [_read(_written(value_text=text))["value_text"] for text in texts]
+    live = [text for text, cell in zip(texts, read, strict=True) if cell != f"'{text}"]
+    numbers = [_read(_written(value_number=value))["value_number"] for value in (-1.5, 2e-7)]
+    note(35, "formulas in a CSV", "cells written", len(texts))
+    note(35, "formulas in a CSV", "live cells", len(live))
+    assert live == []
+    assert [float(number) for number in numbers] == [-1.5, 2e-7]
 
 
 @pytest.mark.parametrize("text", ["", "yes", "it's -5", "a=b", "5-4", "x@y", "'quoted'", "#1"])

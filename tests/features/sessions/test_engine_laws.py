@@ -36,8 +36,13 @@ ANYTHING: st.SearchStrategy[Command] = st.one_of(
     st.just(c.Start()),
     st.builds(c.CompleteStep, by=st.just("operator"), step=STEPS),
     st.builds(
-        c.SubmitForm, step=st.integers(-1, 30), submission_id=st.just("s"), content_hash=st.just("")
+        c.SubmitForm,
+        step=st.integers(-1, 30),
+        submission_id=st.just("s"),
+        content_hash=st.just(""),
+        rules_met=st.sampled_from([(), (), (0,), (1, 2)]),
     ),
+    st.just(c.OverrideStop(content=WORDS)),
     st.builds(c.Materialise, by=st.just("headset"), client_t_s=st.just(1.0)),
     st.builds(c.BeginPhase, headset_connected=st.booleans()),
     st.builds(c.Pause, content=st.none() | st.just(WORDS)),
@@ -70,6 +75,7 @@ def meant_by(name: str, state: SessionState) -> Command:
         "begin_phase": c.BeginPhase(headset_connected=True),
         "pause": c.Pause(content=WORDS),
         "resume": c.Resume(headset_connected=True),
+        "override_stop": c.OverrideStop(content=WORDS),
         "redo": c.Redo(content=WORDS, step=None if timed else current - 1),
         "skip": c.Skip(content=WORDS),
         "abort": c.Stop(status="aborted", content=WORDS),
@@ -157,6 +163,14 @@ class AnySession(RuleBasedStateMachine):
     def one_step_is_current_while_active(self) -> None:
         """An active session always stands somewhere, any other nowhere."""
         assert (self.run.state.current is not None) == (self.run.state.status == "active")
+
+    @invariant()
+    def a_held_session_stands_still(self) -> None:
+        """Only an active session is held, and nothing in it is offered that moves on."""
+        if self.run.state.held is not None:
+            assert self.run.state.status == "active"
+            offered = allowed_commands(PLAN, self.run.state)
+            assert offered == ["abort", "withdraw", "override_stop", "note"]
 
     @invariant()
     def what_is_offered_is_accepted(self) -> None:

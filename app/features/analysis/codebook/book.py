@@ -5,6 +5,7 @@ from dataclasses import asdict, replace
 
 import pandas as pd
 
+from app.features.analysis.codebook.calibrations import CALIBRATIONS
 from app.features.analysis.codebook.clocks import CLOCK_MAPPING, CLOCK_PROBES
 from app.features.analysis.codebook.column import Column, Describe
 from app.features.analysis.codebook.movement import (
@@ -15,7 +16,7 @@ from app.features.analysis.codebook.movement import (
     STREAMS,
 )
 from app.features.analysis.codebook.quality import ALARMS, QUALITY
-from app.features.analysis.codebook.questionnaires import ANSWERS, SCORES
+from app.features.analysis.codebook.questionnaires import ANSWERS, CORRECTIONS, SCORES
 from app.features.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
 from app.science.skeleton import JOINT_NAMES
 
@@ -25,6 +26,7 @@ TABLES: dict[str, str] = {
     "phases": "One row per run of a timed phase, with what it came to.",
     "answers": "One row per item of a filled-in form.",
     "scores": "One row per score of a filled-in form.",
+    "corrections": "One row per answer that was corrected later, with what it was before.",
     "contacts": "One row per contact of a body part with a surface.",
     "completions": "One row per completed task.",
     "joint_errors": "One row per phase, reference, joint and axis.",
@@ -33,6 +35,7 @@ TABLES: dict[str, str] = {
     "clock_probes": "One row per exchange of clock readings between a headset and the server.",
     "clock_mapping": "One row per segment of a headset's clock, brought to the server's.",
     "events": "One row per event of a session's log: the audit trail.",
+    "calibrations": "One row per measurement of the equipment's own delay; of no one session.",
     "codebook": "One row per column of the other files.",
     "samples": "One file per session, one row per frame: target and actual body side by side.",
 }
@@ -43,6 +46,7 @@ CODEBOOK: tuple[Column, ...] = (
     *PHASES,
     *ANSWERS,
     *SCORES,
+    *CORRECTIONS,
     *CONTACTS,
     *COMPLETIONS,
     *JOINT_ERRORS,
@@ -51,6 +55,7 @@ CODEBOOK: tuple[Column, ...] = (
     *CLOCK_PROBES,
     *CLOCK_MAPPING,
     *EVENTS,
+    *CALIBRATIONS,
     _B.text("table", "The file the column is in; samples stands for all files in samples/."),
     _B.text("column", "Name of the column."),
     _B.text("meaning", "What it holds."),

@@ -50,7 +50,7 @@ def phase_columns(table: str) -> tuple[Column, ...]:
     of = Describe(table)
     return (
         of.integer("phase_id", "The phase within its session.", levels="1 and up"),
-        of.text("phase_kind", "What kind of phase.", "free_roam, task"),
+        of.text("phase_kind", "What kind of phase.", "free_roam, practice, task"),
         *place_columns(table),
         of.integer(
             "attempt", "Which attempt at the step; redone steps count up.", levels="1 and up"

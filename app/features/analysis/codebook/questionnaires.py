@@ -1,10 +1,11 @@
-"""The columns of answers.csv and scores.csv."""
+"""The columns of answers.csv, scores.csv and corrections.csv."""
 
 from app.features.analysis.codebook.column import Column, Describe
 from app.features.analysis.codebook.common import place_columns, session_columns
 
 _A = Describe("answers")
 _S = Describe("scores")
+_C = Describe("corrections")
 
 
 def _form_columns(table: str) -> tuple[Column, ...]:
@@ -38,11 +39,13 @@ ANSWERS: tuple[Column, ...] = (
     _A.integer("shown_position", "Place at which the item was shown.", levels="1 and up"),
     _A.number(
         "value_number",
-        "The answer as given, before any recoding; yes is 1 and no is 0. Empty if left out.",
+        "The answer as given, or its newest correction, before any recoding; yes is 1 and no is 0. "
+        "Empty if left out.",
         "the item's unit",
         "the item's range",
     ),
     _A.text("value_text", "The answer to an open question, or the key of the choice."),
+    _A.boolean("corrected", "Whether the answer was corrected; corrections.csv has what it was."),
     _A.number("response_s", "Time at the item, as the tablet reported it.", "s"),
     _A.time("started_at_utc", "When the form was opened, by the tablet's clock."),
     _A.time("submitted_at_utc", "When it was stored."),
@@ -53,9 +56,36 @@ SCORES: tuple[Column, ...] = (
     *_form_columns("scores"),
     _S.text("score", "Key of the score in the questionnaire."),
     _S.number(
-        "value", "The score; empty if one of its items was left out.", levels="minimum to maximum"
+        "value",
+        "The score of the answers that count; empty if one of its items was left out.",
+        levels="minimum to maximum",
     ),
     _S.number("minimum", "Lowest value that the score can have."),
     _S.number("maximum", "Highest value that the score can have."),
     _S.time("submitted_at_utc", "When the form was stored."),
+)
+
+CORRECTIONS: tuple[Column, ...] = (
+    *session_columns("corrections"),
+    _C.text("submission_id", "The filled-in form."),
+    _C.text("administration", "Which filling-in: the step and its attempt."),
+    _C.text("instrument", "Key of the questionnaire."),
+    _C.text("item", "Key of the item in the questionnaire."),
+    _C.number(
+        "previous_number",
+        "What counted before; of an item's first correction, the answer as given.",
+        "the item's unit",
+        "the item's range",
+    ),
+    _C.text("previous_text", "The same, of an open question or a choice."),
+    _C.number(
+        "value_number",
+        "What counts from here on. Empty if the answer was taken out.",
+        "the item's unit",
+        "the item's range",
+    ),
+    _C.text("value_text", "The same, of an open question or a choice."),
+    _C.text("reason", "Why, in the lab's words."),
+    _C.text("by", "Who corrected it."),
+    _C.time("at_utc", "When."),
 )

@@ -23,6 +23,12 @@ SESSIONS: tuple[Column, ...] = (
     ),
     _S.number("height_stated_m", "Height as the participant stated it.", "m", "0.8 to 2.5"),
     _S.number("height_matched_m", "Height that the avatar was matched to.", "m", "0.8 to 2.5"),
+    _S.boolean(
+        "consent_given",
+        "Whether every consent of the study was given; empty where it has none. Names and "
+        "signatures are in no export.",
+    ),
+    _S.time("consent_at_utc", "When the last of them was given."),
     _S.text("study_content_hash", "SHA-256 of the study version's content."),
     _S.time("created_at_utc", "When the session joined the study."),
     _S.time("started_at_utc", "When it was started."),

@@ -8,10 +8,12 @@ forms and broken-off sessions are there with `valid` false. Texts are `object`, 
 """
 
 from app.features.analysis.schemas import Kind
+from app.features.analysis.tables.calibrations import calibrations_table
 from app.features.analysis.tables.clocks import clock_mapping_table, clock_probes_table
 from app.features.analysis.tables.context import KINDS
+from app.features.analysis.tables.corrections import corrections_table
 from app.features.analysis.tables.events import events_table
-from app.features.analysis.tables.joint_errors import joint_errors_table
+from app.features.analysis.tables.joint_errors import joint_angles_table, joint_errors_table
 from app.features.analysis.tables.phases import phases_table
 from app.features.analysis.tables.quality import alarms_table, quality_table
 from app.features.analysis.tables.questionnaires import answers_table, scores_table
@@ -23,11 +25,14 @@ __all__ = [
     "Kind",
     "alarms_table",
     "answers_table",
+    "calibrations_table",
     "clock_mapping_table",
     "clock_probes_table",
     "completions_table",
     "contacts_table",
+    "corrections_table",
     "events_table",
+    "joint_angles_table",
     "joint_errors_table",
     "phases_table",
     "quality_table",

@@ -19,11 +19,15 @@ BROKEN_OFF = ("aborted", "withdrawn")
 
 
 def of_kind(study: Study, kind: Kind) -> ColumnElement[bool]:
-    """The sessions of a study of one kind; `all` must be asked for by name."""
+    """The sessions of a study of one kind; `all` must be asked for by name.
+
+    Experts look a study over and give advice: they are in no table, `all` included.
+    """
     if kind not in KINDS:
         raise ValueError(f"unknown kind {kind!r}; valid are {', '.join(KINDS)}")
     of_study = StudySession.study_id == study.id
-    return of_study if kind == "all" else and_(of_study, StudySession.kind == kind)
+    chosen = StudySession.kind == kind if kind != "all" else StudySession.kind != "expert"
+    return and_(of_study, chosen)
 
 
 def read(db: Session, query: Select[*tuple[Any, ...]], names: Sequence[str]) -> pd.DataFrame:

@@ -3,7 +3,7 @@
 import math
 
 import pandas as pd
-from sqlalchemy import select
+from sqlalchemy import ColumnElement, select, true
 from sqlalchemy.orm import Session
 
 from app.features.analysis.schemas import Kind
@@ -17,8 +17,22 @@ _FIGURES = ("mean", "rms", "p95", "max")
 _REFERENCES = ("present", "command")
 
 
+def joint_angles_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """Of the joint errors, the angles to the present pose: an eighth of the rows."""
+    return _table(
+        db,
+        study_key,
+        kind,
+        (JointErrorRow.reference == "present") & (JointErrorRow.axis == "angle"),
+    )
+
+
 def joint_errors_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """One row per phase, reference, joint and axis, in the body's order."""
+    return _table(db, study_key, kind, true())
+
+
+def _table(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool]) -> pd.DataFrame:
     query = (
         select(
             JointErrorRow.session_id,
@@ -34,7 +48,7 @@ def joint_errors_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
             JointErrorRow.excluded,
         )
         .join(StudySession, StudySession.id == JointErrorRow.session_id)
-        .where(of_kind(study_by_key(db, study_key), kind))
+        .where(of_kind(study_by_key(db, study_key), kind), wanted)
     )
     names = ("reference", "joint", "axis", *(f"{name}_rad" for name in _FIGURES))
     errors = read(db, query, (*_KEYS, *names, "samples", "excluded"))

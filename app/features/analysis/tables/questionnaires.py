@@ -1,7 +1,9 @@
 """The tables of answers and scores: long, one row per item or score."""
 
+from collections.abc import Mapping
+
 import pandas as pd
-from sqlalchemy import select
+from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
 from app.features.analysis.schemas import Kind
@@ -13,8 +15,17 @@ from app.features.analysis.tables.context import (
     sessions_context,
     steps_context,
 )
+from app.features.questionnaires.service import newest_corrections
 from app.features.studies.service import instrument_of, study_by_key
-from app.models import Answer, InstrumentVersion, ScoreValue, Study, StudySession, Submission
+from app.models import (
+    Answer,
+    AnswerCorrection,
+    InstrumentVersion,
+    ScoreValue,
+    Study,
+    StudySession,
+    Submission,
+)
 from app.science.instruments import Instrument
 
 
@@ -31,6 +42,7 @@ def answers_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     )
     names = ("submission_id", "item", "shown_position", "value_number", "value_text")
     frame = _forms(db, study, kind).merge(read(db, query, names), on="submission_id")
+    _put_corrections(frame, newest_corrections(db, _submissions(study, kind)))
     instruments = _instruments(db)
     items = [
         instruments[row].by_key[item]
@@ -43,6 +55,27 @@ def answers_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         for timings, item in zip(frame["timings"], frame["item"], strict=True)
     ]
     return finished(frame, "answers")
+
+
+def _put_corrections(
+    frame: pd.DataFrame, corrected: Mapping[tuple[str, str], AnswerCorrection]
+) -> None:
+    """The values that count in the place of those given first."""
+    rows = [corrected.get(key) for key in zip(frame["submission_id"], frame["item"], strict=True)]
+    frame["corrected"] = [row is not None for row in rows]
+    for name in ("value_number", "value_text"):
+        frame[name] = [
+            given if row is None else getattr(row, name)
+            for given, row in zip(frame[name], rows, strict=True)
+        ]
+
+
+def _submissions(study: Study, kind: Kind) -> Select[str]:
+    return (
+        select(Submission.id)
+        .join(StudySession, StudySession.id == Submission.session_id)
+        .where(of_kind(study, kind))
+    )
 
 
 def scores_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:

@@ -1,5 +1,7 @@
 """The table of sessions."""
 
+import json
+
 import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -13,8 +15,17 @@ from app.features.analysis.tables.context import (
     sessions_context,
 )
 from app.features.sessions.contents import content_body
+from app.features.sessions.service import plan_of, state_of
 from app.features.studies.service import protocol_of, study_by_key, versions_of
-from app.models import LedgerSlot, SessionContent, SlotAttempt, Study, StudySession, StudyVersion
+from app.models import (
+    LedgerSlot,
+    SessionContent,
+    SessionEvent,
+    SlotAttempt,
+    Study,
+    StudySession,
+    StudyVersion,
+)
 
 
 def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
@@ -23,6 +34,7 @@ def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     frame = sessions_context(db, study_key, kind).rename(columns={"session_status": "status"})
     frame = frame.merge(_details(db, study, kind), on="session_id")
     frame = frame.merge(_heights(db, study, kind), on="session_id", how="left")
+    frame = frame.merge(_consents(db, study, kind), on="session_id", how="left")
     latencies = _latencies(db, study)
     frame["order"] = [
         " ".join(f"{latencies[version, key]:g}" for key in sequence or ())
@@ -74,6 +86,26 @@ def _heights(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
         if isinstance(body, dict)
     ]
     columns = ["session_id", "height_stated_m", "height_matched_m"]
+    return pd.DataFrame(rows, columns=columns, dtype=object)
+
+
+def _consents(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    """Whether and when consent was given, from the steps and the event log: yes or no, no words."""
+    rows = []
+    for session in db.scalars(select(StudySession).where(of_kind(study, kind))):
+        consents = {step.index for step in plan_of(db, session) if step.kind == "consent"}
+        if not consents:
+            continue
+        steps = state_of(session).steps
+        given = all(steps[index].status == "done" for index in consents)
+        events = db.execute(
+            select(SessionEvent.payload, SessionEvent.recorded_at)
+            .where(SessionEvent.session_id == session.id, SessionEvent.type == "step_completed")
+            .order_by(SessionEvent.seq)
+        )
+        times = [at for payload, at in events if json.loads(payload).get("step") in consents]
+        rows.append((session.id, given, times[-1] if given and times else None))
+    columns = ["session_id", "consent_given", "consent_at_utc"]
     return pd.DataFrame(rows, columns=columns, dtype=object)
 
 

@@ -8,9 +8,10 @@ import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { isForm, isTimed, stepIcon, stepName } from "../steps";
 import { Key } from "../ui/Key";
-import { currentStep, guidance, primaryAction } from "./action";
+import { currentStep, guidance, primaryAction, wantsConsent } from "./action";
 import classes from "./CurrentStep.module.css";
 import { HeightForm } from "./HeightForm";
+import { PaperConsent } from "./PaperConsent";
 import { PauseReason } from "./PauseReason";
 import { PhaseClock } from "./PhaseClock";
 import { Readiness } from "./Readiness";
@@ -74,6 +75,9 @@ function Kicker({ session, step }: { readonly session: SessionView; readonly ste
   if (step.latency_ms !== null) {
     parts.push(t("step.latency", { latency: latency(milliseconds(step.latency_ms)) }));
   } else if (step.block !== null) parts.push(t("step.latencyHidden"));
+  if (step.until_completions != null) {
+    parts.push(t("practice.until", { count: step.until_completions }));
+  }
   if (step.attempt > 1) parts.push(t("timeline.attempt", { number: step.attempt }));
   return (
     <div className={`${classes.kicker} numbers`}>
@@ -117,6 +121,9 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
       </Button>
     );
   }
+  if (step !== null && session.allowed.includes("complete_step") && wantsConsent(step)) {
+    return <PaperConsent session={session} step={step} live={live} />;
+  }
   if (session.allowed.includes("resume") || step === null || !isForm(step)) return null;
   return (
     <>
@@ -124,13 +131,15 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
         <Loader size="sm" type="dots" />
         {t("step.waitingTablet")}
       </span>
-      <Button
-        variant="default"
-        leftSection={<Icon name="form" size={18} />}
-        onClick={onEnterAnswers}
-      >
-        {t("do.enterAnswers")}
-      </Button>
+      {session.allowed.includes("enter_answers") && (
+        <Button
+          variant="default"
+          leftSection={<Icon name="form" size={18} />}
+          onClick={onEnterAnswers}
+        >
+          {t("do.enterAnswers")}
+        </Button>
+      )}
     </>
   );
 }

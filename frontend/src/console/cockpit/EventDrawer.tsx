@@ -1,6 +1,7 @@
 /** The session's own record, event by event, as the server appended it. */
 import type { SessionEvent, SessionView } from "@shared/api/types";
 import { timeOfDay } from "@shared/format";
+import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
@@ -32,29 +33,38 @@ function Events({ session }: { readonly session: SessionView }): JSX.Element {
 function EventTable({ events }: { readonly events: readonly SessionEvent[] }): JSX.Element {
   const { t, language } = useTexts();
   return (
-    <table className={`${classes.table} numbers`}>
-      <thead>
-        <tr>
-          <th scope="col">{t("log.number")}</th>
-          <th scope="col">{t("log.time")}</th>
-          <th scope="col">{t("log.event")}</th>
-          <th scope="col">{t("log.by")}</th>
-        </tr>
-      </thead>
-      <tbody>
-        {[...events].reverse().map((event) => (
-          <tr key={event.seq}>
-            <td>{event.seq}</td>
-            <td className={classes.nowrap}>{timeOfDay(event.at, language)}</td>
-            <td>
-              {event.type.replaceAll("_", " ")}
-              <div className={classes.nothing}>{detailsOf(event)}</div>
-            </td>
-            <td className={classes.nowrap}>{actorName(event.by)}</td>
+    <>
+      {events.some(({ hash }) => hash === null) && (
+        <Notice tone="info" icon="lock">
+          {t("blind.log")}
+        </Notice>
+      )}
+      <table className={`${classes.table} numbers`}>
+        <thead>
+          <tr>
+            <th scope="col">{t("log.number")}</th>
+            <th scope="col">{t("log.time")}</th>
+            <th scope="col">{t("log.event")}</th>
+            <th scope="col">{t("log.by")}</th>
           </tr>
-        ))}
-      </tbody>
-    </table>
+        </thead>
+        <tbody>
+          {[...events].reverse().map((event) => (
+            <tr key={event.seq}>
+              <td>{event.seq}</td>
+              <td className={classes.nowrap}>{timeOfDay(event.at, language)}</td>
+              <td>
+                {event.type === "blinding_lifted"
+                  ? t("log.blinding_lifted")
+                  : event.type.replaceAll("_", " ")}
+                <div className={classes.nothing}>{detailsOf(event)}</div>
+              </td>
+              <td className={classes.nowrap}>{actorName(event.by)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </>
   );
 }
 

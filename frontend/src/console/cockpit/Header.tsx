@@ -6,10 +6,12 @@ import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
+import { useMay } from "../may";
 import { KindBadge } from "../ui/KindBadge";
 import { Order } from "../ui/Order";
 import { StatusBadge } from "../ui/StatusBadge";
 import classes from "./Cockpit.module.css";
+import { Reveal } from "./Reveal";
 
 interface HeaderProps {
   readonly session: SessionView;
@@ -20,6 +22,7 @@ interface HeaderProps {
 
 export function Header({ session, feed, onLog, onHelp }: HeaderProps): JSX.Element {
   const { t } = useTexts();
+  const may = useMay();
   return (
     <div className={classes.head}>
       <div>
@@ -37,12 +40,24 @@ export function Header({ session, feed, onLog, onHelp }: HeaderProps): JSX.Eleme
         <span className={classes.hiddenOrder}>
           <Icon name="lock" size={15} />
           {t("order.hidden")}
+          <Reveal session={session} />
         </span>
       ) : (
         <Order sequence={session.sequence} />
       )}
       <div className={classes.tools}>
         <Feed state={feed} />
+        {may("run") && hasConsent(session) && (
+          <Button
+            component={Link}
+            href={`/sessions/${session.id}/consent`}
+            variant="default"
+            size="xs"
+            leftSection={<Icon name="document" size={16} />}
+          >
+            {t("consent.link")}
+          </Button>
+        )}
         <Button
           variant="default"
           size="xs"
@@ -60,6 +75,9 @@ export function Header({ session, feed, onLog, onHelp }: HeaderProps): JSX.Eleme
     </div>
   );
 }
+
+const hasConsent = ({ steps }: SessionView): boolean =>
+  steps.some((step) => step.kind === "consent" && step.status === "done");
 
 /** A short break of the line is not worth a warning; one that lasts is. */
 const WARN_AFTER_MS = 1500;

@@ -1,7 +1,9 @@
 /** Height as the participant states it and as it was matched to the avatar: both are kept. */
 import { Button, NumberInput } from "@mantine/core";
 import type { SessionView, StoredAnswers } from "@shared/api/types";
+import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
 import { metresFromCentimetres } from "@shared/units";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, type ReactNode, useState } from "react";
@@ -13,6 +15,8 @@ import type { Send } from "./useSession";
 
 const SHORTEST_CM = 100;
 const TALLEST_CM = 230;
+/** Shoes and posture make a few centimetres; more is a slip, or somebody else's avatar. */
+const MUCH_CM = 10;
 
 interface HeightFormProps {
   readonly session: SessionView;
@@ -24,15 +28,25 @@ interface HeightFormProps {
 
 export function HeightForm(props: HeightFormProps): JSX.Element {
   const { session, step, send, sending, exceptions } = props;
-  const { t } = useTexts();
+  const { t, language } = useTexts();
   const answers = useQuery(answersQuery(session.id, session.version));
   // What the participant wrote on the tablet stands here already; typing over it wins.
   const [typed, setStated] = useState<number | string | null>(null);
   const stated = typed ?? heightIn(answers.data ?? []) ?? "";
   const [matched, setMatched] = useState<number | string>("");
+  // The two heights that the question was about: other ones are asked about again.
+  const [asking, setAsking] = useState("");
   const valid = isHeight(stated) && isHeight(matched);
+  const difference = valid ? Math.abs(Number(stated) - Number(matched)) : 0;
+  const pair = `${stated} ${matched}`;
+  const doubtful = difference > MUCH_CM;
+  const asked = doubtful && asking === pair;
   const save = () => {
     if (!isHeight(stated) || !isHeight(matched)) return;
+    if (doubtful && !asked) {
+      setAsking(pair);
+      return;
+    }
     const height_m = {
       stated: metresFromCentimetres(stated),
       matched: metresFromCentimetres(matched),
@@ -63,6 +77,13 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
           onChange={setMatched}
         />
       </div>
+      {asked && (
+        <div className={classes.doubt}>
+          <Notice tone="warn" title={t("height.differs")}>
+            {t("height.differs.body", { difference: number(difference, language, 1) })}
+          </Notice>
+        </div>
+      )}
       <div className={classes.actions}>
         <Button
           type="submit"
@@ -73,7 +94,7 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
           leftSection={<Icon name="check" />}
           rightSection={<Key name={t("keys.enter")} />}
         >
-          {t("do.complete.height")}
+          {t(asked ? "height.differs.save" : "do.complete.height")}
         </Button>
         {exceptions}
       </div>

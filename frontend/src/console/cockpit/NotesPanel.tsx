@@ -26,7 +26,7 @@ export function NotesPanel({ session, send, sending }: NotesPanelProps): JSX.Ele
     <section>
       <h2 className={cockpit.sectionTitle}>
         {t("notes.title")}
-        <Key name="N" />
+        {session.allowed.includes("note") && <Key name="N" />}
       </h2>
       {session.allowed.includes("note") && (
         <Textarea

@@ -50,7 +50,9 @@ function Entry({ session, stepKey, onClose }: EntryProps): JSX.Element {
   const query = useQuery({
     queryKey: ["administration", session.id, stepKey],
     queryFn: () => sessions.administration(session.id),
-    gcTime: 0,
+    // Asked again whenever it is opened; kept, so that a draft outlives a sign-in that has ended.
+    refetchOnMount: "always",
+    gcTime: 24 * 60 * 60_000,
   });
   return (
     <Loaded query={query}>

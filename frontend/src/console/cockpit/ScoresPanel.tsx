@@ -1,19 +1,38 @@
 /** Scores of the questionnaires as they arrive, newest first. */
+import { Button } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
 import type { AdministrationScores, Score, SessionView } from "@shared/api/types";
 import { latency, number } from "@shared/format";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
+import { useMay } from "../may";
+import { AnswersDrawer } from "../rights/AnswersDrawer";
 import { stepName } from "../steps";
 import cockpit from "./Cockpit.module.css";
 import classes from "./Panels.module.css";
 
 export function ScoresPanel({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
+  const may = useMay();
+  const [opened, { open, close }] = useDisclosure();
   const scored = session.scores.filter(({ score_views }) => score_views.length > 0);
   return (
     <section>
-      <h2 className={cockpit.sectionTitle}>{t("scores.title")}</h2>
+      <div className={classes.titleRow}>
+        <h2 className={cockpit.sectionTitle}>{t("scores.title")}</h2>
+        {may("rights") && (
+          <Button variant="subtle" size="compact-sm" onClick={open}>
+            {t("answers.open")}
+          </Button>
+        )}
+      </div>
+      <AnswersDrawer
+        sessionId={session.id}
+        code={session.participant_code}
+        opened={opened}
+        onClose={close}
+      />
       {scored.length === 0 ? (
         <p className={classes.nothing}>{t("scores.empty")}</p>
       ) : (

@@ -4,6 +4,8 @@ import type { SessionView } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
+import { useMay } from "../may";
+import { AfterWithdrawal } from "../rights/AfterWithdrawal";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/useTitle";
 import { AlarmDrawer } from "./AlarmDrawer";
@@ -15,6 +17,7 @@ import { CurrentStep } from "./CurrentStep";
 import { DevicesPanel } from "./DevicesPanel";
 import { EventDrawer } from "./EventDrawer";
 import { Header } from "./Header";
+import { HeldCard } from "./HeldCard";
 import { KeyboardHelp } from "./KeyboardHelp";
 import { NotesPanel } from "./NotesPanel";
 import { OperatorEntry } from "./OperatorEntry";
@@ -23,6 +26,7 @@ import { ReasonDialog } from "./ReasonDialog";
 import type { Reasoned } from "./reasons";
 import { ScoresPanel } from "./ScoresPanel";
 import { SignalStrip } from "./SignalStrip";
+import { SuggestionsPanel } from "./SuggestionsPanel";
 import { TelemetryCard } from "./TelemetryCard";
 import { Timeline } from "./Timeline";
 import { useAlarms } from "./useAlarms";
@@ -34,10 +38,16 @@ const PAUSING = ["pause", "resume"] as const;
 
 export function SessionPage({ id }: { readonly id: string }): JSX.Element {
   const live = useSession(id);
+  const may = useMay();
   return (
-    <Loaded query={live.query}>{(session) => <Cockpit session={session} live={live} />}</Loaded>
+    <Loaded query={live.query}>
+      {(session) => <Cockpit session={may("run") ? session : readOnly(session)} live={live} />}
+    </Loaded>
   );
 }
+
+/** The session of somebody who may watch and not command. */
+const readOnly = (session: SessionView): SessionView => ({ ...session, allowed: [] });
 
 interface CockpitProps {
   readonly session: SessionView;
@@ -46,6 +56,7 @@ interface CockpitProps {
 
 function Cockpit({ session, live }: CockpitProps): JSX.Element {
   const { t } = useTexts();
+  const may = useMay();
   const [asking, setAsking] = useState<Reasoned | null>(null);
   const [log, logs] = useDisclosure();
   const [help, helps] = useDisclosure();
@@ -89,13 +100,21 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
         {session.simulated && (
           <Notice tone="sim" title={t("simulated.session", { scale: session.time_scale })} />
         )}
+        {session.kind === "expert" && <Notice tone="info" title={t("expert.session")} />}
+        {!may("run") && <Notice tone="info" icon="info" title={t("read.only")} />}
+        {ended && may("rights") && <AfterWithdrawal session={session} send={live.send} />}
         <CommandFailure live={live} />
-        <CurrentStep session={session} live={live} onAsk={ask} onEnterAnswers={entries.open} />
+        {session.held === null ? (
+          <CurrentStep session={session} live={live} onAsk={ask} onEnterAnswers={entries.open} />
+        ) : (
+          <HeldCard held={session.held} onAsk={ask} />
+        )}
         <TelemetryCard session={session} store={live.store} />
         {ended && <PhaseTable session={session} />}
       </div>
       <aside className={classes.side} aria-label={t("side.label")}>
-        {!ended && <DevicesPanel session={session} />}
+        {!ended && may("run") && <DevicesPanel session={session} />}
+        {session.kind === "expert" && <SuggestionsPanel session={session} />}
         <NotesPanel session={session} send={live.send} sending={live.sending} />
         <ScoresPanel session={session} />
       </aside>

@@ -25,13 +25,12 @@ export function primaryAction(session: SessionView): PrimaryAction | null {
   if (step === null) return null;
   if (may("resume")) return { command: { type: "resume" }, label: "do.resume", icon: "play" };
   if (may("begin_phase")) {
-    const label: Key = step.limb === null ? "do.begin.free_roam" : `do.begin.${step.limb}`;
-    return { command: { type: "begin_phase" }, label, icon: "play" };
+    return { command: { type: "begin_phase" }, label: beginLabel(step), icon: "play" };
   }
   if (may("materialise")) {
     return { command: { type: "materialise" }, label: "do.materialise", icon: "body" };
   }
-  if (may("complete_step") && step.kind !== "height") {
+  if (may("complete_step") && step.kind !== "height" && !wantsConsent(step)) {
     const label = COMPLETE[step.kind];
     if (label !== undefined) {
       const command: Command = { type: "complete_step", step_index: step.index };
@@ -40,6 +39,16 @@ export function primaryAction(session: SessionView): PrimaryAction | null {
   }
   return null;
 }
+
+function beginLabel(step: Step): Key {
+  if (step.kind === "practice") return "do.begin.practice";
+  return step.limb === null ? "do.begin.free_roam" : `do.begin.${step.limb}`;
+}
+
+/** Whether a consent needs the participant's own hand: a signature, or lines to tick. */
+export const wantsConsent = ({ consent }: Pick<Step, "consent">): boolean =>
+  consent != null &&
+  (consent.signature !== "none" || consent.statements.some((one) => !one.optional));
 
 const COMPLETE: Readonly<Partial<Record<Step["kind"], Key>>> = {
   consent: "do.complete.consent",

@@ -31,11 +31,15 @@ export function currentAlarms(
   now: Milliseconds,
 ): readonly ShownAlarm[] {
   const fresh = quality !== null && now - quality.at < NEWS_LAST;
-  const alarms = fresh ? quality.alarms.map(fromNews) : session.alarms.map(fromRecord);
+  const recorded = session.alarms.filter((alarm) => !fresh || isOfPerson(alarm.code));
+  const alarms = [...(fresh ? quality.alarms.map(fromNews) : []), ...recorded.map(fromRecord)];
   return [...alarms, ...storageAlarms(storage)].toSorted(
     (a, b) => urgency(b) - urgency(a) || Date.parse(b.since) - Date.parse(a.since),
   );
 }
+
+/** About the participant, not the headset: the headset's news never tell of them. */
+const isOfPerson = (code: string): boolean => code.startsWith("stop_rule_");
 
 const SEVERITIES = ["info", "warning", "critical"] as const;
 const urgency = (alarm: ShownAlarm): number => SEVERITIES.indexOf(alarm.severity);
@@ -81,6 +85,9 @@ const CODES = [
   "clock_uncertain",
   "storage",
   "low_disk",
+  "stop_rule_met",
+  "stop_rule_near",
+  "stop_rule_unknown",
 ] as const;
 
 type Code = (typeof CODES)[number];

@@ -49,6 +49,8 @@ export const session: SessionView = {
   participant_code: "P-1",
   kind: "people",
   simulated: false,
+  held: null,
+  blinded: false,
   avatar: "delayed_copy",
   language: "en",
   version: 1,

@@ -2,12 +2,16 @@
 import type { CommandType } from "@shared/api/types";
 import type { Key } from "../i18n";
 
-export type Reasoned = Extract<CommandType, "redo" | "skip" | "abort" | "withdraw">;
+export type Reasoned = Extract<
+  CommandType,
+  "redo" | "skip" | "abort" | "withdraw" | "override_stop"
+>;
 
 export const COMMON_REASONS: Readonly<Record<Reasoned | "pause", readonly Key[]>> = {
   pause: ["reason.break", "reason.tracking", "reason.question", "reason.unwell"],
   redo: ["reason.tracking", "reason.misunderstood", "reason.interrupted"],
   skip: ["reason.askedAloud", "reason.time", "reason.wish"],
-  abort: ["reason.equipment", "reason.time", "reason.interrupted"],
+  abort: ["reason.equipment", "reason.time", "reason.interrupted", "reason.stopRule"],
+  override_stop: ["reason.recovered", "reason.mistyped"],
   withdraw: ["reason.wish", "reason.sick", "reason.unwell"],
 };

@@ -1,10 +1,11 @@
 /** A session as the server sees it, kept current by its live feed, and the way to command it. */
 import { sessions } from "@shared/api/endpoints";
-import { isApiError } from "@shared/api/errors";
+import { isApiError, isUnauthorised } from "@shared/api/errors";
 import { type FeedState, openFeed } from "@shared/api/live";
 import type { Command, SessionView, StorageNews, TelemetryNews } from "@shared/api/types";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
+import { lookAgain } from "../account";
 import { sessionQuery } from "../queries";
 import { type Change, changesBetween } from "./changes";
 import type { Storage } from "./storage";
@@ -35,7 +36,11 @@ export function useSession(id: string) {
     () =>
       openFeed({
         url: sessions.liveUrl(id),
-        onState: setFeed,
+        onState: (state) => {
+          setFeed(state);
+          // A feed does not say why it broke off: the sign-in may have been ended elsewhere.
+          if (state === "lost") void lookAgain(queries);
+        },
         on: {
           session: (data) => accept(data as SessionView),
           telemetry: (data) => store.put(data as TelemetryNews),
@@ -73,7 +78,7 @@ export function useSession(id: string) {
     feed,
     send,
     sending: command.isPending,
-    error: isApiError(command.error, "stale") ? null : command.error,
+    error: isTold(command.error) ? null : command.error,
     overtaken,
     dismiss: () => {
       command.reset();
@@ -81,6 +86,9 @@ export function useSession(id: string) {
     },
   };
 }
+
+/** Errors that the page tells in a place of their own. */
+const isTold = (error: unknown): boolean => isApiError(error, "stale") || isUnauthorised(error);
 
 /** Answers and live events may cross on the line; the view with the higher version stays. */
 function newer(known: SessionView | undefined, view: SessionView): SessionView {

@@ -94,7 +94,8 @@ function Unified({ text }: { readonly text: string }): JSX.Element {
 }
 
 function lineClass(line: string): string | undefined {
-  if (line.startsWith("+++") || line.startsWith("---") || line.startsWith("@@")) return classes.where;
+  if (line.startsWith("+++") || line.startsWith("---") || line.startsWith("@@"))
+    return classes.where;
   if (line.startsWith("+")) return classes.plus;
   return line.startsWith("-") ? classes.minus : undefined;
 }

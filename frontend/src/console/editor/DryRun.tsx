@@ -58,7 +58,10 @@ export function DryRun({ draft }: { readonly draft: Draft }): JSX.Element {
               aria-label={t("dryRun.language")}
               value={timeline.language}
               onChange={setWanted}
-              data={timeline.languages.map((tag) => ({ value: tag, label: LANGUAGE_NAMES[tag] ?? tag }))}
+              data={timeline.languages.map((tag) => ({
+                value: tag,
+                label: LANGUAGE_NAMES[tag] ?? tag,
+              }))}
             />
             <p className={classes.total}>
               {t("dryRun.total", {
@@ -99,7 +102,11 @@ function Bars({ timeline }: { readonly timeline: Timeline }): JSX.Element {
   const marks = Array.from({ length: Math.floor(timeline.total_s / 300) + 1 }, (_, at) => at * 5);
   return (
     <figure className={classes.figure}>
-      <div className={classes.bars} role="img" aria-label={t("dryRun.figure", { total: minutes(timeline.total_s, language) })}>
+      <div
+        className={classes.bars}
+        role="img"
+        aria-label={t("dryRun.figure", { total: minutes(timeline.total_s, language) })}
+      >
         {timeline.steps.map((step) => (
           <span
             key={step.index}
@@ -116,7 +123,10 @@ function Bars({ timeline }: { readonly timeline: Timeline }): JSX.Element {
       </div>
       <div className={`${classes.axis} numbers`} aria-hidden="true">
         {marks.map((mark) => (
-          <span key={mark} style={{ insetInlineStart: `${((mark * 60) / timeline.total_s) * 100}%` }}>
+          <span
+            key={mark}
+            style={{ insetInlineStart: `${((mark * 60) / timeline.total_s) * 100}%` }}
+          >
             {mark}
           </span>
         ))}
@@ -180,8 +190,8 @@ function Steps({ timeline }: { readonly timeline: Timeline }): JSX.Element {
                 {clockFace(seconds(step.length_s))}
               </td>
               <td>{parts(step)}</td>
-              <td className={classes.words} lang={timeline.language}>
-                {step.text ?? ""}
+              <td lang={timeline.language}>
+                <div className={classes.words}>{step.text ?? ""}</div>
               </td>
             </tr>
           ))}

@@ -1,8 +1,8 @@
 /** Writing a study: the form at the left, its YAML at the right, both always the same study. */
 import { ActionIcon, Button, Tabs, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
-import { studies } from "@shared/api/endpoints";
 import { drafts } from "@shared/api/drafts";
+import { studies } from "@shared/api/endpoints";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
@@ -10,8 +10,8 @@ import { type JSX, type ReactNode, useEffect, useMemo, useRef, useState } from "
 import { useLocation } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { instrumentsQuery } from "../queries";
 import { Problems } from "../pages/Problems";
+import { instrumentsQuery } from "../queries";
 import { Changes } from "./Changes";
 import { DryRun } from "./DryRun";
 import classes from "./Editor.module.css";
@@ -99,7 +99,10 @@ function Bar({ draft, studyKey, title, unsaved }: BarProps): JSX.Element {
     onSuccess: async (study) => {
       dropDraft(studyKey ?? "new");
       await queries.invalidateQueries({ queryKey: ["studies"] });
-      notifications.show({ message: t("editor.saved", { version: study.version }) });
+      notifications.show({
+        message: t("editor.saved", { version: study.version }),
+        closeButtonProps: { "aria-label": t("action.close") },
+      });
       navigate(`/studies/${study.key}/edit`);
     },
   });
@@ -180,7 +183,10 @@ function FormHalf({ draft }: { readonly draft: Draft }): JSX.Element {
     staleTime: Number.POSITIVE_INFINITY,
   });
   const library = useQuery(instrumentsQuery);
-  const spec = useMemo(() => (schema.data === undefined ? null : specOfFile(schema.data)), [schema.data]);
+  const spec = useMemo(
+    () => (schema.data === undefined ? null : specOfFile(schema.data)),
+    [schema.data],
+  );
   const last = useRef<JsonObject | null>(null);
   const readable = draft.check?.tree ?? null;
   if (readable !== null) last.current = readable as JsonObject;

@@ -1,7 +1,7 @@
 /** The page of a study that is being written: a stored one, or a new one from some beginning. */
 import { Button } from "@mantine/core";
-import { studies } from "@shared/api/endpoints";
 import { drafts } from "@shared/api/drafts";
+import { studies } from "@shared/api/endpoints";
 import { dateTime } from "@shared/format";
 import { inLanguage } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
@@ -32,9 +32,9 @@ export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.
           key={study.content_hash}
           id={study.key}
           studyKey={study.key}
-          title={inLanguage(study.protocol.title, language)}
-          stored={study.yaml}
-          begin={study.yaml}
+          title={study.protocol === null ? study.title : inLanguage(study.protocol.title, language)}
+          stored={study.yaml ?? ""}
+          begin={study.yaml ?? ""}
         />
       )}
     </Loaded>
@@ -47,7 +47,8 @@ interface NewStudyEditorProps {
   readonly name: string | undefined;
 }
 
-const EMPTY = "# A study is conditions, orders, a procedure, places, colours and texts.\nkey: my-study\n";
+const EMPTY =
+  "# A study is conditions, orders, a procedure, places, colours and texts.\nkey: my-study\n";
 
 export function NewStudyEditor({ from, name = "" }: NewStudyEditorProps): JSX.Element {
   const { t } = useTexts();
@@ -57,14 +58,23 @@ export function NewStudyEditor({ from, name = "" }: NewStudyEditorProps): JSX.El
     queryKey: ["studies", name, "to-copy"],
     queryFn: async () => {
       const study = await studies.get(name);
-      return drafts.edit(study.yaml, [{ path: ["key"], action: "set", value: `${study.key}-copy` }]);
+      return drafts.edit(study.yaml ?? "", [
+        { path: ["key"], action: "set", value: `${study.key}-copy` },
+      ]);
     },
     enabled: from === "study",
     gcTime: 0,
     staleTime: Number.POSITIVE_INFINITY,
   });
   const begin = (text: string) => (
-    <Begun id="new" studyKey={null} title={t("new.title")} stored="" begin={text} fresh={from !== "draft"} />
+    <Begun
+      id="new"
+      studyKey={null}
+      title={t("new.title")}
+      stored=""
+      begin={text}
+      fresh={from !== "draft"}
+    />
   );
   if (from === "study") return <Loaded query={source}>{({ yaml }) => begin(yaml)}</Loaded>;
   if (from === "template") {

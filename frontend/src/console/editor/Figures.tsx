@@ -24,7 +24,9 @@ export function Figures({ figures }: FiguresProps): JSX.Element | null {
         ] as const
       ).map(([key, value]) => (
         <div key={key}>
-          <dd>{key === "figures.minutes" ? `≈ ${number(value, language)}` : number(value, language)}</dd>
+          <dd>
+            {key === "figures.minutes" ? `≈ ${number(value, language)}` : number(value, language)}
+          </dd>
           <dt>{t(key)}</dt>
         </div>
       ))}

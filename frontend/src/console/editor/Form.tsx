@@ -87,21 +87,17 @@ function Inner({ spec, path }: { readonly spec: ObjectSpec; readonly path: reado
 }
 
 /** Before, in and after the blocks; the timed phases have a section of their own. */
-function ProcedureSection({ spec }: { readonly spec: ObjectSpec }): JSX.Element {
+function ProcedureSection({ spec }: { readonly spec: ObjectSpec }): JSX.Element | null {
   const { t } = useTexts();
   const procedure = inside(spec, "procedure");
   const block = inside(procedure, "block");
-  if (procedure?.kind !== "object" || block?.kind !== "object") return <></>;
+  if (procedure?.kind !== "object" || block?.kind !== "object") return null;
   return (
     <>
       <ObjectFields path={["procedure"]} spec={procedure} without={["block"]} />
       <fieldset className={classes.group}>
         <legend>{t("section.procedure.block")}</legend>
-        <ObjectFields
-          path={["procedure", "block"]}
-          spec={block}
-          without={["phases", "after"]}
-        />
+        <ObjectFields path={["procedure", "block"]} spec={block} without={["phases", "after"]} />
       </fieldset>
     </>
   );

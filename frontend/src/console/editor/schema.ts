@@ -18,7 +18,10 @@ interface Raw {
   readonly prefixItems?: readonly Raw[];
   readonly minItems?: number;
   readonly anyOf?: readonly Raw[];
-  readonly discriminator?: { readonly propertyName: string; readonly mapping: Record<string, string> };
+  readonly discriminator?: {
+    readonly propertyName: string;
+    readonly mapping: Record<string, string>;
+  };
   readonly additionalProperties?: Raw | boolean;
   readonly patternProperties?: Readonly<Record<string, Raw>>;
   readonly minimum?: number;

@@ -3,9 +3,9 @@
  * for the text after a change, and puts the difference into the field, where it can be undone.
  */
 import { redo, undo } from "@codemirror/commands";
+import { useDebouncedValue } from "@mantine/hooks";
 import { drafts } from "@shared/api/drafts";
 import type { CheckResult } from "@shared/api/types";
-import { useDebouncedValue } from "@mantine/hooks";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { type RefObject, useEffect, useRef, useState } from "react";
 import { type Change, type Path, pathText } from "./paths";

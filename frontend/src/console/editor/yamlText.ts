@@ -1,7 +1,12 @@
 /** The text field for YAML: line numbers, colours, problems at their lines, undo and redo. */
 import { defaultKeymap, history, historyKeymap, isolateHistory } from "@codemirror/commands";
 import { yaml } from "@codemirror/lang-yaml";
-import { bracketMatching, HighlightStyle, indentUnit, syntaxHighlighting } from "@codemirror/language";
+import {
+  bracketMatching,
+  HighlightStyle,
+  indentUnit,
+  syntaxHighlighting,
+} from "@codemirror/language";
 import { type Diagnostic, lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
 import { Compartment, EditorState, type Extension, Transaction } from "@codemirror/state";
 import {
@@ -19,7 +24,10 @@ const colours = HighlightStyle.define([
   { tag: [tags.propertyName, tags.definition(tags.propertyName)], color: "var(--accent)" },
   { tag: [tags.lineComment, tags.comment], color: "var(--ink-soft)", fontStyle: "italic" },
   { tag: [tags.number, tags.bool], color: "var(--sim)" },
-  { tag: [tags.punctuation, tags.separator, tags.squareBracket, tags.brace], color: "var(--ink-soft)" },
+  {
+    tag: [tags.punctuation, tags.separator, tags.squareBracket, tags.brace],
+    color: "var(--ink-soft)",
+  },
 ]);
 
 const look = EditorView.theme({
@@ -64,7 +72,7 @@ export function createYamlText(
 ): YamlText {
   const attributes = new Compartment();
   const own = (label: string, editable: boolean): Extension => [
-    EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false" }),
+    EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false", tabindex: "0" }),
     EditorView.editable.of(editable),
     EditorState.readOnly.of(!editable),
   ];

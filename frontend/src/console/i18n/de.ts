@@ -144,7 +144,7 @@ export const de: Record<keyof typeof en, string> = {
   "ledger.completedOf": "{{completed}} von {{total}}",
   "ledger.openCount": "{{count}} läuft",
   "ledger.blinded":
-    "Die Reihenfolgen sind der Versuchsleitung bis zum Ende der Studie verdeckt. Die Plätze stehen in der Folge, in der sie vergeben werden.",
+    "Diese Studie ist verblindet: eine Reihenfolge wird gezeigt, wenn ihr Platz abgeschlossen ist, der Durchführung nie. Die Plätze stehen in der Folge, in der sie vergeben werden.",
   "ledger.slotNumber": "Platz {{number}}",
   "ledger.position": "Plätze",
   "ledger.empty.title": "Der Plan ist noch nicht ausgelost",
@@ -173,6 +173,7 @@ export const de: Record<keyof typeof en, string> = {
   "simulated.session": "Simulierte Sitzung, {{scale}} × Echtzeit",
   "dashboard.sessions_one": "aus {{count}} abgeschlossenen Sitzung",
   "dashboard.sessions_other": "aus {{count}} abgeschlossenen Sitzungen",
+  "dashboard.drawing": "neuere Daten werden gezeichnet",
   "dashboard.empty.title": "Noch nichts zu zeichnen",
   "dashboard.empty.body":
     "Abbildungen erscheinen, sobald eine Sitzung dieser Art abgeschlossen ist.",

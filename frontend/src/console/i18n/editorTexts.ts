@@ -144,6 +144,21 @@ export const editorEn = {
   "field.panel_done": "Panel, done",
   "field.side": "Side",
   "field.side_touched": "Side, touched",
+  "field.safety": "Safety",
+  "field.stop_rules": "Stop rules",
+  "field.score": "Score",
+  "field.stop_at": "Stop at",
+  "field.warn_at": "Warn at",
+  "field.change_from": "Counted from the form",
+  "field.repeat_until_completions": "Ends after so many tasks",
+  "field.signature": "Signature",
+  "field.statements": "Statements to tick",
+  "field.optional": "May be left out",
+  "value.typed": "typed",
+  "value.drawn": "drawn",
+  "value.none": "none",
+  "value.left_to_right": "from left to right",
+  "value.right_to_left": "from right to left",
   "hint.seed": "Decides how the orders are mixed; any number.",
   "hint.replicates": "How many people do each order at first.",
   "value.all_permutations": "all permutations",
@@ -198,8 +213,7 @@ export const editorEn = {
     "Conditions or orders differ. Slots that are filled stay with the old ledger and are not counted in the new one.",
   "diff.sameLedger": "Balance is not affected: the ledger goes on",
   "diff.sameLedger.body": "Conditions and orders are the same.",
-  "diff.underWay_one":
-    "One session is planned or running; it keeps the version it was made with.",
+  "diff.underWay_one": "One session is planned or running; it keeps the version it was made with.",
   "diff.underWay_other":
     "{{count}} sessions are planned or running; they keep the version they were made with.",
   "diff.instruments": "Instruments whose wording differs:",
@@ -223,7 +237,8 @@ export const editorEn = {
   "versions.edit": "Edit the study",
   "versions.duplicate": "Duplicate",
   "versions.duplicate.key": "Key of the copy",
-  "versions.duplicate.hint": "Lower-case letters, digits, - and _. Ledger and sessions are its own.",
+  "versions.duplicate.hint":
+    "Lower-case letters, digits, - and _. Ledger and sessions are its own.",
   "versions.archive": "Archive",
   "versions.archive.title": "Archive this study?",
   "versions.archive.body":
@@ -302,8 +317,7 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
     "Die Schritte eines Besuchs. Alt mit den Pfeiltasten verschiebt den Schritt, dessen Knöpfe den Fokus haben.",
   "section.procedure.block": "In jedem Block",
   "section.tasks": "Aufgaben",
-  "section.tasks.lead":
-    "Die Aufgaben jedes Blocks. Aktive Zeit: Pausen und Rückwege zählen nicht.",
+  "section.tasks.lead": "Die Aufgaben jedes Blocks. Aktive Zeit: Pausen und Rückwege zählen nicht.",
   "section.safety": "Übelkeit und Sicherheit",
   "section.safety.lead":
     "Was nach jedem Block gefragt wird, und die übrigen Möglichkeiten der Studiensprache.",
@@ -311,7 +325,8 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "section.texts.lead":
     "Jeder Wortlaut, alle Sprachen nebeneinander. Eine leere Zeile beginnt einen neuen Absatz.",
   "section.blinding": "Verblindung",
-  "section.blinding.lead": "Wer die Bedingung nicht kennen darf, und was bei getrenntem Headset geschieht.",
+  "section.blinding.lead":
+    "Wer die Bedingung nicht kennen darf, und was bei getrenntem Headset geschieht.",
   "section.places": "Orte und Farben",
   "section.places.lead":
     "Meter von der Mitte des Startquadrats: x nach rechts, y nach oben, was vorn liegt, hat ein negatives z.",
@@ -382,6 +397,21 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "field.panel_done": "Rückwand, erledigt",
   "field.side": "Seite",
   "field.side_touched": "Seite, berührt",
+  "field.safety": "Sicherheit",
+  "field.stop_rules": "Abbruchregeln",
+  "field.score": "Wert",
+  "field.stop_at": "Abbruch ab",
+  "field.warn_at": "Warnung ab",
+  "field.change_from": "Gezählt ab dem Formular",
+  "field.repeat_until_completions": "Endet nach so vielen Aufgaben",
+  "field.signature": "Unterschrift",
+  "field.statements": "Anzukreuzende Aussagen",
+  "field.optional": "Darf ausgelassen werden",
+  "value.typed": "getippt",
+  "value.drawn": "gezeichnet",
+  "value.none": "keine",
+  "value.left_to_right": "von links nach rechts",
+  "value.right_to_left": "von rechts nach links",
   "hint.seed": "Bestimmt, wie die Reihenfolgen gemischt werden; eine beliebige Zahl.",
   "hint.replicates": "Wie viele Personen jede Reihenfolge zunächst machen.",
   "value.all_permutations": "alle Permutationen",
@@ -427,8 +457,7 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "dryRun.rule":
     "≈ ist eine Schätzung nach unserer Regel: {{opening}} s, um sich auf einer Seite zurechtzufinden, {{words}} Wörter pro Minute beim Lesen, {{likert}} s je Frage auf einer Skala. Pausen und Rückwege kommen hinzu.",
   "dryRun.broken": "Solange es Probleme gibt, ist kein Probelauf möglich",
-  "dryRun.broken.body":
-    "Berichtigen Sie sie unter Formular und Text; dann wird neu gezeichnet.",
+  "dryRun.broken.body": "Berichtigen Sie sie unter Formular und Text; dann wird neu gezeichnet.",
   "changes.broken": "Änderungen lassen sich nennen, sobald es keine Probleme gibt",
   "diff.same": "Der Inhalt ist derselbe",
   "diff.identical": "Kein Zeichen unterscheidet sich.",

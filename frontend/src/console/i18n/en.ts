@@ -143,7 +143,7 @@ export const en = {
   "ledger.completedOf": "{{completed}} of {{total}}",
   "ledger.openCount": "{{count}} running",
   "ledger.blinded":
-    "The orders are hidden from the experimenter until the study is over. Slots are shown in the order in which they are given out.",
+    "This study is blinded: an order is shown once its slot is completed, and never to operators. Slots stand in the order in which they are given out.",
   "ledger.slotNumber": "Slot {{number}}",
   "ledger.position": "Slots",
   "ledger.empty.title": "The ledger is not drawn yet",
@@ -172,6 +172,7 @@ export const en = {
   "simulated.session": "Simulated session, {{scale}} × real time",
   "dashboard.sessions_one": "from {{count}} completed session",
   "dashboard.sessions_other": "from {{count}} completed sessions",
+  "dashboard.drawing": "newer data are being drawn",
   "dashboard.empty.title": "Nothing to draw yet",
   "dashboard.empty.body": "Figures appear as soon as a session of this kind is completed.",
   "dashboard.loading": "Drawing",

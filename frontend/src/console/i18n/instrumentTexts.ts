@@ -32,8 +32,7 @@ export const instrumentsEn = {
   "instrument.recode": "Before scoring, every number x becomes",
   "instrument.formula": "Formula",
   "instrument.range": "Range",
-  "instrument.missing":
-    "A score has no value as soon as one of its items has no answer.",
+  "instrument.missing": "A score has no value as soon as one of its items has no answer.",
   "instrument.steps": "{{low}} to {{high}} in steps of {{step}}",
   "instrument.fromTo": "{{low}} to {{high}}",
   "instrument.type.text": "text",

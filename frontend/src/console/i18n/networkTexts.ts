@@ -11,7 +11,7 @@ export const networkEn = {
   "network.mode.without_tls.body":
     "Everybody on it can read passwords, answers and movement. Headsets refuse to enter VR. Start the server with --lan instead.",
   "network.addresses": "Addresses",
-  "network.addresses.best": "Best",
+  "network.addresses.devices": "Tablets and headsets",
   "network.addresses.tablet": "QR code of the tablet's page, {{url}}",
   "network.addresses.scan": "The tablet's page",
   "network.local": "This computer",
@@ -54,7 +54,7 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.mode.without_tls.body":
     "Jeder darin kann Kennwörter, Antworten und Bewegung lesen. Headsets gehen nicht in VR. Den Server stattdessen mit --lan starten.",
   "network.addresses": "Adressen",
-  "network.addresses.best": "Beste",
+  "network.addresses.devices": "Tablets und Headsets",
   "network.addresses.tablet": "QR-Code der Seite für das Tablet, {{url}}",
   "network.addresses.scan": "Seite für das Tablet",
   "network.local": "Dieser Rechner",

@@ -72,7 +72,8 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
   const field = useRef<YamlText | null>(null);
   const query = useQuery({
     queryKey: ["check-instrument", settled],
-    queryFn: () => instruments.check(settled),
+    // The text comes with its preview, so that scores are never asked of another file.
+    queryFn: async () => ({ ...(await instruments.check(settled)), text: settled }),
     placeholderData: keepPreviousData,
     staleTime: Number.POSITIVE_INFINITY,
     gcTime: 30_000,
@@ -90,7 +91,10 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
     onSuccess: async (instrument) => {
       dropDraft(kept);
       await queries.invalidateQueries({ queryKey: ["instruments"] });
-      notifications.show({ message: t("instrumentEditor.saved", { key: instrument.key }) });
+      notifications.show({
+        message: t("instrumentEditor.saved", { key: instrument.key }),
+        closeButtonProps: { "aria-label": t("action.close") },
+      });
       navigate(`/instruments/${instrument.key}`);
     },
   });
@@ -138,7 +142,9 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
             <div className={layout.problemList}>
               <Problems
                 problems={problems}
-                onPick={(line) => field.current !== null && showLine(field.current.view, line, true)}
+                onPick={(line) =>
+                  field.current !== null && showLine(field.current.view, line, true)
+                }
               />
             </div>
           )}
@@ -147,7 +153,7 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
           {preview === null ? (
             <Notice tone="info" title={t("instrumentEditor.broken")} />
           ) : (
-            <TryIt preview={preview} yaml={settled} />
+            <TryIt preview={preview} yaml={check?.text ?? ""} />
           )}
         </section>
       </div>

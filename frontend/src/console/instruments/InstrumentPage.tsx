@@ -8,6 +8,7 @@ import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../i18n";
+import { useMay } from "../may";
 import { instrumentQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/useTitle";
@@ -59,6 +60,7 @@ interface InstrumentProps {
 function Instrument({ instrument, tab }: InstrumentProps): JSX.Element {
   const { t, language } = useTexts();
   const [, navigate] = useLocation();
+  const may = useMay();
   const title = inLanguage(instrument.title, language);
   useTitle(title);
   return (
@@ -73,13 +75,15 @@ function Instrument({ instrument, tab }: InstrumentProps): JSX.Element {
             <Used instrument={instrument} />
           </div>
         </div>
-        <Button
-          component={Link}
-          href={`/instruments/${instrument.key}/edit`}
-          leftSection={<Icon name="document" size={17} />}
-        >
-          {t("instrument.edit")}
-        </Button>
+        {may("design") && (
+          <Button
+            component={Link}
+            href={`/instruments/${instrument.key}/edit`}
+            leftSection={<Icon name="document" size={17} />}
+          >
+            {t("instrument.edit")}
+          </Button>
+        )}
       </div>
       <Tabs
         value={tab}
@@ -145,16 +149,25 @@ function Files({ instrument }: { readonly instrument: InstrumentDetail }): JSX.E
             {index === 0 && ` (${t("instrument.newest")})`},{" "}
             {t("instrument.stored", { time: dateTime(version.created_at, language) })},{" "}
             {t("instruments.usedBy")}{" "}
-            {version.used_by.length === 0 ? t("instruments.usedByNone") : version.used_by.join(", ")}
+            {version.used_by.length === 0
+              ? t("instruments.usedByNone")
+              : version.used_by.join(", ")}
             <div className={classes.hash}>sha256 {version.content_hash}</div>
           </li>
         ))}
       </ul>
-      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls has to take the focus */}
-      {/* biome-ignore lint/a11y/useSemanticElements: a section may not be preformatted */}
-      <pre className={classes.yaml} tabIndex={0} role="region" aria-label={t("instrument.tab.file")}>
-        {instrument.yaml}
-      </pre>
+      <Yaml text={instrument.yaml} />
     </>
+  );
+}
+
+function Yaml({ text }: { readonly text: string }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls has to take the focus
+    // biome-ignore lint/a11y/useSemanticElements: a section may not be preformatted
+    <pre className={classes.yaml} tabIndex={0} role="region" aria-label={t("instrument.tab.file")}>
+      {text}
+    </pre>
   );
 }

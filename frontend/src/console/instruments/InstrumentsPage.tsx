@@ -8,6 +8,7 @@ import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
+import { useMay } from "../may";
 import { instrumentsQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
@@ -16,6 +17,7 @@ import classes from "./Instruments.module.css";
 
 export function InstrumentsPage(): JSX.Element {
   const { t } = useTexts();
+  const may = useMay();
   useTitle(t("instruments.title"));
   return (
     <>
@@ -24,13 +26,15 @@ export function InstrumentsPage(): JSX.Element {
           <Title order={1}>{t("instruments.title")}</Title>
           <p className={classes.lead}>{t("instruments.lead")}</p>
         </div>
-        <Button
-          component={Link}
-          href="/instruments/new"
-          leftSection={<Icon name="add" size={18} />}
-        >
-          {t("instruments.new")}
-        </Button>
+        {may("design") && (
+          <Button
+            component={Link}
+            href="/instruments/new"
+            leftSection={<Icon name="add" size={18} />}
+          >
+            {t("instruments.new")}
+          </Button>
+        )}
       </div>
       <Loaded query={useQuery(instrumentsQuery)}>
         {(all) =>

@@ -83,13 +83,11 @@ interface AnswersProps {
   readonly scale: Scale | null;
 }
 
-function Answers({ item, scale }: AnswersProps): JSX.Element {
+function Answers({ item, scale }: AnswersProps): JSX.Element | null {
   const { t, language } = useTexts();
   switch (item.type) {
     case "likert":
-      return scale === null ? (
-        <></>
-      ) : (
+      return scale === null ? null : (
         <>
           {(scale.step ?? 1) === 1
             ? t("instrument.fromTo", { low: scale.minimum, high: scale.maximum })

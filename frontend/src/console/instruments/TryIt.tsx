@@ -3,8 +3,8 @@ import { Button, Center, Loader, SegmentedControl } from "@mantine/core";
 import { useDebouncedValue } from "@mantine/hooks";
 import { instruments, type TryResult } from "@shared/api/drafts";
 import type { Administration, InstrumentPreview } from "@shared/api/types";
-import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
 import { number } from "@shared/format";
+import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { inLanguage } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
@@ -16,8 +16,9 @@ import { useTexts } from "../i18n";
 import classes from "./Instruments.module.css";
 
 const FormView = lazy(async () => ({ default: (await import("@shared/forms/FormView")).FormView }));
-const answersOf = async (...given: Parameters<typeof import("@shared/forms/surveyJson").answersOf>) =>
-  (await import("@shared/forms/surveyJson")).answersOf(...given);
+const answersOf = async (
+  ...given: Parameters<typeof import("@shared/forms/surveyJson").answersOf>
+) => (await import("@shared/forms/surveyJson")).answersOf(...given);
 
 interface TryItProps {
   readonly preview: InstrumentPreview;

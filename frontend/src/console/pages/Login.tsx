@@ -1,39 +1,37 @@
-import { Button, PasswordInput, Stack, Text, TextInput, Title } from "@mantine/core";
-import { Mark } from "@shared/ui/Mark";
+import { Button, PasswordInput, Stack, Text, TextInput } from "@mantine/core";
+import type { Account } from "@shared/api/types";
+import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { signIn } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { Echo } from "./Echo";
-import classes from "./Login.module.css";
+import { Front } from "./Front";
 
-export function Login(): JSX.Element {
+/** `ended`: who was here when the sign-in ended by itself. */
+export function Login({ ended = null }: { readonly ended?: Account | null }): JSX.Element {
   const { t } = useTexts();
   return (
-    <main className={classes.page}>
-      <div className={classes.figure}>
-        <Echo />
-      </div>
-      <div className={classes.form}>
-        <div className={classes.brand}>
-          <Mark size={32} />
-          {t("app.name")}
+    <Front title={t("login.title")}>
+      <Text c="dimmed" mt={4} mb="xl">
+        {t("login.lead")}
+      </Text>
+      {ended !== null && (
+        <div style={{ marginBottom: 20 }}>
+          <Notice tone="warn" icon="lock" title={t("login.ended.title")}>
+            {t("login.ended.body")}
+          </Notice>
         </div>
-        <Title order={1}>{t("login.title")}</Title>
-        <Text c="dimmed" mt={4} mb="xl">
-          {t("login.lead")}
-        </Text>
-        <LoginForm />
-      </div>
-    </main>
+      )}
+      <LoginForm username={ended?.username ?? ""} />
+    </Front>
   );
 }
 
-function LoginForm(): JSX.Element {
+function LoginForm({ username: known }: { readonly username: string }): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
-  const [username, setUsername] = useState("");
+  const [username, setUsername] = useState(known);
   const [password, setPassword] = useState("");
   const login = useMutation({ mutationFn: () => signIn(queries, username.trim(), password) });
   return (
@@ -49,7 +47,7 @@ function LoginForm(): JSX.Element {
           size="md"
           autoComplete="username"
           autoCapitalize="none"
-          autoFocus
+          autoFocus={known === ""}
           required
           withAsterisk={false}
           value={username}
@@ -59,6 +57,7 @@ function LoginForm(): JSX.Element {
           label={t("login.password")}
           size="md"
           autoComplete="current-password"
+          autoFocus={known !== ""}
           required
           withAsterisk={false}
           value={password}
@@ -69,7 +68,7 @@ function LoginForm(): JSX.Element {
           {t("login.submit")}
         </Button>
         <Text size="sm" c="dimmed">
-          {t("login.hint")}
+          {t("login.hint")} {t("login.forgotten")}
         </Text>
       </Stack>
     </form>

@@ -6,23 +6,20 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
-import { studiesQuery } from "../queries";
+import { useMay } from "../may";
+import { archivedQuery, studiesQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
 import { KINDS } from "../ui/KindFilter";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/useTitle";
-import { ImportDialog } from "./ImportDialog";
 import classes from "./Studies.module.css";
 
 export function StudiesPage(): JSX.Element {
   const { t } = useTexts();
-  const [importing, setImporting] = useState(false);
+  const may = useMay();
+  const [archived, setArchived] = useState(false);
+  const query = useQuery(archived ? archivedQuery : studiesQuery);
   useTitle(t("app.studies"));
-  const add = (
-    <Button leftSection={<Icon name="add" size={18} />} onClick={() => setImporting(true)}>
-      {t("studies.add")}
-    </Button>
-  );
   return (
     <>
       <div className={classes.head}>
@@ -30,12 +27,30 @@ export function StudiesPage(): JSX.Element {
           <Title order={1}>{t("app.studies")}</Title>
           <Text c="dimmed">{t("studies.lead")}</Text>
         </div>
-        {add}
+        <div className={classes.actions}>
+          <Button variant="subtle" onClick={() => setArchived(!archived)}>
+            {t(archived ? "versions.hide" : "versions.show")}
+          </Button>
+          {may("design") && (
+            <Button component={Link} href="/new" leftSection={<Icon name="add" size={18} />}>
+              {t("new.title")}
+            </Button>
+          )}
+        </div>
       </div>
-      <Loaded query={useQuery(studiesQuery)}>
-        {(studies) => (studies.length === 0 ? <NoStudies /> : <Cards studies={studies} />)}
+      <Loaded query={query}>
+        {(studies) =>
+          studies.length > 0 ? (
+            <Cards studies={studies} />
+          ) : archived ? (
+            <EmptyState icon="document" title={t("versions.noneArchived")}>
+              {t("versions.noneArchived.body")}
+            </EmptyState>
+          ) : (
+            <NoStudies />
+          )
+        }
       </Loaded>
-      <ImportDialog opened={importing} studyKey={null} onClose={() => setImporting(false)} />
     </>
   );
 }

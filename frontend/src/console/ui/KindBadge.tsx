@@ -1,4 +1,4 @@
-/** What a session's data are: people's, a simulation's, or a test's. Shape and word, not colour alone. */
+/** What a session's data are: people's, a simulation's, a test's, or an expert's. Shape and word, not colour alone. */
 import type { Kind } from "@shared/api/types";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import type { JSX } from "react";
@@ -9,6 +9,7 @@ const ICONS: Readonly<Record<Kind, IconName>> = {
   people: "people",
   simulated: "body",
   test: "flag",
+  expert: "talk",
 };
 
 export function KindBadge({ kind }: { readonly kind: Kind }): JSX.Element {

@@ -1,14 +1,16 @@
 /** Which sessions are looked at; people, simulated and test are never mixed. */
 import { SegmentedControl } from "@mantine/core";
-import type { Kind } from "@shared/api/types";
+import type { DataKind, Kind } from "@shared/api/types";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 
-export const KINDS: readonly Kind[] = ["people", "simulated", "test"];
+const DATA_KINDS: readonly DataKind[] = ["people", "simulated", "test"];
+/** All there are: experts' sessions are listed with the others, but never analysed. */
+export const KINDS: readonly Kind[] = [...DATA_KINDS, "expert"];
 
 interface KindFilterProps {
-  readonly kind: Kind;
-  readonly onChange: (kind: Kind) => void;
+  readonly kind: DataKind;
+  readonly onChange: (kind: DataKind) => void;
 }
 
 export function KindFilter({ kind, onChange }: KindFilterProps): JSX.Element {
@@ -17,8 +19,8 @@ export function KindFilter({ kind, onChange }: KindFilterProps): JSX.Element {
     <SegmentedControl
       aria-label={t("kind.label")}
       value={kind}
-      onChange={(value) => onChange(value as Kind)}
-      data={KINDS.map((value) => ({ value, label: t(`kind.${value}`) }))}
+      onChange={(value) => onChange(value as DataKind)}
+      data={DATA_KINDS.map((value) => ({ value, label: t(`kind.${value}`) }))}
     />
   );
 }

@@ -9,6 +9,7 @@ import type {
   CodebookColumn,
   Command,
   Dashboard,
+  DataKind,
   Device,
   Kind,
   Ledger,
@@ -62,11 +63,11 @@ export const studies = {
         body: { time_scale: 1, ...wish },
       }),
     ),
-  dashboard: (key: string, kind: Kind) =>
+  dashboard: (key: string, kind: DataKind) =>
     answer<Dashboard>(
       server.GET("/api/studies/{key}/dashboard", { params: { path: { key }, query: { kind } } }),
     ),
-  exportUrl: (key: string, kind: Kind) =>
+  exportUrl: (key: string, kind: DataKind) =>
     `/api/studies/${encodeURIComponent(key)}/export?kind=${kind}`,
   codebook: (key: string) =>
     answer<readonly CodebookColumn[]>(server.GET("/api/studies/{key}/codebook", study(key))),

@@ -4,6 +4,170 @@
  */
 
 export interface paths {
+    readonly "/api/accounts": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Accounts
+         * @description Everybody who has or had an account.
+         */
+        readonly get: operations["get_accounts_api_accounts_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/accounts/{account_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        /**
+         * Patch Account
+         * @description Change role or studies, or close and reopen an account; logins of a closed one end.
+         */
+        readonly patch: operations["patch_account_api_accounts__account_id__patch"];
+        readonly trace?: never;
+    };
+    readonly "/api/accounts/{account_id}/logins": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Logins
+         * @description End every login of somebody, such as one on a lost laptop.
+         */
+        readonly delete: operations["delete_logins_api_accounts__account_id__logins_delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/audit": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Audit
+         * @description What was done, newest first; an `action` that ends with a dot takes all that begin so.
+         */
+        readonly get: operations["get_audit_api_audit_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/audit/check": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Audit Check
+         * @description Recompute the whole chain.
+         */
+        readonly get: operations["get_audit_check_api_audit_check_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/calibrations": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Calibrations
+         * @description Every measurement, by equipment, the newest first.
+         */
+        readonly get: operations["get_calibrations_api_calibrations_get"];
+        readonly put?: never;
+        /**
+         * Post Calibration
+         * @description Record a measurement of an equipment's own delay.
+         */
+        readonly post: operations["post_calibration_api_calibrations_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/calibrations/{calibration_id}/retire": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Retirement
+         * @description Say that a measurement was a mistake; it stays in the history.
+         */
+        readonly post: operations["post_retirement_api_calibrations__calibration_id__retire_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/copies/{copy_id}/destroyed": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Destroyed
+         * @description Put on record that a copy was destroyed; saying it again changes nothing.
+         */
+        readonly post: operations["post_destroyed_api_copies__copy_id__destroyed_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/devices/pair": {
         readonly parameters: {
             readonly query?: never;
@@ -128,6 +292,90 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/invitations": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Invitations
+         * @description Every invitation, also those used up, the newest first.
+         */
+        readonly get: operations["get_invitations_api_invitations_get"];
+        readonly put?: never;
+        /**
+         * Post Invitation
+         * @description Make a link that lets one person make an account with this role.
+         */
+        readonly post: operations["post_invitation_api_invitations_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/invitations/{invitation_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Invitation
+         * @description Take an invitation back.
+         */
+        readonly delete: operations["delete_invitation_api_invitations__invitation_id__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/invitations/accept": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Accept
+         * @description Make the account and log in.
+         */
+        readonly post: operations["post_accept_api_invitations_accept_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/invitations/look": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Look
+         * @description What an invitation is for.
+         */
+        readonly post: operations["post_look_api_invitations_look_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/login": {
         readonly parameters: {
             readonly query?: never;
@@ -159,7 +407,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Logout
-         * @description End this login.
+         * @description End this login; pages that are open with it are shut out at once.
          */
         readonly post: operations["post_logout_api_logout_post"];
         readonly delete?: never;
@@ -181,6 +429,26 @@ export interface paths {
          */
         readonly get: operations["get_me_api_me_get"];
         readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/me/password": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        /**
+         * Put Password
+         * @description Change one's own password; logins elsewhere end.
+         */
+        readonly put: operations["put_password_api_me_password_put"];
         readonly post?: never;
         readonly delete?: never;
         readonly options?: never;
@@ -308,6 +576,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/consent": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Consent
+         * @description The newest consent of a session with everything it was given to; null where there is none.
+         */
+        readonly get: operations["get_consent_api_sessions__session_id__consent_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/sessions/{session_id}/devices/{device_id}": {
         readonly parameters: {
             readonly query?: never;
@@ -359,6 +647,8 @@ export interface paths {
          * Get Live
          * @description News of a session: `session` on every change, `telemetry` a few times a second, and
          *     `storage` at first and when the record ceases to be written, or the disk gets low.
+         *
+         *     Ends when the login does.
          */
         readonly get: operations["get_live_api_sessions__session_id__live_get"];
         readonly put?: never;
@@ -409,6 +699,28 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/reveal": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Reveal
+         * @description Show a blinded session's condition before it is over, for a reason that goes on record.
+         *
+         *     Asking again changes nothing. An operator stays blind.
+         */
+        readonly post: operations["post_reveal_api_sessions__session_id__reveal_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/sessions/{session_id}/streams": {
         readonly parameters: {
             readonly query?: never;
@@ -449,6 +761,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/submissions/{submission_id}/corrections": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Correction
+         * @description Correct an answer: the first one is kept, the scores are computed anew.
+         */
+        readonly post: operations["post_correction_api_sessions__session_id__submissions__submission_id__corrections_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/studies": {
         readonly parameters: {
             readonly query?: never;
@@ -458,7 +790,7 @@ export interface paths {
         };
         /**
          * Get Studies
-         * @description All studies with their newest version; `archived`: those that were put away instead.
+         * @description Every study of the caller with its newest version; `archived`: those put away instead.
          */
         readonly get: operations["get_studies_api_studies_get"];
         readonly put?: never;
@@ -482,7 +814,7 @@ export interface paths {
         };
         /**
          * Get Study
-         * @description One study in full.
+         * @description One study in full; an operator of a blinded study does not get its protocol.
          */
         readonly get: operations["get_study_api_studies__key__get"];
         readonly put?: never;
@@ -533,6 +865,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/studies/{key}/copies": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Copies
+         * @description Copies of the study's data that left the database, newest first, and all backups.
+         */
+        readonly get: operations["get_copies_api_studies__key__copies_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/studies/{key}/dashboard": {
         readonly parameters: {
             readonly query?: never;
@@ -542,7 +894,7 @@ export interface paths {
         };
         /**
          * Get Dashboard
-         * @description The figures of a study's sessions of one kind.
+         * @description The figures of a study's sessions of one kind, as drawn last; ask again while not current.
          */
         readonly get: operations["get_dashboard_api_studies__key__dashboard_get"];
         readonly put?: never;
@@ -627,10 +979,72 @@ export interface paths {
         /**
          * Get Ledger
          * @description Every slot with its attempts; before the first join, the slots as they will be.
+         *
+         *     In a blinded study only the orders of completed slots are told, and to operators none.
          */
         readonly get: operations["get_ledger_api_studies__key__ledger_get"];
         readonly put?: never;
         readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/participants": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Participants
+         * @description Who took part, newest first, with their sessions; erased ones as tombstones.
+         */
+        readonly get: operations["get_participants_api_studies__key__participants_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/participants/{participant_id}/access": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Access
+         * @description Everything about one participant as a ZIP: a page to read, and the data.
+         */
+        readonly get: operations["get_access_api_studies__key__participants__participant_id__access_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/participants/{participant_id}/erasure": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Erasure
+         * @description Erase everything about a participant; what stays is that there were sessions.
+         */
+        readonly post: operations["post_erasure_api_studies__key__participants__participant_id__erasure_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -675,6 +1089,30 @@ export interface paths {
          * @description Join a study: take the next slot of the ledger for a participant.
          */
         readonly post: operations["create_session_api_studies__key__sessions_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/suggestions": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Suggestions
+         * @description Every suggestion for a study, newest version first.
+         */
+        readonly get: operations["get_suggestions_api_studies__key__suggestions_get"];
+        readonly put?: never;
+        /**
+         * Post Suggestion
+         * @description Advise about a version of a study, or about one of its steps.
+         */
+        readonly post: operations["post_suggestion_api_studies__key__suggestions_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -801,6 +1239,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/suggestions/{suggestion_id}/decision": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Decision
+         * @description Adopt or decline a suggestion; this is done once.
+         */
+        readonly post: operations["post_decision_api_suggestions__suggestion_id__decision_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/tablet/acknowledge": {
         readonly parameters: {
             readonly query?: never;
@@ -815,6 +1273,26 @@ export interface paths {
          * @description Consent given, or instructions read; sending it twice does no harm.
          */
         readonly post: operations["post_acknowledge_api_tablet_acknowledge_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/tablet/consent": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Consent
+         * @description A consent with what the study asks for; sending it twice does no harm.
+         */
+        readonly post: operations["post_consent_api_tablet_consent_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -926,14 +1404,29 @@ export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
         /**
+         * Acceptance
+         * @description An invitation accepted under a name and password of one's own choice.
+         */
+        readonly Acceptance: {
+            /** Password */
+            readonly password: string;
+            /** Token */
+            readonly token: string;
+            /** Username */
+            readonly username: string;
+        };
+        /**
          * AccountView
          * @description Who is signed in.
          */
         readonly AccountView: {
             /** Id */
             readonly id: string;
-            /** Role */
-            readonly role: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            readonly role: "admin" | "experimenter" | "operator" | "analyst";
             /** Username */
             readonly username: string;
         };
@@ -1054,6 +1547,53 @@ export interface components {
             readonly session_id: string;
         };
         /**
+         * AuditCheckView
+         * @description Whether every entry is as it was written; `broken_at` is the first that is not.
+         */
+        readonly AuditCheckView: {
+            /** Broken At */
+            readonly broken_at: number | null;
+            /** Entries */
+            readonly entries: number;
+            /** Ok */
+            readonly ok: boolean;
+        };
+        /**
+         * AuditPage
+         * @description Entries, newest first; `next_before` asks for the page behind, and is null at the end.
+         */
+        readonly AuditPage: {
+            /** Entries */
+            readonly entries: readonly components["schemas"]["AuditView"][];
+            /** Next Before */
+            readonly next_before: number | null;
+        };
+        /**
+         * AuditView
+         * @description One act. `actor` is `account:NAME`, a device, or `nobody` before a login.
+         */
+        readonly AuditView: {
+            /** Action */
+            readonly action: string;
+            /** Actor */
+            readonly actor: string;
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** Details */
+            readonly details: {
+                readonly [key: string]: unknown;
+            };
+            /** Hash */
+            readonly hash: string;
+            /** Seq */
+            readonly seq: number;
+            /** Subject */
+            readonly subject: string;
+        };
+        /**
          * CableView
          * @description A headset on this machine's USB cable: run `command`, then open `url` in the headset.
          */
@@ -1062,6 +1602,46 @@ export interface components {
             readonly command: string;
             /** Url */
             readonly url: string;
+        };
+        /**
+         * CalibrationView
+         * @description A stored measurement; `current` marks the one of its equipment that holds.
+         */
+        readonly CalibrationView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Current */
+            readonly current: boolean;
+            /** Equipment */
+            readonly equipment: string;
+            /** Id */
+            readonly id: string;
+            /**
+             * Measured On
+             * Format: date
+             */
+            readonly measured_on: string;
+            /** Method */
+            readonly method: string;
+            /** Motion To Photon Ms */
+            readonly motion_to_photon_ms: number;
+            /** Note */
+            readonly note: string;
+            /** Retired At */
+            readonly retired_at: string | null;
+            /** Retired By */
+            readonly retired_by: string | null;
+            /** Retired Reason */
+            readonly retired_reason: string | null;
+            /** Samples */
+            readonly samples: number;
+            /** Sd Ms */
+            readonly sd_ms: number;
         };
         /**
          * CertificateView
@@ -1129,7 +1709,7 @@ export interface components {
          * @description Whether a file can be used, with every problem and its place.
          *
          *     `tree`: the values of the file as they stand, whenever it can be read at all, so that a form can
-         *     show them while there are problems.
+         *     show them while there are problems. `lines`: where each value stands, by its path.
          */
         readonly CheckResult: {
             /** Content Hash */
@@ -1138,6 +1718,13 @@ export interface components {
             readonly design_hash?: string | null;
             /** Key */
             readonly key?: string | null;
+            /**
+             * Lines
+             * @default {}
+             */
+            readonly lines: {
+                readonly [key: string]: number;
+            };
             /** Ok */
             readonly ok: boolean;
             /**
@@ -1179,6 +1766,7 @@ export interface components {
             /** Expected Version */
             readonly expected_version: number;
             readonly height_m?: components["schemas"]["Height"] | null;
+            readonly paper_consent?: components["schemas"]["PaperConsent"] | null;
             /** Reason */
             readonly reason?: string | null;
             /** Step Index */
@@ -1189,7 +1777,7 @@ export interface components {
              * Type
              * @enum {string}
              */
-            readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "note";
+            readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "note";
         };
         /**
          * CompletionReceipt
@@ -1208,6 +1796,179 @@ export interface components {
             readonly rederived: number;
             /** Stored */
             readonly stored: number;
+        };
+        /**
+         * ConsentForm
+         * @description What a consent asks for besides its text.
+         */
+        readonly ConsentForm: {
+            /**
+             * Signature
+             * @enum {string}
+             */
+            readonly signature: "none" | "typed" | "drawn";
+            /** Statements */
+            readonly statements: readonly components["schemas"]["StatementForm"][];
+        };
+        /**
+         * ConsentGiven
+         * @description What the participant did on the tablet; `ticked` names statements by their index.
+         */
+        readonly ConsentGiven: {
+            /** Name */
+            readonly name?: string | null;
+            /** Signature */
+            readonly signature?: string | null;
+            /** Step Index */
+            readonly step_index: number;
+            /**
+             * Ticked
+             * @default []
+             */
+            readonly ticked: readonly number[];
+        };
+        /**
+         * ConsentRecord
+         * @description Who agreed to what, and when: everything a printed record shows.
+         *
+         *     `text` and `statements` are taken from the study version that was shown; `text_matches` says
+         *     that the text still has the hash that was stored with the consent. Of an erased consent only
+         *     `erased` and the time are left.
+         */
+        readonly ConsentRecord: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Erased */
+            readonly erased: boolean;
+            /** Language */
+            readonly language: string;
+            /**
+             * Mode
+             * @enum {string}
+             */
+            readonly mode: "tablet" | "operator" | "paper";
+            /** Name */
+            readonly name: string | null;
+            readonly paper: components["schemas"]["PaperConsent"] | null;
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Records */
+            readonly records: number;
+            /** Session Id */
+            readonly session_id: string;
+            /** Signature */
+            readonly signature: string | null;
+            /**
+             * Signature Wanted
+             * @enum {string}
+             */
+            readonly signature_wanted: "none" | "typed" | "drawn";
+            /** Simulated */
+            readonly simulated: boolean;
+            /** Statements */
+            readonly statements: readonly components["schemas"]["StatementRecord"][];
+            /** Study Key */
+            readonly study_key: string;
+            /** Study Title */
+            readonly study_title: string;
+            /** Study Version */
+            readonly study_version: number;
+            /** Text */
+            readonly text: string;
+            /** Text Hash */
+            readonly text_hash: string;
+            /** Text Matches */
+            readonly text_matches: boolean;
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * CopyLeft
+         * @description A copy outside the database that may hold what was erased.
+         */
+        readonly CopyLeft: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** Destroyed At */
+            readonly destroyed_at: string | null;
+            /** Destroyed By */
+            readonly destroyed_by: string | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "export" | "access" | "backup";
+            /** Place */
+            readonly place: string;
+        };
+        /**
+         * CopyView
+         * @description A copy that left the database: an export, an access copy or a backup.
+         *
+         *     `place`: a file, or who downloaded it. `bytes` where it is known.
+         */
+        readonly CopyView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Bytes */
+            readonly bytes: number | null;
+            /** Destroyed At */
+            readonly destroyed_at: string | null;
+            /** Destroyed By */
+            readonly destroyed_by: string | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "export" | "access" | "backup";
+            /** Place */
+            readonly place: string;
+            /** Session Kind */
+            readonly session_kind: string | null;
+            /** Sessions */
+            readonly sessions: number | null;
+            /** Study Key */
+            readonly study_key: string | null;
+        };
+        /**
+         * CorrectionView
+         * @description A later value of one answer. `previous` is what counted before; null is "left out".
+         */
+        readonly CorrectionView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Item */
+            readonly item: string;
+            /** Previous */
+            readonly previous: boolean | number | string | null;
+            /** Reason */
+            readonly reason: string;
+            /** Value */
+            readonly value: boolean | number | string | null;
         };
         /**
          * Credentials
@@ -1244,11 +2005,18 @@ export interface components {
         };
         /**
          * DashboardView
-         * @description The figures of a study's sessions of one kind.
+         * @description Figures as they were drawn at `drawn_at`; not `current`: newer data are being drawn.
          */
         readonly DashboardView: {
             /** Avatar */
             readonly avatar: readonly string[];
+            /** Current */
+            readonly current: boolean;
+            /**
+             * Drawn At
+             * Format: date-time
+             */
+            readonly drawn_at: string;
             /** Figures */
             readonly figures: readonly components["schemas"]["FigureView"][];
             /** Kind */
@@ -1259,6 +2027,19 @@ export interface components {
             readonly n_sessions: number;
             /** Simulated */
             readonly simulated: boolean;
+        };
+        /**
+         * Decision
+         * @description What becomes of a suggestion; `adopted_in` is the number of the version that has it.
+         */
+        readonly Decision: {
+            /** Adopted In */
+            readonly adopted_in?: number | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "adopted" | "declined";
         };
         /**
          * DeviceView
@@ -1340,6 +2121,53 @@ export interface components {
             readonly yaml: string;
         };
         /**
+         * ErasureRequest
+         * @description Erase everything about a participant. `confirm` is their code, typed again.
+         */
+        readonly ErasureRequest: {
+            /** Confirm */
+            readonly confirm: string;
+            /**
+             * Reason Code
+             * @enum {string}
+             */
+            readonly reason_code: "withdrawn" | "requested" | "retention" | "mistake";
+        };
+        /**
+         * ErasureView
+         * @description A tombstone. `removed`: rows by table.
+         *
+         *     `overwritten`: no byte of them is left in the database. Else the next start overwrites them.
+         */
+        readonly ErasureView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Id */
+            readonly id: string;
+            /** Overwritten */
+            readonly overwritten: boolean;
+            /** Reason Code */
+            readonly reason_code: string;
+            /** Remaining */
+            readonly remaining: readonly components["schemas"]["CopyLeft"][];
+            /** Removed */
+            readonly removed: {
+                readonly [key: string]: number;
+            };
+        };
+        /**
+         * ErrorBody
+         * @description The body of every answer that is not a success.
+         */
+        readonly ErrorBody: {
+            readonly error: components["schemas"]["Refusal"];
+        };
+        /**
          * EstimateRule
          * @description The rule by which steps without a set duration are estimated; all in seconds.
          */
@@ -1374,7 +2202,7 @@ export interface components {
                 readonly [key: string]: unknown;
             };
             /** Hash */
-            readonly hash: string;
+            readonly hash: string | null;
             /** Seq */
             readonly seq: number;
             /** Type */
@@ -1456,6 +2284,22 @@ export interface components {
             readonly stated?: number | null;
         };
         /**
+         * HeldView
+         * @description Which stop rule holds the session: the limit `stop_at` on a score, or on its rise.
+         */
+        readonly HeldView: {
+            /** Instrument */
+            readonly instrument: string;
+            /** Is Rise */
+            readonly is_rise: boolean;
+            /** Rule */
+            readonly rule: number;
+            /** Score */
+            readonly score: string;
+            /** Stop At */
+            readonly stop_at: number;
+        };
+        /**
          * HelpView
          * @description The page, over plain http, on which a device gets the lab's certificate.
          */
@@ -1464,11 +2308,6 @@ export interface components {
             readonly qr_svg: string;
             /** Url */
             readonly url: string;
-        };
-        /** HTTPValidationError */
-        readonly HTTPValidationError: {
-            /** Detail */
-            readonly detail?: readonly components["schemas"]["ValidationError"][];
         };
         /**
          * InstrumentChange
@@ -1627,6 +2466,106 @@ export interface components {
             readonly yaml: string;
         };
         /**
+         * InvitationLook
+         * @description What an invitation is for, before it is accepted.
+         */
+        readonly InvitationLook: {
+            /**
+             * Expires At
+             * Format: date-time
+             */
+            readonly expires_at: string;
+            /** Note */
+            readonly note: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            readonly role: "admin" | "experimenter" | "operator" | "analyst";
+        };
+        /**
+         * InvitationToken
+         * @description The part of an invitation's link behind the #.
+         */
+        readonly InvitationToken: {
+            /** Token */
+            readonly token: string;
+        };
+        /**
+         * InvitationView
+         * @description An invitation; its link is told only once, when it is made.
+         */
+        readonly InvitationView: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Created By */
+            readonly created_by: string;
+            /**
+             * Expires At
+             * Format: date-time
+             */
+            readonly expires_at: string;
+            /** Id */
+            readonly id: string;
+            /** Note */
+            readonly note: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            readonly role: "admin" | "experimenter" | "operator" | "analyst";
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "open" | "used" | "revoked" | "expired";
+            /** Studies */
+            readonly studies: readonly string[] | null;
+            /** Used By */
+            readonly used_by: string | null;
+        };
+        /**
+         * InvitedView
+         * @description A fresh invitation with its link; whoever has the link can use it.
+         */
+        readonly InvitedView: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Created By */
+            readonly created_by: string;
+            /**
+             * Expires At
+             * Format: date-time
+             */
+            readonly expires_at: string;
+            /** Id */
+            readonly id: string;
+            /** Note */
+            readonly note: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            readonly role: "admin" | "experimenter" | "operator" | "analyst";
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "open" | "used" | "revoked" | "expired";
+            /** Studies */
+            readonly studies: readonly string[] | null;
+            /** Url */
+            readonly url: string;
+            /** Used By */
+            readonly used_by: string | null;
+        };
+        /**
          * ItemStep
          * @description An item on its way into the scores: as answered, and as the formulas get it.
          */
@@ -1684,7 +2623,7 @@ export interface components {
             /** Kind */
             readonly kind: string;
             /** Seed */
-            readonly seed: number;
+            readonly seed: number | null;
             /** Sequences */
             readonly sequences: readonly components["schemas"]["SequenceRow"][] | null;
             /** Slots */
@@ -1715,6 +2654,69 @@ export interface components {
             readonly mode: "loopback" | "lan" | "without_tls";
         };
         /**
+         * NewCalibration
+         * @description A measurement of one equipment's own delay from movement to picture.
+         *
+         *     `sd_ms` is the standard deviation over the `samples` single measurements.
+         */
+        readonly NewCalibration: {
+            /** Equipment */
+            readonly equipment: string;
+            /**
+             * Measured On
+             * Format: date
+             */
+            readonly measured_on: string;
+            /** Method */
+            readonly method: string;
+            /** Motion To Photon Ms */
+            readonly motion_to_photon_ms: number;
+            /**
+             * Note
+             * @default
+             */
+            readonly note: string;
+            /** Samples */
+            readonly samples: number;
+            /** Sd Ms */
+            readonly sd_ms: number;
+        };
+        /**
+         * NewCorrection
+         * @description Another value for one answer, and how one knows; null leaves it out.
+         */
+        readonly NewCorrection: {
+            /** Item */
+            readonly item: string;
+            /** Reason */
+            readonly reason: string;
+            /** Value */
+            readonly value: string | boolean | number | null;
+        };
+        /**
+         * NewInvitation
+         * @description Whom to invite: `studies` null invites to all; `note` says who it is for.
+         */
+        readonly NewInvitation: {
+            /**
+             * Hours
+             * @default 72
+             */
+            readonly hours: number;
+            /**
+             * Note
+             * @default
+             */
+            readonly note: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            readonly role: "admin" | "experimenter" | "operator" | "analyst";
+            /** Studies */
+            readonly studies?: readonly string[] | null;
+        };
+        /**
          * NewPairing
          * @description A wish to pair a device.
          */
@@ -1726,6 +2728,16 @@ export interface components {
             readonly device: "tablet" | "headset";
         };
         /**
+         * NewPassword
+         * @description A change of one's own password; every other login ends.
+         */
+        readonly NewPassword: {
+            /** Current */
+            readonly current: string;
+            /** New */
+            readonly new: string;
+        };
+        /**
          * NewSession
          * @description A request to join a study.
          */
@@ -1735,7 +2747,7 @@ export interface components {
              * @default people
              * @enum {string}
              */
-            readonly kind: "people" | "simulated" | "test";
+            readonly kind: "people" | "simulated" | "test" | "expert";
             /**
              * Language
              * @default en
@@ -1748,6 +2760,25 @@ export interface components {
              * @default 1
              */
             readonly time_scale: number;
+        };
+        /**
+         * NewSuggestion
+         * @description Advice about a version of a study; `about` is a step's key, or empty for the whole.
+         *
+         *     With a `session_id` the version is that session's, so `version` may be left out.
+         */
+        readonly NewSuggestion: {
+            /**
+             * About
+             * @default
+             */
+            readonly about: string;
+            /** Body */
+            readonly body: string;
+            /** Session Id */
+            readonly session_id?: string | null;
+            /** Version */
+            readonly version?: number | null;
         };
         /**
          * NoteView
@@ -1825,6 +2856,97 @@ export interface components {
             readonly name: string;
         };
         /**
+         * PaperConsent
+         * @description A consent that was signed on paper: where the sheet is kept, and why on paper.
+         */
+        readonly PaperConsent: {
+            /** Place */
+            readonly place: string;
+            /** Reason */
+            readonly reason: string;
+        };
+        /**
+         * ParticipantSession
+         * @description One visit.
+         */
+        readonly ParticipantSession: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Id */
+            readonly id: string;
+            /** Started At */
+            readonly started_at: string | null;
+            /** Status */
+            readonly status: string;
+        };
+        /**
+         * ParticipantView
+         * @description Somebody who took part, by pseudonym. `copies`: those that may hold their data.
+         */
+        readonly ParticipantView: {
+            /** Code */
+            readonly code: string;
+            /** Copies */
+            readonly copies: readonly components["schemas"]["CopyLeft"][];
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            readonly erasure: components["schemas"]["ErasureView"] | null;
+            /** Id */
+            readonly id: string;
+            /** Kind */
+            readonly kind: string;
+            /** Sessions */
+            readonly sessions: readonly components["schemas"]["ParticipantSession"][];
+        };
+        /**
+         * PersonChange
+         * @description What to change of an account; what is left out stays. `studies` null gives all of them.
+         */
+        readonly PersonChange: {
+            /** Closed */
+            readonly closed?: boolean | null;
+            /** Role */
+            readonly role?: ("admin" | "experimenter" | "operator" | "analyst") | null;
+            /** Studies */
+            readonly studies?: readonly string[] | null;
+        };
+        /**
+         * PersonView
+         * @description An account as the admin sees it. `studies` is null where all are theirs.
+         */
+        readonly PersonView: {
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Disabled At */
+            readonly disabled_at: string | null;
+            /** Id */
+            readonly id: string;
+            /** Last Login At */
+            readonly last_login_at: string | null;
+            /** Logins */
+            readonly logins: number;
+            /**
+             * Role
+             * @enum {string}
+             */
+            readonly role: "admin" | "experimenter" | "operator" | "analyst";
+            /** Studies */
+            readonly studies: readonly string[] | null;
+            /** Username */
+            readonly username: string;
+        };
+        /**
          * PhaseView
          * @description A phase that was prepared, with what happened in it so far.
          *
@@ -1854,7 +2976,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "task" | "questionnaire" | "debrief";
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Latency Off */
@@ -1954,6 +3076,44 @@ export interface components {
              * Format: date-time
              */
             readonly stored_at: string;
+        };
+        /**
+         * Refusal
+         * @description Why something was refused (app.errors): what happened, the value, what is valid, the way on.
+         *
+         *     `details` lists single problems of a file or form, each with its place.
+         */
+        readonly Refusal: {
+            /** Code */
+            readonly code: string;
+            /** Details */
+            readonly details: readonly {
+                readonly [key: string]: unknown;
+            }[];
+            /** Message */
+            readonly message: string;
+            /** Remedy */
+            readonly remedy: string;
+            /** Valid */
+            readonly valid: unknown;
+            /** Value */
+            readonly value: unknown;
+        };
+        /**
+         * Retirement
+         * @description Why a measurement must not be used any more.
+         */
+        readonly Retirement: {
+            /** Reason */
+            readonly reason: string;
+        };
+        /**
+         * Reveal
+         * @description Why the condition of a blinded session must be known before it is over.
+         */
+        readonly Reveal: {
+            /** Reason */
+            readonly reason: string;
         };
         /**
          * ScoreStep
@@ -2062,7 +3222,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            readonly kind: "people" | "simulated" | "test";
+            readonly kind: "people" | "simulated" | "test" | "expert";
             /** Participant Code */
             readonly participant_code: string;
             /** Sequence */
@@ -2081,7 +3241,7 @@ export interface components {
         };
         /**
          * SessionView
-         * @description Everything a cockpit shows. `sequence` and latencies are null for a blinded operator.
+         * @description Everything a cockpit shows. `sequence` and latencies are null where the reader is `blinded`.
          *
          *     `alarms`: those that are open, the oldest first.
          */
@@ -2089,9 +3249,11 @@ export interface components {
             /** Alarms */
             readonly alarms: readonly components["schemas"]["AlarmView"][];
             /** Allowed */
-            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "note") | "enter_answers")[];
+            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "note") | "enter_answers")[];
             /** Avatar */
             readonly avatar: string;
+            /** Blinded */
+            readonly blinded: boolean;
             /**
              * Created At
              * Format: date-time
@@ -2102,13 +3264,14 @@ export interface components {
             readonly devices: readonly components["schemas"]["DeviceView"][];
             /** Ended At */
             readonly ended_at: string | null;
+            readonly held: components["schemas"]["HeldView"] | null;
             /** Id */
             readonly id: string;
             /**
              * Kind
              * @enum {string}
              */
-            readonly kind: "people" | "simulated" | "test";
+            readonly kind: "people" | "simulated" | "test" | "expert";
             /** Language */
             readonly language: string;
             /** Notes */
@@ -2165,7 +3328,7 @@ export interface components {
         };
         /**
          * SlotRow
-         * @description A slot of the ledger; `sequence` holds latencies in ms, null for a blinded operator.
+         * @description A slot of the ledger; `sequence` holds latencies in ms, null for who must not know.
          */
         readonly SlotRow: {
             /** Attempts */
@@ -2185,6 +3348,28 @@ export interface components {
             readonly state: "free" | "open" | "completed";
         };
         /**
+         * StatementForm
+         * @description A line to tick, in the participant's language.
+         */
+        readonly StatementForm: {
+            /** Optional */
+            readonly optional: boolean;
+            /** Text */
+            readonly text: string;
+        };
+        /**
+         * StatementRecord
+         * @description A line with what became of it; null where that stands on paper.
+         */
+        readonly StatementRecord: {
+            /** Optional */
+            readonly optional: boolean;
+            /** Text */
+            readonly text: string;
+            /** Ticked */
+            readonly ticked: boolean | null;
+        };
+        /**
          * StepView
          * @description One step of the procedure; fields that do not apply are null.
          */
@@ -2193,6 +3378,7 @@ export interface components {
             readonly attempt: number;
             /** Block */
             readonly block: number | null;
+            readonly consent?: components["schemas"]["ConsentForm"] | null;
             /** Duration S */
             readonly duration_s: number | null;
             /** Freeze S */
@@ -2207,7 +3393,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "task" | "questionnaire" | "debrief";
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Limb */
@@ -2223,10 +3409,15 @@ export interface components {
             readonly status: "pending" | "current" | "done" | "skipped";
             /** Title */
             readonly title: string;
+            /** Until Completions */
+            readonly until_completions?: number | null;
         };
         /**
          * StoredAnswers
-         * @description One stored form with its answers as given.
+         * @description One stored form with the answers that count: as given, unless they were corrected since.
+         *
+         *     `corrections`: oldest first; the first one's `previous` is the answer as given. `definition`:
+         *     the exact instrument, for the wordings.
          */
         readonly StoredAnswers: {
             /** Administration */
@@ -2234,6 +3425,12 @@ export interface components {
             /** Answers */
             readonly answers: {
                 readonly [key: string]: boolean | number | string | null;
+            };
+            /** Corrections */
+            readonly corrections: readonly components["schemas"]["CorrectionView"][];
+            /** Definition */
+            readonly definition: {
+                readonly [key: string]: unknown;
             };
             /** Instrument */
             readonly instrument: string;
@@ -2425,7 +3622,7 @@ export interface components {
         };
         /**
          * StudyView
-         * @description A study with its newest version in full.
+         * @description A study with its newest version in full; an operator of a blinded one gets no protocol.
          */
         readonly StudyView: {
             /** Archived At */
@@ -2448,7 +3645,7 @@ export interface components {
             /** Protocol */
             readonly protocol: {
                 readonly [key: string]: unknown;
-            };
+            } | null;
             /** Session Counts */
             readonly session_counts: {
                 readonly [key: string]: number;
@@ -2460,7 +3657,7 @@ export interface components {
             /** Versions */
             readonly versions: readonly components["schemas"]["VersionView"][];
             /** Yaml */
-            readonly yaml: string;
+            readonly yaml: string | null;
         };
         /**
          * SubmissionRequest
@@ -2489,11 +3686,52 @@ export interface components {
             };
         };
         /**
+         * SuggestionView
+         * @description A suggestion with its fate. `about_title`: the name of the step in the study's words.
+         */
+        readonly SuggestionView: {
+            /** About */
+            readonly about: string;
+            /** About Title */
+            readonly about_title: string | null;
+            /** Adopted In */
+            readonly adopted_in: number | null;
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** Body */
+            readonly body: string;
+            /** By */
+            readonly by: string;
+            /** Decided At */
+            readonly decided_at: string | null;
+            /** Decided By */
+            readonly decided_by: string | null;
+            /** Id */
+            readonly id: string;
+            /** Participant Code */
+            readonly participant_code: string | null;
+            /** Session Id */
+            readonly session_id: string | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "open" | "adopted" | "declined";
+            /** Version */
+            readonly version: number;
+        };
+        /**
          * TabletState
          * @description What the tablet shows now; `next` says what comes next, in the participant's language.
+         *
+         *     `held`: the participant waits for the experimenter, and nothing on the tablet goes on.
          */
         readonly TabletState: {
             readonly administration: components["schemas"]["Administration"] | null;
+            readonly consent?: components["schemas"]["ConsentForm"] | null;
             /** Language */
             readonly language: string;
             /** Languages */
@@ -2504,7 +3742,7 @@ export interface components {
              * Screen
              * @enum {string}
              */
-            readonly screen: "waiting" | "consent" | "instructions" | "form" | "finished";
+            readonly screen: "waiting" | "held" | "consent" | "instructions" | "form" | "finished";
             /** Session Id */
             readonly session_id: string;
             /** Simulated */
@@ -2582,7 +3820,7 @@ export interface components {
              * Kind
              * @enum {string}
              */
-            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "task" | "questionnaire" | "debrief";
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
             /** Latency Ms */
             readonly latency_ms: number | null;
             /** Length S */
@@ -2653,19 +3891,6 @@ export interface components {
             /** Scores */
             readonly scores: readonly components["schemas"]["ScoreStep"][];
         };
-        /** ValidationError */
-        readonly ValidationError: {
-            /** Context */
-            readonly ctx?: Record<string, never>;
-            /** Input */
-            readonly input?: unknown;
-            /** Location */
-            readonly loc: readonly (string | number)[];
-            /** Message */
-            readonly msg: string;
-            /** Error Type */
-            readonly type: string;
-        };
         /**
          * VersionDetail
          * @description One version in full.
@@ -2721,6 +3946,371 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
+    readonly get_accounts_api_accounts_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["PersonView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly patch_account_api_accounts__account_id__patch: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly account_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["PersonChange"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PersonView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_logins_api_accounts__account_id__logins_delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly account_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_audit_api_audit_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly action?: string | null;
+                readonly actor?: string | null;
+                readonly before?: number | null;
+                readonly limit?: number;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AuditPage"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_audit_check_api_audit_check_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AuditCheckView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_calibrations_api_calibrations_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["CalibrationView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_calibration_api_calibrations_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewCalibration"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CalibrationView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_retirement_api_calibrations__calibration_id__retire_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly calibration_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["Retirement"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CalibrationView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_destroyed_api_copies__copy_id__destroyed_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly copy_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CopyView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly post_pair_api_devices_pair_post: {
         readonly parameters: {
             readonly query?: never;
@@ -2734,6 +4324,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -2743,13 +4342,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["PairedView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -2763,6 +4362,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -2770,6 +4378,15 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["Health"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -2783,6 +4400,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -2790,6 +4416,15 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": readonly components["schemas"]["InstrumentSummary"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -2807,6 +4442,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 201: {
                 headers: {
@@ -2816,13 +4460,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["InstrumentDetail"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -2838,6 +4482,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -2847,13 +4500,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["InstrumentDetail"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -2871,6 +4524,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -2880,13 +4542,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["InstrumentCheck"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -2904,6 +4566,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -2913,13 +4584,215 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TryResult"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_invitations_api_invitations_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["InvitationView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_invitation_api_invitations_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewInvitation"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["InvitedView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_invitation_api_invitations__invitation_id__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly invitation_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_accept_api_invitations_accept_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["Acceptance"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SignedInView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_look_api_invitations_look_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["InvitationToken"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["InvitationLook"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -2937,6 +4810,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -2946,13 +4828,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SignedInView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -2966,12 +4848,30 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 204: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
             };
         };
     };
@@ -2984,6 +4884,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -2991,6 +4900,55 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["WhoView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_password_api_me_password_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewPassword"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3004,6 +4962,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3011,6 +4978,15 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["NetworkView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3026,6 +5002,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3035,13 +5020,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3057,6 +5042,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3066,13 +5060,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Administration"] | null;
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3088,6 +5082,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3097,13 +5100,13 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["AlarmView"][];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3119,6 +5122,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3128,13 +5140,13 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["StoredAnswers"][];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3154,6 +5166,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3163,13 +5184,53 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_consent_api_sessions__session_id__consent_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ConsentRecord"] | null;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3186,6 +5247,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 204: {
                 headers: {
@@ -3193,13 +5263,13 @@ export interface operations {
                 };
                 content?: never;
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3215,6 +5285,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3224,13 +5303,13 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["EventView"][];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3246,6 +5325,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/event-stream": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3255,13 +5343,13 @@ export interface operations {
                     readonly "text/event-stream": unknown;
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "text/event-stream": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3281,6 +5369,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 201: {
                 headers: {
@@ -3290,13 +5387,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["PairingView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3312,6 +5409,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3321,13 +5427,57 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionReceipt"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_reveal_api_sessions__session_id__reveal_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["Reveal"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SessionView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3343,6 +5493,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3352,13 +5511,13 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["StreamView"][];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3378,6 +5537,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3387,13 +5555,58 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Receipt"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_correction_api_sessions__session_id__submissions__submission_id__corrections_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+                readonly submission_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewCorrection"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["StoredAnswers"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3409,6 +5622,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3418,13 +5640,13 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["StudySummary"][];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3442,6 +5664,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 201: {
                 headers: {
@@ -3451,13 +5682,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3473,6 +5704,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3482,13 +5722,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3504,6 +5744,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3513,13 +5762,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3535,6 +5784,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3544,13 +5802,53 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["ColumnView"][];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_copies_api_studies__key__copies_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["CopyView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3568,6 +5866,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3577,13 +5884,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["DashboardView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3602,6 +5909,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3611,13 +5927,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyDiff"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3637,6 +5953,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3646,13 +5971,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyDiff"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3672,6 +5997,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 201: {
                 headers: {
@@ -3681,13 +6015,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3705,6 +6039,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description A ZIP of CSV files. */
             readonly 200: {
                 headers: {
@@ -3714,13 +6057,13 @@ export interface operations {
                     readonly "application/zip": unknown;
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3728,7 +6071,7 @@ export interface operations {
     readonly get_ledger_api_studies__key__ledger_get: {
         readonly parameters: {
             readonly query?: {
-                readonly kind?: "people" | "simulated" | "test";
+                readonly kind?: "people" | "simulated" | "test" | "expert";
             };
             readonly header?: never;
             readonly path: {
@@ -3738,6 +6081,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3747,13 +6099,139 @@ export interface operations {
                     readonly "application/json": components["schemas"]["LedgerView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_participants_api_studies__key__participants_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["ParticipantView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_access_api_studies__key__participants__participant_id__access_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly participant_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description A ZIP. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/zip": unknown;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_erasure_api_studies__key__participants__participant_id__erasure_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly participant_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["ErasureRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErasureView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3769,6 +6247,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3778,13 +6265,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3792,7 +6279,7 @@ export interface operations {
     readonly get_sessions_api_studies__key__sessions_get: {
         readonly parameters: {
             readonly query?: {
-                readonly kind?: ("people" | "simulated" | "test") | null;
+                readonly kind?: ("people" | "simulated" | "test" | "expert") | null;
             };
             readonly header?: never;
             readonly path: {
@@ -3802,6 +6289,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3811,13 +6307,13 @@ export interface operations {
                     readonly "application/json": readonly components["schemas"]["SessionSummary"][];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3837,6 +6333,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 201: {
                 headers: {
@@ -3846,13 +6351,97 @@ export interface operations {
                     readonly "application/json": components["schemas"]["SessionView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_suggestions_api_studies__key__suggestions_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["SuggestionView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_suggestion_api_studies__key__suggestions_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewSuggestion"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SuggestionView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3872,6 +6461,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 201: {
                 headers: {
@@ -3881,13 +6479,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["StudyView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3904,6 +6502,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3913,13 +6520,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["VersionDetail"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3937,6 +6544,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3946,13 +6562,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["CheckResult"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -3970,6 +6586,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -3979,13 +6604,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["EditedFile"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -4003,6 +6628,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -4012,13 +6646,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TimelineView"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -4032,6 +6666,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -4041,6 +6684,59 @@ export interface operations {
                     readonly "application/json": {
                         readonly [key: string]: unknown;
                     };
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_decision_api_suggestions__suggestion_id__decision_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly suggestion_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["Decision"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SuggestionView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -4058,6 +6754,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -4067,13 +6772,55 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_consent_api_tablet_consent_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["ConsentGiven"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TabletState"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -4091,6 +6838,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -4100,13 +6856,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["TabletState"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -4120,6 +6876,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/event-stream": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -4127,6 +6892,15 @@ export interface operations {
                 };
                 content: {
                     readonly "text/event-stream": unknown;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/event-stream": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -4140,6 +6914,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -4147,6 +6930,15 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["TabletState"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -4164,6 +6956,15 @@ export interface operations {
             };
         };
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -4173,13 +6974,13 @@ export interface operations {
                     readonly "application/json": components["schemas"]["Receipt"];
                 };
             };
-            /** @description Validation Error */
-            readonly 422: {
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
                 headers: {
                     readonly [name: string]: unknown;
                 };
                 content: {
-                    readonly "application/json": components["schemas"]["HTTPValidationError"];
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };
@@ -4193,6 +6994,15 @@ export interface operations {
         };
         readonly requestBody?: never;
         readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
             /** @description Successful Response */
             readonly 200: {
                 headers: {
@@ -4200,6 +7010,15 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": readonly components["schemas"]["TemplateView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };

@@ -25,6 +25,8 @@ export type SessionEvent = Schemas["EventView"];
 export type Alarm = Schemas["AlarmView"];
 
 export type Kind = SessionSummary["kind"];
+/** Sessions that are data of some sort; experts' are not. */
+export type DataKind = Exclude<Kind, "expert">;
 export type SessionStatus = SessionSummary["status"];
 export type StepKind = Step["kind"];
 export type StepStatus = Step["status"];
@@ -39,7 +41,8 @@ export type Network = Schemas["NetworkView"];
 export type Account = Schemas["AccountView"];
 export type StudySummary = Schemas["StudySummary"];
 export type StudyVersion = Schemas["VersionView"];
-export type StudyDetail = With<Schemas["StudyView"], { protocol: StudyProtocol }>;
+/** `protocol` and `yaml` are null for an operator of a blinded study. */
+export type StudyDetail = With<Schemas["StudyView"], { protocol: StudyProtocol | null }>;
 export type CheckResult = With<
   Schemas["CheckResult"],
   { problems: readonly ConfigProblem[]; tree?: Tree | null }
@@ -70,6 +73,8 @@ export interface SetupStep {
   readonly step: string;
   readonly text?: string | null;
   readonly instrument?: string;
+  /** Of a practice. */
+  readonly limb?: Limb;
   readonly duration_s?: number;
   readonly latency_ms?: number;
   readonly title?: Text | null;
@@ -120,6 +125,7 @@ export interface Command {
   /** The step that is meant: which one to do over, or which one a late click was for. */
   readonly step_index?: number;
   readonly height_m?: { readonly stated: number; readonly matched: number };
+  readonly paper_consent?: { readonly place: string; readonly reason: string };
 }
 
 /** What the headset reports several times a second; not part of the OpenAPI description. */
@@ -179,6 +185,8 @@ export interface Item {
   readonly max_length?: number | null;
   readonly unit?: string | null;
   readonly choices?: readonly Choice[];
+  /** Agreement speaks against what the scale measures. */
+  readonly reverse_keyed?: boolean;
   /** In place of the instrument's. */
   readonly scale?: Scale | null;
 }
@@ -205,6 +213,9 @@ export interface Instrument {
   readonly languages: readonly string[];
   readonly items: readonly Item[];
   readonly scale?: Scale | null;
+  readonly shuffle?: boolean;
+  /** Items that stay at the end when the others are shuffled. */
+  readonly last?: readonly string[];
 }
 
 export type InstrumentPreview = With<Schemas["Preview"], { instrument: Instrument }>;

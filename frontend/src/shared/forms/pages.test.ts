@@ -30,4 +30,9 @@ describe("pages of a form", () => {
     expect(pages.at(-1)).toEqual(["q13", "q14", "open"]);
     expect(keys(pagesOf([...scale(3), open]))).toEqual([["q1", "q2", "q3"], ["open"]]);
   });
+
+  it("hold at most two items of a scale that needs two rows of buttons", () => {
+    expect(pagesOf(scale(6), () => 21).map((page) => page.length)).toEqual([2, 2, 2]);
+    expect(pagesOf(scale(6), () => 11).map((page) => page.length)).toEqual([3, 3]);
+  });
 });

@@ -6,17 +6,30 @@
  */
 import type { Item } from "../api/types";
 
-type Family = "scale" | "facts" | "prose";
+type Family = "scale" | "fine" | "facts" | "prose";
 
 /** At most so many items on a page: what fits a tablet in both directions without scrolling. */
-const MOST: Readonly<Record<Family, number>> = { scale: 3, facts: 3, prose: 2 };
+const MOST: Readonly<Record<Family, number>> = {
+  scale: 3,
+  fine: 2,
+  facts: 3,
+  prose: 2,
+};
 
-export function pagesOf(items: readonly Item[]): readonly (readonly Item[])[] {
-  return joinShortEnd(runsOf(items).flatMap(({ family, items: run }) => evenly(run, MOST[family])));
+/** A scale of more steps needs two rows of buttons, so that each is as wide as a finger. */
+export const STEPS_IN_A_ROW = 11;
+
+/** `steps`: how many answers the scale of a rated item has. */
+export function pagesOf(
+  items: readonly Item[],
+  steps: (item: Item) => number = () => 0,
+): readonly (readonly Item[])[] {
+  const runs = runsOf(items, (item) => familyOf(item, steps(item)));
+  return joinShortEnd(runs.flatMap(({ family, items: run }) => evenly(run, MOST[family])));
 }
 
-export function familyOf(item: Item): Family {
-  if (item.type === "likert") return "scale";
+function familyOf(item: Item, steps = 0): Family {
+  if (item.type === "likert") return steps > STEPS_IN_A_ROW ? "fine" : "scale";
   return item.type === "text" && isLong(item) ? "prose" : "facts";
 }
 
@@ -26,10 +39,13 @@ const SHORT_TEXT = 200;
 export const isLong = (item: Item): boolean =>
   (item.max_length ?? Number.POSITIVE_INFINITY) > SHORT_TEXT;
 
-function runsOf(items: readonly Item[]): readonly { family: Family; items: Item[] }[] {
+function runsOf(
+  items: readonly Item[],
+  kindOf: (item: Item) => Family,
+): readonly { family: Family; items: Item[] }[] {
   const runs: { family: Family; items: Item[] }[] = [];
   for (const item of items) {
-    const family = familyOf(item);
+    const family = kindOf(item);
     const last = runs.at(-1);
     if (last?.family === family) last.items.push(item);
     else runs.push({ family, items: [item] });

@@ -38,10 +38,12 @@ export function surveyJson(administration: Administration, options: FormOptions)
     questionErrorLocation: "bottom",
     requiredMark: "",
     // Which question is required is said in words, at the few that are not.
-    pages: pagesOf(ordered).map((items, index) => ({
-      name: `page${index + 1}`,
-      elements: items.map((item) => element(item, instrument, options)),
-    })),
+    pages: pagesOf(ordered, (item) => stepsOf(item.scale ?? instrument.scale ?? null).length).map(
+      (items, index) => ({
+        name: `page${index + 1}`,
+        elements: items.map((item) => element(item, instrument, options)),
+      }),
+    ),
   };
 }
 
@@ -93,12 +95,16 @@ const choice = (one: Choice, language: string): Json => ({
   text: inLanguage(one.label, language),
 });
 
+function stepsOf(scale: Scale | null): readonly number[] {
+  const { minimum, maximum, step = 1 } = scale ?? { minimum: 1, maximum: 7 };
+  const count = Math.floor((maximum - minimum) / step) + 1;
+  return Array.from({ length: count }, (_, index) => minimum + step * index);
+}
+
 /** Every step is written out where it has a label of its own; else the ends are. */
 function rating(scale: Scale | null, language: string): Json {
-  const { minimum, maximum, labels, step = 1 } = scale ?? { minimum: 1, maximum: 7, labels: [] };
-  const count = Math.floor((maximum - minimum) / step) + 1;
-  const steps = Array.from({ length: count }, (_, index) => minimum + step * index);
-  const written = labels.map((label) => inLanguage(label, language));
+  const steps = stepsOf(scale);
+  const written = (scale?.labels ?? []).map((label) => inLanguage(label, language));
   const ends =
     written.length === 2 ? { minRateDescription: written[0], maxRateDescription: written[1] } : {};
   return {

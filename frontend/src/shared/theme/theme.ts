@@ -95,7 +95,8 @@ export const theme = createTheme({
     }),
     Drawer: Drawer.extend({
       defaultProps: { overlayProps: { backgroundOpacity: 0.4 } },
-      styles: { title: { fontWeight: 620, fontSize: "1.125rem" } },
+      // The title sticks to the very top, or what is scrolled would show above it.
+      styles: { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { paddingTop: 0 } },
     }),
     Button: Button.extend({ styles: { label: { fontWeight: 560 } } }),
     Tooltip: Tooltip.extend({ defaultProps: { openDelay: 300, withArrow: true } }),

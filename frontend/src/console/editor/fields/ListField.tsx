@@ -63,15 +63,30 @@ function Entry({ path, spec, item, count }: EntryProps): JSX.Element {
     event.preventDefault();
     move(index + step);
   };
-  const label = `${index + 1}. ${name}`;
+  const label = name === String(index + 1) ? name : `${index + 1}. ${name}`;
   return (
     <li className={classes.entry}>
       {/* biome-ignore lint/a11y/noStaticElementInteractions: the keys belong to the buttons in it */}
       <div className={classes.entryHead} onKeyDown={onKeyDown}>
         <span className={classes.entryName}>{label}</span>
-        <Tool icon="up" label={t("editor.up", { name: label })} off={index === 0} onClick={() => move(index - 1)} />
-        <Tool icon="down" label={t("editor.down", { name: label })} off={index === count - 1} onClick={() => move(index + 1)} />
-        <Tool icon="close" label={t("editor.remove", { name: label })} off={count <= spec.atLeast} onClick={() => change([{ path, action: "remove" }])} />
+        <Tool
+          icon="up"
+          label={t("editor.up", { name: label })}
+          off={index === 0}
+          onClick={() => move(index - 1)}
+        />
+        <Tool
+          icon="down"
+          label={t("editor.down", { name: label })}
+          off={index === count - 1}
+          onClick={() => move(index + 1)}
+        />
+        <Tool
+          icon="close"
+          label={t("editor.remove", { name: label })}
+          off={count <= spec.atLeast}
+          onClick={() => change([{ path, action: "remove" }])}
+        />
       </div>
       {problem !== null && <p className={classes.problem}>{problem}</p>}
       {spec.item.kind === "object" ? (
@@ -92,7 +107,14 @@ interface ToolProps {
 
 function Tool({ icon, label, off, onClick }: ToolProps): JSX.Element {
   return (
-    <ActionIcon variant="subtle" color="gray" size="md" aria-label={label} disabled={off} onClick={onClick}>
+    <ActionIcon
+      variant="subtle"
+      color="gray"
+      size="md"
+      aria-label={label}
+      disabled={off}
+      onClick={onClick}
+    >
       <span className={icon === "up" ? classes.turned : undefined}>
         <Icon name={icon === "up" ? "down" : icon} size={16} />
       </span>
@@ -107,7 +129,9 @@ function useName(item: Json): string {
   const word = item.step ?? item.limb;
   const beside = item.instrument ?? item.key ?? item.number;
   const said = typeof word === "string" ? labels.value(word) : "";
-  return [said, beside === undefined ? "" : String(beside)].filter((part) => part !== "").join(" · ");
+  return [said, beside === undefined ? "" : String(beside)]
+    .filter((part) => part !== "")
+    .join(" · ");
 }
 
 interface AddProps {

@@ -1,5 +1,13 @@
 /** Fields of one value: words, numbers, choices, yes or no. */
-import { Autocomplete, ColorInput, NumberInput, Select, Switch, TextInput } from "@mantine/core";
+import {
+  Autocomplete,
+  ColorInput,
+  NumberInput,
+  Select,
+  Switch,
+  Textarea,
+  TextInput,
+} from "@mantine/core";
 import type { JSX } from "react";
 import { useForm, useProblem, useValue } from "../formContext";
 import { useLabels } from "../labels";
@@ -21,7 +29,11 @@ function useSet(path: Path): (value: Json) => void {
   return (value) => change([{ path, action: "set", value }]);
 }
 
-export function WordsField({ path, label, pattern }: FieldProps & { readonly pattern: string | null }) {
+export function WordsField({
+  path,
+  label,
+  pattern,
+}: FieldProps & { readonly pattern: string | null }) {
   const value = useValue(path);
   const set = useSet(path);
   const problem = useProblem(path);
@@ -38,10 +50,24 @@ export function WordsField({ path, label, pattern }: FieldProps & { readonly pat
     onFocus: () => reveal(path),
   };
   if (pattern?.includes("[0-9a-f]{6}") === true)
-    return <ColorInput {...common} format="hex" onChange={(text) => field.onChange(text)} />;
+    return (
+      <ColorInput
+        {...common}
+        format="hex"
+        withEyeDropper={false}
+        onChange={(text) => field.onChange(text)}
+      />
+    );
   if (known !== null)
     return <Autocomplete {...common} data={[...known]} onChange={(text) => field.onChange(text)} />;
-  return <TextInput {...common} onChange={(event) => field.onChange(event.currentTarget.value)} />;
+  const onChange = (event: { currentTarget: { value: string } }) =>
+    field.onChange(event.currentTarget.value);
+  // Keys have a pattern and are short; what has none is prose.
+  return pattern === null ? (
+    <Textarea {...common} autosize maxRows={8} onChange={onChange} />
+  ) : (
+    <TextInput {...common} onChange={onChange} />
+  );
 }
 
 /** Keys that exist elsewhere in the file or in the library, for fields that name one. */
@@ -64,7 +90,11 @@ function useKnown(path: Path): readonly string[] | null {
   }
 }
 
-export function NumberField({ path, label, spec }: FieldProps & { readonly spec: NumberSpec }): JSX.Element {
+export function NumberField({
+  path,
+  label,
+  spec,
+}: FieldProps & { readonly spec: NumberSpec }): JSX.Element {
   const value = useValue(path);
   const set = useSet(path);
   const problem = useProblem(path);
@@ -90,7 +120,11 @@ export function NumberField({ path, label, spec }: FieldProps & { readonly spec:
   );
 }
 
-export function ChoiceField({ path, label, values }: FieldProps & { readonly values: readonly string[] }) {
+export function ChoiceField({
+  path,
+  label,
+  values,
+}: FieldProps & { readonly values: readonly string[] }) {
   const value = useValue(path);
   const set = useSet(path);
   const problem = useProblem(path);

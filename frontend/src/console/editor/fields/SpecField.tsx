@@ -2,12 +2,12 @@
 import { Button, TagsInput } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
+import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
 import { useForm, useProblem, useValue } from "../formContext";
 import { useLabels } from "../labels";
 import { isList, isObject, type Path } from "../paths";
 import { blank, type Field, type ListSpec, type ObjectSpec, type Spec } from "../schema";
-import { useTexts } from "../../i18n";
 import { ListField } from "./ListField";
 import { BooleanField, ChoiceField, NumberField, WordsField } from "./Simple";
 import { TextsField } from "./Texts";
@@ -122,7 +122,10 @@ export function ObjectFields({ path, spec, without = [] }: ObjectFieldsProps): J
 }
 
 const isWide = (spec: Spec): boolean =>
-  spec.kind === "texts" || spec.kind === "object" || (spec.kind === "list" && !isWords(spec.item));
+  spec.kind === "texts" ||
+  spec.kind === "object" ||
+  (spec.kind === "words" && spec.pattern === null) ||
+  (spec.kind === "list" && !isWords(spec.item));
 
 function UnionFields({
   path,
@@ -150,15 +153,17 @@ function TupleField({ path, spec, label }: TupleFieldProps): JSX.Element {
   return (
     <fieldset className={classes.tuple}>
       <legend>{label}</legend>
-      {spec.map((item, index) => (
-        <SpecField
-          // biome-ignore lint/suspicious/noArrayIndexKey: a coordinate is its place
-          key={index}
-          path={[...path, index]}
-          spec={item}
-          label={AXES[index] ?? String(index + 1)}
-        />
-      ))}
+      <div className={classes.axes}>
+        {spec.map((item, index) => (
+          <SpecField
+            // biome-ignore lint/suspicious/noArrayIndexKey: a coordinate is its place
+            key={index}
+            path={[...path, index]}
+            spec={item}
+            label={AXES[index] ?? String(index + 1)}
+          />
+        ))}
+      </div>
       {problem !== null && <p className={classes.problem}>{problem}</p>}
     </fieldset>
   );

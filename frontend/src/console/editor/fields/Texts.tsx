@@ -2,13 +2,19 @@
 import { Textarea } from "@mantine/core";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import type { JSX } from "react";
+import classes from "../Editor.module.css";
 import { useForm, useProblem, useValue } from "../formContext";
 import type { Path } from "../paths";
 import { isObject } from "../paths";
 import { useCommitted } from "../useCommitted";
-import classes from "../Editor.module.css";
 
-export function TextsField({ path, label }: { readonly path: Path; readonly label: string }): JSX.Element {
+export function TextsField({
+  path,
+  label,
+}: {
+  readonly path: Path;
+  readonly label: string;
+}): JSX.Element {
   const { languages } = useForm();
   const value = useValue(path);
   const problem = useProblem(path);

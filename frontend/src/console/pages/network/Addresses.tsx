@@ -1,4 +1,4 @@
-import { Badge, Paper, Title } from "@mantine/core";
+import { Paper, Title } from "@mantine/core";
 import type { Network } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import type { JSX } from "react";
@@ -20,13 +20,7 @@ export function Addresses({ network }: { readonly network: Network }): JSX.Eleme
         <dl className={classes.list}>
           {network.addresses.map(({ url }) => (
             <div key={url}>
-              <dt>
-                {url === best?.url && (
-                  <Badge variant="light" size="sm">
-                    {t("network.addresses.best")}
-                  </Badge>
-                )}
-              </dt>
+              <dt>{url === best?.url && t("network.addresses.devices")}</dt>
               <dd>
                 <Copyable text={url} />
               </dd>

@@ -2,7 +2,7 @@
 
 import { Figure } from "@charts/Figure";
 import { Title } from "@mantine/core";
-import type { Dashboard, Kind, StudyDetail } from "@shared/api/types";
+import type { Dashboard, DataKind, StudyDetail } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
@@ -15,7 +15,7 @@ import classes from "./DashboardTab.module.css";
 import page from "./StudyPage.module.css";
 
 export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.Element {
-  const [kind, setKind] = useState<Kind>("people");
+  const [kind, setKind] = useState<DataKind>("people");
   const { t } = useTexts();
   const query = useQuery(dashboardQuery(study.key, kind));
   return (
@@ -25,6 +25,7 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
         {query.data !== undefined && (
           <span className={page.push}>
             {t("dashboard.sessions", { count: query.data.n_completed })}
+            {!query.data.current && ` · ${t("dashboard.drawing")}`}
           </span>
         )}
       </div>

@@ -1,7 +1,7 @@
 /** Tidy CSV for analysis: what is in the archive, and the archive. */
 import { Button, Group, Paper, Progress, Stack, Text, Title } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
-import type { Kind, StudyDetail } from "@shared/api/types";
+import type { DataKind, StudyDetail } from "@shared/api/types";
 import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
@@ -21,6 +21,7 @@ const FILES = [
   "phases",
   "answers",
   "scores",
+  "corrections",
   "completions",
   "contacts",
   "jointErrors",
@@ -61,7 +62,7 @@ export function ExportTab({ study }: { readonly study: StudyDetail }): JSX.Eleme
 
 function Download({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t, language } = useTexts();
-  const [kind, setKind] = useState<Kind>("people");
+  const [kind, setKind] = useState<DataKind>("people");
   const { state, start, stop } = useDownload();
   const megabytes = (bytes: number): string => `${number(bytes / 1e6, language, 1)} MB`;
   return (

@@ -1,5 +1,5 @@
 /** The counterbalancing ledger: every order, every replicate, and who filled it. */
-import type { Kind, Ledger, Slot, StudyDetail } from "@shared/api/types";
+import type { DataKind, Ledger, Slot, StudyDetail } from "@shared/api/types";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useTexts } from "../../i18n";
@@ -16,7 +16,7 @@ import page from "./StudyPage.module.css";
 
 export function LedgerTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
-  const [kind, setKind] = useState<Kind>("people");
+  const [kind, setKind] = useState<DataKind>("people");
   return (
     <>
       <div className={page.toolbar}>
@@ -62,6 +62,7 @@ function Blinded({ ledger }: { readonly ledger: Ledger }): JSX.Element {
               {t("ledger.slotNumber", { number: slot.index + 1 })}
             </span>
             <SlotCell slot={slot} next={slot.index === next} />
+            {slot.sequence !== null && <Order sequence={slot.sequence} />}
           </li>
         ))}
       </ol>

@@ -3,6 +3,7 @@ import { Paper, Title } from "@mantine/core";
 import type { StudyDetail, StudyProtocol } from "@shared/api/types";
 import { latency } from "@shared/format";
 import { inLanguage } from "@shared/text";
+import { Notice } from "@shared/ui/Notice";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
@@ -11,28 +12,54 @@ import { orderCount } from "./orderCount";
 import { Procedure } from "./Procedure";
 
 export function Overview({ study }: { readonly study: StudyDetail }): JSX.Element {
+  return study.protocol === null ? (
+    <Blinded study={study} />
+  ) : (
+    <Whole study={study} protocol={study.protocol} />
+  );
+}
+
+/** What somebody may read who runs the study without knowing its conditions. */
+function Blinded({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <>
+      <p className={classes.lead}>{study.description}</p>
+      <Notice tone="info" icon="lock" title={t("blind.study.title")}>
+        {t("blind.study.body")}
+      </Notice>
+    </>
+  );
+}
+
+interface WholeProps {
+  readonly study: StudyDetail;
+  readonly protocol: StudyProtocol;
+}
+
+function Whole({ study, protocol }: WholeProps): JSX.Element {
   const { t, language } = useTexts();
   return (
     <>
-      <p className={classes.lead}>{inLanguage(study.protocol.description, language)}</p>
+      <p className={classes.lead}>{inLanguage(protocol.description, language)}</p>
       <div className={classes.grid}>
         <Paper className={classes.wide ?? ""}>
           <Title order={2} mb="md">
             {t("overview.procedure")}
           </Title>
-          <Procedure protocol={study.protocol} />
+          <Procedure protocol={protocol} />
         </Paper>
         <Paper>
           <Title order={2} mb="md">
             {t("overview.conditions")}
           </Title>
-          <Conditions protocol={study.protocol} />
+          <Conditions protocol={protocol} />
         </Paper>
         <Paper>
           <Title order={2} mb="md">
             {t("overview.design")}
           </Title>
-          <Design study={study} />
+          <Design study={study} protocol={protocol} />
         </Paper>
       </div>
     </>
@@ -69,9 +96,9 @@ function Conditions({ protocol }: { readonly protocol: StudyProtocol }): JSX.Ele
   );
 }
 
-function Design({ study }: { readonly study: StudyDetail }): JSX.Element {
+function Design({ study, protocol }: WholeProps): JSX.Element {
   const { t } = useTexts();
-  const { orders, conditions, blinding, on_disconnect, procedure } = study.protocol;
+  const { orders, conditions, blinding, on_disconnect, procedure } = protocol;
   const count = orderCount(orders, conditions.length);
   const facts: readonly (readonly [string, string])[] = [
     [t("design.design"), t(DESIGNS[orders.design] ?? "design.explicit")],

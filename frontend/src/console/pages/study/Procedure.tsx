@@ -1,11 +1,11 @@
 /** The procedure of one visit from left to right; timed parts carry their seconds, phases to scale. */
-import type { SetupStep, StudyProtocol, TaskPhase } from "@shared/api/types";
+import type { SetupStep, StepKind, StudyProtocol, TaskPhase } from "@shared/api/types";
 import { duration } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { seconds } from "@shared/units";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
-import { STEP_ICONS, stepNameKey } from "../../steps";
+import { stepIcon, stepName, stepNameKey } from "../../steps";
 import { ownTime } from "./ownTime";
 import classes from "./Procedure.module.css";
 
@@ -48,6 +48,9 @@ interface PartProps {
   readonly steps: readonly SetupStep[];
 }
 
+/** A step of the file as the plan would name it. */
+const named = ({ step, limb }: SetupStep) => ({ kind: step as StepKind, limb: limb ?? null });
+
 function Part({ name, kind, steps }: PartProps): JSX.Element {
   return (
     <div className={`${classes.part} ${classes[kind]}`}>
@@ -57,8 +60,8 @@ function Part({ name, kind, steps }: PartProps): JSX.Element {
           <SmallStep
             // biome-ignore lint/suspicious/noArrayIndexKey: the steps of a protocol never change places
             key={index}
-            icon={STEP_ICONS[step.step] ?? "flag"}
-            name={stepNameKey(step.step)}
+            icon={stepIcon(named(step))}
+            name={stepName(named(step))}
           >
             {step.duration_s === undefined ? null : duration(seconds(step.duration_s))}
           </SmallStep>

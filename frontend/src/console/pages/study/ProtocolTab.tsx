@@ -4,12 +4,15 @@ import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
+import { Link } from "wouter";
 import { useTexts } from "../../i18n";
+import { useMay } from "../../may";
 import { ImportDialog } from "../ImportDialog";
 import classes from "./ProtocolTab.module.css";
 
 export function ProtocolTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
+  const may = useMay();
   const [importing, setImporting] = useState(false);
   return (
     <>
@@ -23,24 +26,36 @@ export function ProtocolTab({ study }: { readonly study: StudyDetail }): JSX.Ele
             sha256 {study.content_hash}
           </span>
           <div className={classes.buttons}>
-            <CopyButton value={study.yaml}>
+            <CopyButton value={study.yaml ?? ""}>
               {({ copied, copy }) => (
                 <Button size="xs" variant="default" onClick={copy}>
                   {t(copied ? "action.copied" : "action.copy")}
                 </Button>
               )}
             </CopyButton>
-            <Button
-              size="xs"
-              variant="default"
-              leftSection={<Icon name="upload" size={15} />}
-              onClick={() => setImporting(true)}
-            >
-              {t("protocol.newVersion")}
-            </Button>
+            {may("design") && (
+              <>
+                <Button
+                  size="xs"
+                  component={Link}
+                  href={`/studies/${study.key}/edit`}
+                  leftSection={<Icon name="document" size={15} />}
+                >
+                  {t("versions.edit")}
+                </Button>
+                <Button
+                  size="xs"
+                  variant="default"
+                  leftSection={<Icon name="upload" size={15} />}
+                  onClick={() => setImporting(true)}
+                >
+                  {t("protocol.newVersion")}
+                </Button>
+              </>
+            )}
           </div>
         </div>
-        <Yaml text={study.yaml} label={t("study.tab.protocol")} />
+        <Yaml text={study.yaml ?? ""} label={t("study.tab.protocol")} />
       </div>
       <ImportDialog opened={importing} studyKey={study.key} onClose={() => setImporting(false)} />
     </>

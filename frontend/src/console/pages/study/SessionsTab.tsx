@@ -8,6 +8,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../../i18n";
+import { useMay } from "../../may";
 import { sessionsQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindBadge } from "../../ui/KindBadge";
@@ -21,6 +22,7 @@ import page from "./StudyPage.module.css";
 
 export function SessionsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
+  const may = useMay();
   const [kind, setKind] = useState<Kind | "all">("all");
   const [joining, setJoining] = useState(false);
   return (
@@ -42,12 +44,14 @@ export function SessionsTab({ study }: { readonly study: StudyDetail }): JSX.Ele
               icon="people"
               title={t("sessions.empty.title")}
               action={
-                <Button
-                  leftSection={<Icon name="add" size={18} />}
-                  onClick={() => setJoining(true)}
-                >
-                  {t("join.open")}
-                </Button>
+                may("run") && (
+                  <Button
+                    leftSection={<Icon name="add" size={18} />}
+                    onClick={() => setJoining(true)}
+                  >
+                    {t("join.open")}
+                  </Button>
+                )
               }
             >
               {t("sessions.empty.body")}

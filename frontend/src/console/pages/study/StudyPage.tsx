@@ -7,37 +7,68 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../../i18n";
+import { type Act, useMay } from "../../may";
 import { studyQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import { useTitle } from "../../ui/useTitle";
+import { NotForRole } from "../NotForRole";
+import { Archived } from "./Archived";
 import { DashboardTab } from "./DashboardTab";
 import { ExportTab } from "./ExportTab";
 import { LedgerTab } from "./LedgerTab";
 import { NewSession } from "./NewSession";
 import { Overview } from "./Overview";
 import { ProtocolTab } from "./ProtocolTab";
+import { ParticipantsTab } from "./participants/ParticipantsTab";
 import { SessionsTab } from "./SessionsTab";
 import classes from "./StudyPage.module.css";
+import { SuggestionsTab } from "./SuggestionsTab";
+import { VersionsTab } from "./VersionsTab";
 
-const TABS = ["overview", "ledger", "sessions", "dashboard", "export", "protocol"] as const;
+const TABS = [
+  "overview",
+  "ledger",
+  "sessions",
+  "participants",
+  "dashboard",
+  "export",
+  "protocol",
+  "versions",
+  "suggestions",
+] as const;
 type Tab = (typeof TABS)[number];
 
 const ICONS: Readonly<Record<Tab, IconName>> = {
   overview: "info",
   ledger: "list",
-  sessions: "people",
+  sessions: "headset",
+  participants: "people",
   dashboard: "chart",
   export: "download",
   protocol: "document",
+  versions: "redo",
+  suggestions: "talk",
 };
 
 const CONTENT: Readonly<Record<Tab, (props: { study: StudyDetail }) => JSX.Element>> = {
   overview: Overview,
   ledger: LedgerTab,
   sessions: SessionsTab,
+  participants: ParticipantsTab,
   dashboard: DashboardTab,
   export: ExportTab,
   protocol: ProtocolTab,
+  versions: VersionsTab,
+  suggestions: SuggestionsTab,
+};
+
+/** What somebody must be allowed to do to see a tab; the others are for everybody. */
+const NEEDS: Readonly<Partial<Record<Tab, Act>>> = {
+  participants: "rights",
+  dashboard: "compare",
+  export: "compare",
+  protocol: "compare",
+  versions: "compare",
 };
 
 interface StudyPageProps {
@@ -63,19 +94,27 @@ export function StudyPage({ studyKey, tab }: StudyPageProps): JSX.Element {
 function Study({ study, tab }: { readonly study: StudyDetail; readonly tab: Tab }): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
-  const Content = CONTENT[tab];
+  const may = useMay();
+  const isTheirs = (name: Tab): boolean => {
+    const act = NEEDS[name];
+    return act === undefined || may(act);
+  };
+  const Content = isTheirs(tab) ? CONTENT[tab] : NotForRole;
   return (
     <>
       <Head study={study} />
+      {study.archived_at !== null && <Archived studyKey={study.key} />}
       <Tabs
         value={tab}
         onChange={(value) => navigate(`/studies/${study.key}/${value ?? "overview"}`)}
         keepMounted={false}
       >
         <Tabs.List>
-          {TABS.map((name) => (
+          {TABS.filter(isTheirs).map((name) => (
             <Tabs.Tab key={name} value={name} leftSection={<Icon name={ICONS[name]} size={17} />}>
-              {t(`study.tab.${name}`)}
+              {t(
+                name === "versions" || name === "suggestions" ? `${name}.tab` : `study.tab.${name}`,
+              )}
             </Tabs.Tab>
           ))}
         </Tabs.List>
@@ -90,7 +129,8 @@ function Study({ study, tab }: { readonly study: StudyDetail; readonly tab: Tab 
 function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t, language } = useTexts();
   const [joining, setJoining] = useState(false);
-  const title = inLanguage(study.protocol.title, language);
+  const may = useMay();
+  const title = study.protocol === null ? study.title : inLanguage(study.protocol.title, language);
   useTitle(title);
   return (
     <div className={classes.head}>
@@ -105,9 +145,15 @@ function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
           </span>
         </div>
       </div>
-      <Button leftSection={<Icon name="add" size={18} />} onClick={() => setJoining(true)}>
-        {t("join.open")}
-      </Button>
+      {may("run") && (
+        <Button
+          leftSection={<Icon name="add" size={18} />}
+          disabled={study.archived_at !== null}
+          onClick={() => setJoining(true)}
+        >
+          {t("join.open")}
+        </Button>
+      )}
       <NewSession study={study} opened={joining} onClose={() => setJoining(false)} />
     </div>
   );

@@ -1,0 +1,1 @@
+"""What experts advise about a study, and what became of it."""

@@ -1,0 +1,95 @@
+/** Showing a blinded session's condition before it is over: for a reason that the record keeps. */
+import { Button, Chip, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
+import { blinding } from "@shared/api/people";
+import type { SessionView } from "@shared/api/types";
+import { useMutation, useQueryClient } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Failure } from "../errors";
+import { type Key, useTexts } from "../i18n";
+import { useMay } from "../may";
+import { sessionQuery } from "../queries";
+
+const REASONS: readonly Key[] = [
+  "blind.reason.adverse",
+  "blind.reason.safety",
+  "blind.reason.fault",
+];
+
+/** Nothing where there is nothing hidden, or where it is hidden for good. */
+export function Reveal({ session }: { readonly session: SessionView }): JSX.Element | null {
+  const { t } = useTexts();
+  const may = useMay();
+  const [opened, { open, close }] = useDisclosure();
+  if (!session.blinded || !may("reveal")) return null;
+  return (
+    <>
+      <Button size="compact-xs" variant="default" onClick={open}>
+        {t("blind.show")}
+      </Button>
+      <Modal
+        opened={opened}
+        onClose={close}
+        title={t("blind.ask.title", { code: session.participant_code })}
+        closeButtonProps={{ "aria-label": t("action.close") }}
+      >
+        <RevealForm session={session} onClose={close} />
+      </Modal>
+    </>
+  );
+}
+
+interface RevealFormProps {
+  readonly session: SessionView;
+  readonly onClose: () => void;
+}
+
+function RevealForm({ session, onClose }: RevealFormProps): JSX.Element {
+  const { t } = useTexts();
+  const queries = useQueryClient();
+  const [reason, setReason] = useState("");
+  const reveal = useMutation({
+    mutationFn: () => blinding.reveal(session.id, reason.trim()),
+    onSuccess: (view) => {
+      queries.setQueryData(sessionQuery(session.id).queryKey, view);
+      onClose();
+    },
+  });
+  return (
+    <form
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (reason.trim() !== "") reveal.mutate();
+      }}
+    >
+      <Stack>
+        <Text c="dimmed">{t("blind.ask.body")}</Text>
+        <Group gap="xs">
+          {REASONS.map((key) => (
+            <Chip key={key} checked={reason === t(key)} onChange={() => setReason(t(key))}>
+              {t(key)}
+            </Chip>
+          ))}
+        </Group>
+        <Textarea
+          label={t("ask.reason")}
+          data-autofocus
+          autosize
+          minRows={2}
+          maxLength={500}
+          value={reason}
+          onChange={(event) => setReason(event.currentTarget.value)}
+        />
+        {reveal.isError && <Failure error={reveal.error} />}
+        <Group justify="flex-end">
+          <Button variant="default" onClick={onClose}>
+            {t("action.cancel")}
+          </Button>
+          <Button type="submit" disabled={reason.trim() === ""} loading={reveal.isPending}>
+            {t("blind.show")}
+          </Button>
+        </Group>
+      </Stack>
+    </form>
+  );
+}

@@ -1,0 +1,88 @@
+/** Coming in: by an invitation, again after a sign-in has ended, and with a new password. */
+export const joinEn = {
+  "login.ended.title": "Your sign-in has ended",
+  "login.ended.body":
+    "It ran out, or was ended elsewhere. Sign in again and go on where you were: what you were writing on this page is kept.",
+  "login.forgotten": "Forgotten? The administrator of the lab can invite you again.",
+  "invited.title": "You are invited",
+  "invited.as": "Your role will be",
+  "invited.note": "“{{note}}”",
+  "invited.until": "The link works once, until {{date}}.",
+  "invited.username": "User name",
+  "invited.username.hint":
+    "It appears in the record beside what you do. Letters, digits, dots, - and _.",
+  "invited.submit": "Make the account",
+  "invited.used.title": "This link was used already",
+  "invited.used.body":
+    "It works once. If it was you, sign in. If it was not, tell the administrator of the lab at once.",
+  "invited.expired.title": "This link has expired",
+  "invited.expired.body": "Ask the administrator of the lab for another.",
+  "invited.revoked.title": "This invitation was taken back",
+  "invited.revoked.body": "Ask the administrator of the lab if you expected it.",
+  "invited.unknown.title": "There is no such invitation",
+  "invited.unknown.body":
+    "Part of the link may be missing: copy all of it. Else ask the administrator of the lab for another.",
+  "invited.signIn": "To the sign-in",
+  "invited.other.title": "You are signed in as {{name}}",
+  "invited.other.body":
+    "An invitation makes a new account. Sign out first if the invitation is for somebody else, or for you under another name.",
+  "invited.other.stay": "Stay {{name}}",
+  "password.change": "Change password",
+  "password.current": "Current password",
+  "password.new": "New password",
+  "password.first": "Password",
+  "password.again": "The same again",
+  "password.others": "You stay signed in here; every other browser has to sign in again.",
+  "password.done": "The password is changed.",
+  "password.rule.length": "At least {{least}} characters, such as four or five random words",
+  "password.rule.different": "At least {{least}} different ones",
+  "password.rule.name": "More than the user name or the name of this program",
+  "password.rule.same": "Both are the same",
+  "password.rules": "The password",
+  "password.met": "met",
+  "password.unmet": "not yet",
+};
+
+export const joinDe: Readonly<Record<keyof typeof joinEn, string>> = {
+  "login.ended.title": "Ihre Anmeldung ist beendet",
+  "login.ended.body":
+    "Sie ist abgelaufen oder wurde anderswo beendet. Melden Sie sich wieder an und machen Sie weiter: was Sie auf dieser Seite geschrieben haben, ist noch da.",
+  "login.forgotten": "Vergessen? Der Admin des Labors kann Sie neu einladen.",
+  "invited.title": "Sie sind eingeladen",
+  "invited.as": "Ihre Rolle wird",
+  "invited.note": "„{{note}}“",
+  "invited.until": "Der Link gilt einmal, bis {{date}}.",
+  "invited.username": "Benutzername",
+  "invited.username.hint":
+    "Er steht in den Akten neben dem, was Sie tun. Buchstaben, Ziffern, Punkte, - und _.",
+  "invited.submit": "Konto anlegen",
+  "invited.used.title": "Dieser Link wurde schon benutzt",
+  "invited.used.body":
+    "Er gilt einmal. Waren Sie es, dann melden Sie sich an. Wenn nicht, sagen Sie es gleich dem Admin des Labors.",
+  "invited.expired.title": "Dieser Link ist abgelaufen",
+  "invited.expired.body": "Bitten Sie den Admin des Labors um einen neuen.",
+  "invited.revoked.title": "Diese Einladung wurde zurückgenommen",
+  "invited.revoked.body": "Fragen Sie den Admin des Labors, wenn Sie sie erwartet haben.",
+  "invited.unknown.title": "Diese Einladung gibt es nicht",
+  "invited.unknown.body":
+    "Vielleicht fehlt ein Teil des Links: kopieren Sie ihn ganz. Sonst bitten Sie den Admin des Labors um einen neuen.",
+  "invited.signIn": "Zur Anmeldung",
+  "invited.other.title": "Sie sind angemeldet als {{name}}",
+  "invited.other.body":
+    "Eine Einladung legt ein neues Konto an. Melden Sie sich erst ab, wenn sie für jemand anderen ist oder für Sie unter anderem Namen.",
+  "invited.other.stay": "{{name}} bleiben",
+  "password.change": "Passwort ändern",
+  "password.current": "Jetziges Passwort",
+  "password.new": "Neues Passwort",
+  "password.first": "Passwort",
+  "password.again": "Noch einmal dasselbe",
+  "password.others": "Hier bleiben Sie angemeldet; jeder andere Browser muss sich neu anmelden.",
+  "password.done": "Das Passwort ist geändert.",
+  "password.rule.length": "Mindestens {{least}} Zeichen, etwa vier oder fünf zufällige Wörter",
+  "password.rule.different": "Mindestens {{least}} verschiedene",
+  "password.rule.name": "Mehr als der Benutzername oder der Name dieses Programms",
+  "password.rule.same": "Beide sind gleich",
+  "password.rules": "Das Passwort",
+  "password.met": "erfüllt",
+  "password.unmet": "noch nicht",
+};

@@ -1,0 +1,56 @@
+/** Practice, stop rules, heights that differ. */
+export const safetyEn = {
+  "step.practice.hand": "Practice with the hand",
+  "step.practice.foot": "Practice with the foot",
+  "do.begin.practice": "Begin the practice",
+  "guide.practice": "A task to try. It is not analysed; let the participant ask.",
+  "practice.until_one": "Ends after {{count}} completed task",
+  "practice.until_other": "Ends after {{count}} completed tasks",
+  "held.title": "Stop: see how the participant is",
+  "held.score": "{{score}} is at or above the limit of {{limit}} in “{{instrument}}”.",
+  "held.rise": "{{score}} has risen by {{limit}} or more in “{{instrument}}”.",
+  "held.body":
+    "The session is held, and the tablet asks the participant to wait for you. Offer a seat and water; take the headset off.",
+  "held.end": "End the session",
+  "held.withdraw": "The participant wants to stop",
+  "do.override_stop": "Go on with a reason",
+  "command.override_stop": "go on despite the stop rule",
+  "ask.override_stop": "Go on although the stop rule was met?",
+  "ask.override_stop.body":
+    "Only after you have spoken to the participant, and they want to go on. The reason becomes part of the record.",
+  "reason.recovered": "Recovered after a break, wants to go on",
+  "reason.mistyped": "The answer was a mistake",
+  "reason.stopRule": "Stop rule: sickness",
+  "height.differs": "Is that right?",
+  "height.differs.body":
+    "Stated and matched height differ by {{difference}} cm. Check both; press again to save them as they are.",
+  "height.differs.save": "Both are right: save",
+};
+
+export const safetyDe: Readonly<Record<keyof typeof safetyEn, string>> = {
+  "step.practice.hand": "Übung mit der Hand",
+  "step.practice.foot": "Übung mit dem Fuß",
+  "do.begin.practice": "Übung beginnen",
+  "guide.practice": "Eine Aufgabe zum Ausprobieren. Sie wird nicht ausgewertet; Fragen sind gut.",
+  "practice.until_one": "Endet nach {{count}} geschafften Aufgabe",
+  "practice.until_other": "Endet nach {{count}} geschafften Aufgaben",
+  "held.title": "Halt: Sehen Sie nach der Person",
+  "held.score": "{{score}} liegt bei oder über der Grenze von {{limit}} in „{{instrument}}“.",
+  "held.rise": "{{score}} ist um {{limit}} oder mehr gestiegen in „{{instrument}}“.",
+  "held.body":
+    "Die Sitzung ist angehalten, und das Tablet bittet die Person, auf Sie zu warten. Bieten Sie einen Stuhl und Wasser an; nehmen Sie die Brille ab.",
+  "held.end": "Sitzung beenden",
+  "held.withdraw": "Die Person möchte aufhören",
+  "do.override_stop": "Mit Begründung fortfahren",
+  "command.override_stop": "trotz Stoppregel fortfahren",
+  "ask.override_stop": "Trotz Stoppregel fortfahren?",
+  "ask.override_stop.body":
+    "Nur nachdem Sie mit der Person gesprochen haben und sie weitermachen möchte. Die Begründung wird Teil des Protokolls.",
+  "reason.recovered": "Nach einer Pause erholt, möchte weitermachen",
+  "reason.mistyped": "Die Antwort war ein Versehen",
+  "reason.stopRule": "Stoppregel: Übelkeit",
+  "height.differs": "Stimmt das?",
+  "height.differs.body":
+    "Angegebene und angepasste Größe unterscheiden sich um {{difference}} cm. Prüfen Sie beide; noch einmal drücken speichert sie so.",
+  "height.differs.save": "Beide stimmen: speichern",
+};

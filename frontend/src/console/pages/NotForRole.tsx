@@ -1,0 +1,43 @@
+/** A page that somebody came to by its address, and that is not for their role. */
+import { Button } from "@mantine/core";
+import type { JSX, ReactNode } from "react";
+import { Link } from "wouter";
+import { useAccount } from "../account";
+import { useTexts } from "../i18n";
+import { type Act, useMay } from "../may";
+import { EmptyState } from "../ui/EmptyState";
+
+interface OnlyProps {
+  readonly act: Act;
+  readonly children: ReactNode;
+}
+
+/** Shows a page to those who may use it, and says so calmly to others. */
+export function Only({ act, children }: OnlyProps): JSX.Element {
+  const may = useMay();
+  if (may(act)) return <>{children}</>;
+  return (
+    <div style={{ maxWidth: 1240, margin: "0 auto", padding: "28px 24px" }}>
+      <NotForRole />
+    </div>
+  );
+}
+
+export function NotForRole(): JSX.Element {
+  const { t } = useTexts();
+  const account = useAccount().data;
+  return (
+    <EmptyState
+      icon="lock"
+      title={t("forbidden.title")}
+      action={
+        <Button component={Link} href="/" variant="default">
+          {t("forbidden.back")}
+        </Button>
+      }
+    >
+      {account != null &&
+        t("forbidden.body", { name: account.username, role: t(`role.${account.role}`) })}
+    </EmptyState>
+  );
+}

@@ -1,0 +1,87 @@
+/** A new password twice, with the rule as a list that fills while somebody types. */
+import { PasswordInput, Stack } from "@mantine/core";
+import { Icon } from "@shared/ui/Icon";
+import type { JSX, ReactNode } from "react";
+import { useTexts } from "../../i18n";
+import classes from "./NewPassword.module.css";
+import {
+  checkPassword,
+  LEAST_DIFFERENT,
+  LEAST_LENGTH,
+  MOST_LENGTH,
+  type PasswordChecks,
+} from "./passwordRule";
+
+export interface Typed {
+  readonly password: string;
+  readonly again: string;
+}
+
+export const NOTHING_TYPED: Typed = { password: "", again: "" };
+
+interface NewPasswordProps {
+  readonly label: string;
+  readonly username: string;
+  readonly value: Typed;
+  readonly error?: ReactNode;
+  readonly onChange: (value: Typed) => void;
+}
+
+export function NewPassword(props: NewPasswordProps): JSX.Element {
+  const { label, username, value, error, onChange } = props;
+  const { t } = useTexts();
+  const field = { autoComplete: "new-password", maxLength: MOST_LENGTH, required: true } as const;
+  return (
+    <Stack gap="sm">
+      <PasswordInput
+        {...field}
+        label={label}
+        withAsterisk={false}
+        error={error}
+        value={value.password}
+        onChange={(event) => onChange({ ...value, password: event.currentTarget.value })}
+      />
+      <PasswordInput
+        {...field}
+        label={t("password.again")}
+        withAsterisk={false}
+        value={value.again}
+        onChange={(event) => onChange({ ...value, again: event.currentTarget.value })}
+      />
+      <Rule checks={checkPassword(value.password, value.again, username.trim())} />
+    </Stack>
+  );
+}
+
+function Rule({ checks }: { readonly checks: PasswordChecks }): JSX.Element {
+  const { t } = useTexts();
+  const lines = [
+    ["length", LEAST_LENGTH],
+    ["different", LEAST_DIFFERENT],
+    ["name", 0],
+    ["same", 0],
+  ] as const;
+  return (
+    <ul className={classes.rule} aria-label={t("password.rules")}>
+      {lines.map(([name, least]) => (
+        <li key={name} className={checks[name] ? classes.met : undefined}>
+          {checks[name] ? <Icon name="check" size={16} /> : <Ring />}
+          <span>
+            {t(`password.rule.${name}`, { least })}
+            <span className="visually-hidden">
+              , {t(checks[name] ? "password.met" : "password.unmet")}
+            </span>
+          </span>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+function Ring(): JSX.Element {
+  return (
+    <svg width="16" height="16" viewBox="0 0 16 16" aria-hidden="true">
+      <circle cx="8" cy="8" r="4.5" fill="none" stroke="var(--line-strong)" strokeWidth="1.5" />
+    </svg>
+  );
+}

@@ -1,0 +1,26 @@
+/** The server's rule for passwords, said while somebody types; the server has the last word. */
+export const LEAST_LENGTH = 12;
+export const MOST_LENGTH = 200;
+export const LEAST_DIFFERENT = 5;
+const PROGRAM = "reembody";
+
+export interface PasswordChecks {
+  readonly length: boolean;
+  readonly different: boolean;
+  readonly name: boolean;
+  readonly same: boolean;
+}
+
+export function checkPassword(password: string, again: string, username: string): PasswordChecks {
+  const small = password.toLowerCase();
+  const mostly = (name: string): boolean =>
+    small.includes(name.toLowerCase()) && password.length < LEAST_LENGTH + name.length;
+  return {
+    length: [...password].length >= LEAST_LENGTH,
+    different: new Set(small).size >= LEAST_DIFFERENT,
+    name: password !== "" && !mostly(PROGRAM) && !(username !== "" && mostly(username)),
+    same: password !== "" && password === again,
+  };
+}
+
+export const isGood = (checks: PasswordChecks): boolean => Object.values(checks).every(Boolean);

@@ -1,0 +1,132 @@
+/** The record of a consent as one would file it: on A4, everything that was shown and given. */
+import { Button } from "@mantine/core";
+import type { ConsentRecord } from "@shared/api/records";
+import { dateTime } from "@shared/format";
+import { type Paragraph, paragraphs } from "@shared/text";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { Link } from "wouter";
+import { useTexts } from "../../i18n";
+import { consentQuery } from "../../queries";
+import { EmptyState } from "../../ui/EmptyState";
+import { Loaded } from "../../ui/Loaded";
+import { useTitle } from "../../ui/useTitle";
+import classes from "./ConsentPage.module.css";
+import { Facts } from "./Facts";
+import { Signature } from "./Signature";
+
+export function ConsentPage({ id }: { readonly id: string }): JSX.Element {
+  const { t } = useTexts();
+  useTitle(t("consent.page"));
+  return (
+    <div className={classes.page}>
+      <div className={classes.tools}>
+        <Button
+          component={Link}
+          href={`/sessions/${id}`}
+          variant="subtle"
+          color="gray"
+          leftSection={<Icon name="back" size={16} />}
+        >
+          {t("consent.back")}
+        </Button>
+        <Button leftSection={<Icon name="document" size={18} />} onClick={() => window.print()}>
+          {t("consent.print")}
+        </Button>
+      </div>
+      <Loaded query={useQuery(consentQuery(id))}>
+        {(record) =>
+          record === null ? (
+            <EmptyState icon="document" title={t("consent.none")}>
+              {t("consent.none.body")}
+            </EmptyState>
+          ) : (
+            <Sheet record={record} />
+          )
+        }
+      </Loaded>
+    </div>
+  );
+}
+
+function Sheet({ record }: { readonly record: ConsentRecord }): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <article className={classes.sheet}>
+      {record.simulated && <p className={classes.simulated}>{t("consent.simulated")}</p>}
+      <header>
+        <p className={classes.kicker}>{t("consent.page")}</p>
+        <h1>{record.study_title}</h1>
+      </header>
+      {record.erased ? (
+        <Notice tone="warn" title={t("consent.erased")}>
+          {t("consent.erased.body")} {dateTime(record.at, language)}
+        </Notice>
+      ) : (
+        <>
+          {!record.text_matches && (
+            <Notice tone="bad" title={t("consent.mismatch")}>
+              {t("consent.mismatch.body")}
+            </Notice>
+          )}
+          <section lang={record.language}>
+            <h2>{record.title}</h2>
+            {paragraphs(record.text).map((paragraph, index) => (
+              // biome-ignore lint/suspicious/noArrayIndexKey: a text has no names for its parts
+              <Part key={index} paragraph={paragraph} />
+            ))}
+          </section>
+          <Statements record={record} />
+          <Signature record={record} />
+        </>
+      )}
+      <Facts record={record} />
+    </article>
+  );
+}
+
+function Statements({ record }: { readonly record: ConsentRecord }): JSX.Element | null {
+  const { t } = useTexts();
+  if (record.statements.length === 0) return null;
+  return (
+    <section>
+      <h2>{t("consent.statements")}</h2>
+      <ul className={classes.statements}>
+        {record.statements.map((one) => (
+          <li key={one.text}>
+            <span className={classes.tick}>
+              <Icon name={one.ticked === true ? "check" : "minus"} size={18} />
+              {t(
+                one.ticked === null
+                  ? "consent.onPaper"
+                  : one.ticked
+                    ? "consent.ticked"
+                    : "consent.notTicked",
+              )}
+            </span>
+            <span lang={record.language}>{one.text}</span>
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}
+
+function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
+  switch (paragraph.kind) {
+    case "heading":
+      return <h3>{paragraph.text}</h3>;
+    case "prose":
+      return <p>{paragraph.text}</p>;
+    case "points":
+      return (
+        <ul>
+          {paragraph.points.map((point) => (
+            <li key={point}>{point}</li>
+          ))}
+        </ul>
+      );
+  }
+}

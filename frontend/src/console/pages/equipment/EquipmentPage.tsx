@@ -1,0 +1,71 @@
+/** How slow each piece of equipment is: its newest measurement first, the history below. */
+import { Button, Modal, Title } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
+import type { Calibration } from "@shared/api/records";
+import { Icon } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { useTexts } from "../../i18n";
+import { useMay } from "../../may";
+import { calibrationsQuery } from "../../queries";
+import { EmptyState } from "../../ui/EmptyState";
+import { Loaded } from "../../ui/Loaded";
+import { useTitle } from "../../ui/useTitle";
+import { AddForm } from "./AddForm";
+import classes from "./EquipmentPage.module.css";
+import { History } from "./History";
+
+export function EquipmentPage(): JSX.Element {
+  const { t } = useTexts();
+  useTitle(t("equipment.title"));
+  const [adding, dialog] = useDisclosure();
+  const mayWrite = useMay()("design");
+  const add = mayWrite ? (
+    <Button leftSection={<Icon name="add" size={18} />} onClick={dialog.open}>
+      {t("equipment.add")}
+    </Button>
+  ) : null;
+  const query = useQuery(calibrationsQuery);
+  return (
+    <>
+      <div className={classes.head}>
+        <div>
+          <Title order={1}>{t("equipment.title")}</Title>
+          <p className={classes.lead}>{t("equipment.lead")}</p>
+        </div>
+        {add}
+      </div>
+      <Loaded query={query}>
+        {(all) =>
+          all.length === 0 ? (
+            <EmptyState icon="headset" title={t("equipment.empty")}>
+              {t("equipment.empty.body")}
+            </EmptyState>
+          ) : (
+            names(all).map((name) => (
+              <History
+                key={name}
+                name={name}
+                own={all.filter((one) => one.equipment === name)}
+                mayWrite={mayWrite}
+              />
+            ))
+          )
+        }
+      </Loaded>
+      <Modal
+        opened={adding}
+        onClose={dialog.close}
+        title={t("equipment.add")}
+        size="lg"
+        closeButtonProps={{ "aria-label": t("action.close") }}
+      >
+        <AddForm known={names(query.data ?? [])} onClose={dialog.close} />
+      </Modal>
+    </>
+  );
+}
+
+const names = (all: readonly Calibration[]): string[] => [
+  ...new Set(all.map((one) => one.equipment)),
+];

@@ -1,0 +1,98 @@
+/** Inviting: role, studies, how long; then the link, once. */
+import { Button, Group, Input, Modal, SegmentedControl, Stack, TextInput } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
+import { type Invited, invitations, type Role, type StudyKeys } from "@shared/api/people";
+import { Icon } from "@shared/ui/Icon";
+import { useMutation, useQueryClient } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Failure } from "../../errors";
+import { useTexts } from "../../i18n";
+import { invitationsQuery } from "../../queries";
+import { InviteLink } from "./InviteLink";
+import { RoleChoice } from "./RoleChoice";
+import { StudiesChoice } from "./StudiesChoice";
+
+export function InviteButton(): JSX.Element {
+  const { t } = useTexts();
+  const [opened, { open, close }] = useDisclosure();
+  const [made, setMade] = useState<Invited | null>(null);
+  return (
+    <>
+      <Button leftSection={<Icon name="add" size={18} />} onClick={open}>
+        {t("invite.open")}
+      </Button>
+      <Modal
+        opened={opened}
+        onClose={close}
+        onExitTransitionEnd={() => setMade(null)}
+        size={made === null ? 1010 : 760}
+        title={t(made === null ? "invite.title" : "invite.made")}
+        closeOnClickOutside={false}
+        closeButtonProps={{ "aria-label": t("action.close") }}
+      >
+        {made === null ? (
+          <InviteForm onMade={setMade} />
+        ) : (
+          <InviteLink made={made} onDone={close} />
+        )}
+      </Modal>
+    </>
+  );
+}
+
+const HOURS = ["24", "72", "168", "720"] as const;
+
+function InviteForm({ onMade }: { readonly onMade: (made: Invited) => void }): JSX.Element {
+  const { t } = useTexts();
+  const queries = useQueryClient();
+  const [role, setRole] = useState<Role>("operator");
+  const [studies, setStudies] = useState<StudyKeys>(null);
+  const [note, setNote] = useState("");
+  const [hours, setHours] = useState("72");
+  const make = useMutation({
+    mutationFn: () => invitations.make({ role, studies, note: note.trim(), hours: Number(hours) }),
+    onSuccess: (made) => {
+      void queries.invalidateQueries({ queryKey: invitationsQuery.queryKey });
+      onMade(made);
+    },
+  });
+  return (
+    <form
+      onSubmit={(event) => {
+        event.preventDefault();
+        make.mutate();
+      }}
+    >
+      <Stack>
+        <RoleChoice role={role} onChange={setRole} />
+        <StudiesChoice studies={studies} onChange={setStudies} />
+        <Group align="start" grow>
+          <TextInput
+            label={t("invite.note")}
+            description={t("invite.note.hint")}
+            maxLength={80}
+            value={note}
+            onChange={(event) => setNote(event.currentTarget.value)}
+          />
+          <div>
+            <Input.Label component="div" display="block" mb={22}>
+              {t("invite.hours")}
+            </Input.Label>
+            <SegmentedControl
+              aria-label={t("invite.hours")}
+              value={hours}
+              onChange={setHours}
+              data={HOURS.map((value) => ({ value, label: t(`invite.hours.${value}`) }))}
+            />
+          </div>
+        </Group>
+        {make.isError && <Failure error={make.error} />}
+        <Group justify="flex-end">
+          <Button type="submit" loading={make.isPending}>
+            {t("invite.make")}
+          </Button>
+        </Group>
+      </Stack>
+    </form>
+  );
+}

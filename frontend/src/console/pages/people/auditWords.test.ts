@@ -1,0 +1,79 @@
+/** Every act that the server records has its sentence, and no placeholder is left open. */
+import { readdirSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import type { AuditEntry } from "@shared/api/people";
+import { createTranslations } from "@shared/i18n/i18n";
+import { describe, expect, it } from "vitest";
+import { auditDe, auditEn } from "../../i18n/auditTexts";
+import { peopleDe, peopleEn } from "../../i18n/peopleTexts";
+import { actorName, KINDS, sentences } from "./auditWords";
+
+const tables = createTranslations(
+  { en: { ...auditEn, ...peopleEn }, de: { ...auditDe, ...peopleDe } },
+  "en",
+);
+const t = (key: string, values?: Readonly<Record<string, string | number>>) =>
+  tables.t(key, { ...values });
+
+const entry = (action: string, details: AuditEntry["details"] = {}, subject = ""): AuditEntry => ({
+  seq: 1,
+  at: "2026-01-01T12:00:00Z",
+  actor: "account:ada",
+  action,
+  subject,
+  details,
+  hash: "",
+});
+
+const FEATURES = join(import.meta.dirname, "../../../../../app/features");
+const files = readdirSync(FEATURES, { recursive: true, encoding: "utf8" }).filter((name) =>
+  name.endsWith(".py"),
+);
+const ACTIONS = files.flatMap((name) => {
+  const source = readFileSync(join(FEATURES, name), "utf8");
+  const named = source.matchAll(/action="([a-z]+\.[a-z_]+)"|caller, "(study\.[a-z]+)"/g);
+  return [...named].map(([, one, two]) => one ?? two ?? "");
+});
+
+describe("the audit trail in words", () => {
+  it("finds the acts in the server's source", () => {
+    expect(ACTIONS).toContain("login.revoked");
+    expect(ACTIONS).toContain("study.archived");
+  });
+
+  it.each(ACTIONS)("has words for %s", (action) => {
+    const [first] = sentences(entry(action, {}, "study:one"), t);
+    expect(first).not.toContain(action);
+    expect(KINDS.some((kind) => action.startsWith(`${kind}.`))).toBe(true);
+  });
+
+  it("tells every change of one act", () => {
+    const changed = entry(
+      "account.changed",
+      { role: "analyst", studies: ["a", "b"] },
+      "account:bo",
+    );
+    expect(sentences(changed, t)).toEqual([
+      "gave bo the role Analyst",
+      "gave bo these studies only: a, b",
+    ]);
+  });
+
+  it("tells how many sign-ins ended", () => {
+    const revoked = entry("login.revoked", { ended: 2 }, "account:bo");
+    expect(sentences(revoked, t)).toEqual(["ended 2 sign-ins of bo"]);
+  });
+
+  it("shows what it does not know as it is recorded", () => {
+    const strange = entry("moon.landed", { at_m: 3 }, "moon:one");
+    expect(sentences(strange, t)).toEqual(["moon.landed one", "at m: 3"]);
+  });
+
+  it("names people by their user name", () => {
+    expect([actorName("account:ada"), actorName("nobody"), actorName("tablet:x")]).toEqual([
+      "ada",
+      "nobody",
+      "tablet",
+    ]);
+  });
+});

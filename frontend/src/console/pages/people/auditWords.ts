@@ -1,0 +1,110 @@
+/** An entry of the audit trail as sentences. What is not known here is told as it is recorded. */
+import type { AuditEntry, Role } from "@shared/api/people";
+import type { Translate } from "@shared/i18n/i18n";
+import type { Key } from "../../i18n";
+
+type Say = Translate<Key>;
+
+/** `account:ada` is ada; a device or the command line is called by its kind. */
+export const actorName = (actor: string): string =>
+  actor.startsWith("account:") ? actor.slice("account:".length) : (actor.split(":")[0] ?? actor);
+
+export const subjectName = (subject: string): string => subject.slice(subject.indexOf(":") + 1);
+
+/** What was done; more than one sentence where one act changed several things. */
+export function sentences(entry: AuditEntry, t: Say): readonly string[] {
+  const subject = subjectName(entry.subject);
+  const details = entry.details as Readonly<Record<string, unknown>>;
+  if (entry.action === "account.changed") return accountChanges(details, subject, t);
+  const { role, studies, ended } = details;
+  if (entry.action === "invitation.made") {
+    const whom = t("act.invitation.made", { role: roleName(role, t) });
+    return Array.isArray(studies)
+      ? [whom, t("act.invitation.studies", { studies: list(studies) })]
+      : [whom];
+  }
+  const key = SENTENCES[entry.action];
+  if (key === undefined) {
+    return [`${entry.action} ${subject}`.trim(), rest(details)].filter((part) => part !== "");
+  }
+  const count = typeof ended === "number" ? ended : 0;
+  return [t(key, { ...texts(details, t), count, subject })];
+}
+
+/** The sentence of every act that needs no more than its own details. */
+const SENTENCES: Readonly<Record<string, Key>> = {
+  "login.opened": "act.login.opened",
+  "login.refused": "act.login.refused",
+  "login.revoked": "act.login.revoked",
+  "account.made": "act.account.made",
+  "account.password": "act.account.password",
+  "invitation.revoked": "act.invitation.revoked",
+  "study.created": "act.study.created",
+  "study.version": "act.study.version",
+  "study.duplicated": "act.study.duplicated",
+  "study.archived": "act.study.archived",
+  "study.restored": "act.study.restored",
+  "answer.corrected": "act.answer.corrected",
+  "copy.destroyed": "act.copy.destroyed",
+  "participant.copied": "act.participant.copied",
+  "participant.erased": "act.participant.erased",
+  "participant.erased_again": "act.participant.erased_again",
+};
+
+/** What can be asked for by kind: everything whose name begins so. */
+export const KINDS = [
+  "login",
+  "account",
+  "invitation",
+  "study",
+  "participant",
+  "answer",
+  "copy",
+] as const;
+
+function accountChanges(
+  { role, studies, closed }: Readonly<Record<string, unknown>>,
+  subject: string,
+  t: Say,
+): readonly string[] {
+  const said: string[] = [];
+  if (role != null) said.push(t("act.account.role", { subject, role: roleName(role, t) }));
+  if (studies === null) said.push(t("act.account.allStudies", { subject }));
+  if (Array.isArray(studies)) {
+    said.push(
+      studies.length === 0
+        ? t("act.account.noStudies", { subject })
+        : t("act.account.studies", { subject, studies: list(studies) }),
+    );
+  }
+  if (closed === true) said.push(t("act.account.closed", { subject }));
+  if (closed === false) said.push(t("act.account.reopened", { subject }));
+  return said.length === 0 ? [t("act.account.changed", { subject })] : said;
+}
+
+const ROLE_KEYS: Readonly<Record<Role, Key>> = {
+  admin: "role.admin",
+  experimenter: "role.experimenter",
+  operator: "role.operator",
+  analyst: "role.analyst",
+};
+
+function roleName(role: unknown, t: Say): string {
+  const key = ROLE_KEYS[role as Role];
+  return key === undefined ? String(role) : t(key);
+}
+
+const list = (values: readonly unknown[]): string => values.map(String).join(", ");
+
+const texts = (details: Readonly<Record<string, unknown>>, t: Say) =>
+  Object.fromEntries(
+    Object.entries(details).map(([name, value]) => [
+      name,
+      name === "role" ? roleName(value, t) : String(value),
+    ]),
+  );
+
+const rest = (details: Readonly<Record<string, unknown>>): string =>
+  Object.entries(details)
+    .map(([name, value]) => `${name.replaceAll("_", " ")}: ${JSON.stringify(value)}`)
+    .join(" · ");

@@ -1,0 +1,84 @@
+/** Who took part, and what they may ask for: a copy, a correction, and that their data go. */
+import { TextInput } from "@mantine/core";
+import type { Participant } from "@shared/api/rights";
+import type { StudyDetail } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { useTexts } from "../../../i18n";
+import { participantsQuery } from "../../../queries";
+import { AnswersDrawer } from "../../../rights/AnswersDrawer";
+import { EraseDialog } from "../../../rights/EraseDialog";
+import { EmptyState } from "../../../ui/EmptyState";
+import { Loaded } from "../../../ui/Loaded";
+import page from "../StudyPage.module.css";
+import { ParticipantTable } from "./ParticipantTable";
+import { TombstoneDialog } from "./TombstoneDialog";
+
+interface Answering {
+  readonly sessionId: string;
+  readonly code: string;
+}
+
+export function ParticipantsTab({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t } = useTexts();
+  const [search, setSearch] = useState("");
+  const [erasing, setErasing] = useState<Participant | null>(null);
+  const [erased, setErased] = useState<Participant | null>(null);
+  const [answering, setAnswering] = useState<Answering | null>(null);
+  const query = useQuery({ ...participantsQuery(study.key), refetchInterval: 30_000 });
+  return (
+    <>
+      <div className={page.toolbar}>
+        <TextInput
+          type="search"
+          aria-label={t("rights.search")}
+          placeholder={t("rights.search")}
+          w={280}
+          value={search}
+          onChange={(event) => setSearch(event.currentTarget.value)}
+        />
+      </div>
+      <Loaded query={query}>
+        {(everybody) => {
+          const wanted = search.trim().toLowerCase();
+          const shown = everybody.filter(({ code }) => code.toLowerCase().includes(wanted));
+          if (shown.length === 0) return <Nobody searching={everybody.length > 0} />;
+          return (
+            <ParticipantTable
+              studyKey={study.key}
+              participants={shown}
+              onCorrect={(sessionId, code) => setAnswering({ sessionId, code })}
+              onErase={setErasing}
+              onDetails={setErased}
+            />
+          );
+        }}
+      </Loaded>
+      <EraseDialog studyKey={study.key} participant={erasing} onClose={() => setErasing(null)} />
+      <TombstoneDialog
+        participant={query.data?.find(({ id }) => id === erased?.id) ?? null}
+        onClose={() => setErased(null)}
+      />
+      <AnswersDrawer
+        sessionId={answering?.sessionId ?? ""}
+        code={answering?.code ?? ""}
+        opened={answering !== null}
+        onClose={() => setAnswering(null)}
+      />
+    </>
+  );
+}
+
+function Nobody({ searching }: { readonly searching: boolean }): JSX.Element {
+  const { t } = useTexts();
+  return searching ? (
+    <EmptyState icon="people" title={t("rights.none")}>
+      {t("rights.none.body")}
+    </EmptyState>
+  ) : (
+    <EmptyState icon="people" title={t("rights.empty")}>
+      <Icon name="info" size={16} /> {t("rights.empty.body")}
+    </EmptyState>
+  );
+}

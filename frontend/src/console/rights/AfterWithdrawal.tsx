@@ -1,0 +1,86 @@
+/** After a withdrawal: keep what was collected so far, or erase it. What was erased says so. */
+import { Button, Group } from "@mantine/core";
+import type { Participant } from "@shared/api/rights";
+import type { Command, SessionView } from "@shared/api/types";
+import { day } from "@shared/format";
+import { Notice } from "@shared/ui/Notice";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { useTexts } from "../i18n";
+import { rightsDe, rightsEn } from "../i18n/rightsTexts";
+import { participantsQuery } from "../queries";
+import { EraseDialog } from "./EraseDialog";
+
+/** The answer goes on record as a note, in the language of whoever asked. */
+const MAY_BE_KEPT: readonly string[] = [rightsEn["withdrew.note"], rightsDe["withdrew.note"]];
+
+interface AfterWithdrawalProps {
+  readonly session: SessionView;
+  readonly send: (command: Command) => void;
+}
+
+export function AfterWithdrawal({ session, send }: AfterWithdrawalProps): JSX.Element | null {
+  const everybody = useQuery(participantsQuery(session.study_key)).data;
+  const [erasing, setErasing] = useState<Participant | null>(null);
+  const own = everybody?.find(({ sessions }) => sessions.some(({ id }) => id === session.id));
+  if (own === undefined) return null;
+  const kept = session.notes.some(({ text }) => MAY_BE_KEPT.includes(text));
+  return (
+    <>
+      <Erased participant={own} />
+      {session.status === "withdrawn" && own.erasure === null && !kept && (
+        <Question send={send} onErase={() => setErasing(own)} />
+      )}
+      <EraseDialog
+        studyKey={session.study_key}
+        participant={erasing}
+        onClose={() => setErasing(null)}
+      />
+    </>
+  );
+}
+
+interface QuestionProps {
+  readonly send: (command: Command) => void;
+  readonly onErase: () => void;
+}
+
+function Question({ send, onErase }: QuestionProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Notice
+      tone="warn"
+      icon="people"
+      title={t("withdrew.title")}
+      actions={
+        <Group>
+          <Button
+            variant="default"
+            onClick={() => send({ type: "note", text: t("withdrew.note") })}
+          >
+            {t("withdrew.keep")}
+          </Button>
+          <Button color="red" variant="outline" onClick={onErase}>
+            {t("withdrew.erase")}
+          </Button>
+        </Group>
+      }
+    >
+      {t("withdrew.body")}
+    </Notice>
+  );
+}
+
+function Erased({ participant }: { readonly participant: Participant }): JSX.Element | null {
+  const { t, language } = useTexts();
+  const { erasure } = participant;
+  if (erasure === null) return null;
+  return (
+    <Notice tone="info" icon="lock" title={t("withdrew.erased")}>
+      {t("withdrew.erased.body", {
+        date: day(erasure.at, language),
+        by: erasure.by.replace("account:", ""),
+      })}
+    </Notice>
+  );
+}

@@ -1,0 +1,127 @@
+"""The whole OpenAPI document against the real server: made-up requests to every operation.
+
+Whatever comes, no operation breaks, and every answer is of the kind that the document promises.
+"""
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from schemathesis.checks import not_a_server_error
+from schemathesis.core.result import Ok
+from schemathesis.specs.openapi.checks import (
+    content_type_conformance,
+    response_headers_conformance,
+    response_schema_conformance,
+    status_code_conformance,
+)
+
+from tests.faults.figures import note
+from tests.features.lab import STUDY
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+CHECKS = (
+    not_a_server_error,
+    status_code_conformance,
+    content_type_conformance,
+    response_headers_conformance,
+    response_schema_conformance,
+)
+EXAMPLES, MANY_EXAMPLES = 10, 400
+NOT_CALLED = ("/live", "/api/logout", "/api/me/password", "/logins")
+"""Endless streams, and what would end the login that asks."""
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A running server with a session, and somebody who may do everything."""
+
+    server: LiveServer
+    token: str
+    session_id: str
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
+    """An admin's token, and a session that can be found."""
+    with LiveServer(tmp_path_factory.mktemp("openapi")) as server, server.client() as client:
+        credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+        client.post("/api/login", json=credentials).raise_for_status()
+        token = client.cookies["reembody_login"]
+        joined = client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"})
+        yield Bench(server, token, joined.raise_for_status().json()["id"])
+
+
+def operations(bench: Bench) -> Iterator[Any]:
+    """Every operation that can be called without an end."""
+    schema = schemathesis.openapi.from_url(f"{bench.server.url}/api/openapi.json")
+    for result in schema.get_all_operations():
+        assert isinstance(result, Ok)
+        operation = result.ok()
+        if not operation.path.endswith(NOT_CALLED):
+            yield operation
+
+
+def known_objects(case: Any, bench: Bench, count: int) -> None:
+    """Two times in three ask for what is there, or hardly anything behind an id would be met."""
+    if count % 3 and case.path_parameters:
+        known = {"key": STUDY, "session_id": bench.session_id, "number": 1}
+        if case.path.startswith("/api/instruments"):
+            known["key"] = "karas2020"
+        case.path_parameters.update(
+            {name: value for name, value in known.items() if name in case.path_parameters}
+        )
+
+
+def run(bench: Bench, examples: int) -> Counter[str]:
+    """Call every operation so often; what was counted. Raises where an answer breaks a promise."""
+    counted: Counter[str] = Counter()
+    headers = {"authorization": f"Bearer {bench.token}"}
+    for operation in operations(bench):
+        counted["operations"] += 1
+
+        @seed(20260302)
+        @settings(
+            max_examples=examples,
+            deadline=None,
+            database=None,
+            phases=(Phase.generate,),
+            suppress_health_check=list(HealthCheck),
+        )
+        @given(case=operation.as_strategy())
+        def called(case: Any) -> None:
+            counted["requests"] += 1
+            known_objects(case, bench, counted["requests"])
+            answer = case.call_and_validate(headers=headers, checks=CHECKS, timeout=30.0)
+            counted[f"answers {answer.status_code // 100}XX"] += 1
+
+        called()
+    return counted
+
+
+def tell(counted: Counter[str]) -> None:
+    """Into the table of figures."""
+    for what, count in sorted(counted.items()):
+        note(21, "made-up requests to every operation", what, count)
+
+
+def test_no_request_breaks_the_server_or_its_promises(bench: Bench) -> None:
+    """No answer is a server error, and each fits its schema, status, headers and content type."""
+    counted = run(bench, EXAMPLES)
+    tell(counted)
+    assert counted["answers 5XX"] == 0
+    assert counted["answers 2XX"] > counted["operations"] / 2
+
+
+@pytest.mark.long
+@pytest.mark.timeout(3600)
+def test_many_requests_break_nothing(bench: Bench, tmp_path: Path) -> None:
+    """The same with many more."""
+    counted = run(bench, MANY_EXAMPLES)
+    tell(counted)
+    assert counted["answers 5XX"] == 0

@@ -1,0 +1,120 @@
+"""The calls behind every page of the console, at a study of a thousand participants.
+
+Which calls there are is read from the policy table, so a new one is measured without anybody
+thinking of it. Limits: 100 ms at the 95th percentile for each call, 300 ms for a login.
+"""
+
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import httpx2
+import numpy as np
+
+from app.clock import Clock
+from app.database import open_database
+from app.features.opening.service import bring_up_to_date
+from app.features.policy import POLICY
+from app.features.studies.service import add_shipped
+from app.settings import Settings
+from tests.benchmarks.report import Figure, Report
+from tests.benchmarks.thousand import fill_thousand
+from tests.features.builders import STUDY
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+PARTS = ("login", "pages")
+PARTICIPANTS = 1000
+REPEATS, LOGINS = 25, 20
+CALL_LIMIT_MS, LOGIN_LIMIT_MS = 100.0, 300.0
+NO_PAGE = ("/live", "/export", "/access")
+"""Streams and files, which take as long as they are large."""
+
+
+def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
+    """Measure the named parts on a real server."""
+    report = Report("desk")
+    with tempfile.TemporaryDirectory(prefix="reembody-bench-") as scratch:
+        server = LiveServer(Path(scratch))
+        session_ids = _fill(server)
+        with server, server.client() as client:
+            if "login" in parts:
+                report.add(*_login(client))
+            else:
+                _log_in(client)
+            if "pages" in parts:
+                for name, call in _calls(client, session_ids):
+                    report.add(*_timed(name, call))
+    return report
+
+
+def _fill(server: LiveServer) -> list[str]:
+    settings = Settings(data_dir=server.data_dir)
+    server.data_dir.mkdir(parents=True)
+    bring_up_to_date(settings, Clock())
+    database = open_database(settings.resolved_database_url)
+    with database.writing() as db:
+        add_shipped(db, Clock().utc_now())
+    session_ids = fill_thousand(database, PARTICIPANTS)
+    database.close()
+    return session_ids
+
+
+def _log_in(client: httpx2.Client) -> None:
+    credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+    client.post("/api/login", json=credentials).raise_for_status()
+
+
+def _login(client: httpx2.Client) -> Iterator[Figure]:
+    times_ms = [_took_ms(lambda: _log_in(client)) for _ in range(LOGINS)]
+    yield Figure("login", "p95", _p95(times_ms), "ms", "limit", LOGIN_LIMIT_MS)
+
+
+def _calls(
+    client: httpx2.Client, session_ids: list[str]
+) -> Iterator[tuple[str, Callable[[], None]]]:
+    """Every reading call, on another session each time, and those of the editor."""
+    turn = iter(range(10**9))
+
+    def get(template: str) -> Callable[[], None]:
+        def call() -> None:
+            path = template.replace("{session_id}", session_ids[next(turn) % len(session_ids)])
+            key = STUDY if template.startswith("/api/studies") else "karas2020"
+            path = path.replace("{key}", key).replace("{number}", "1")
+            query = {"from": 1, "to": 1} if path.endswith("/diff") else None
+            client.get(path, params=query).raise_for_status()
+
+        return call
+
+    yaml = client.get(f"/api/studies/{STUDY}").raise_for_status().json()["yaml"]
+
+    def post(path: str, body: dict[str, object]) -> Callable[[], None]:
+        def call() -> None:
+            client.post(path, json=body).raise_for_status()
+
+        return call
+
+    for name, who in sorted(POLICY.items()):
+        method, template = name.split()
+        if method == "GET" and "admin" in who and not template.endswith(NO_PAGE):
+            yield template.removeprefix("/api"), get(template)
+    yield "editor: check", post("/api/studies/check", {"yaml": yaml})
+    yield "editor: timeline", post("/api/studies/timeline", {"yaml": yaml})
+
+
+def _timed(name: str, call: Callable[[], None]) -> Iterator[Figure]:
+    first_ms = _took_ms(call)
+    times_ms = [_took_ms(call) for _ in range(REPEATS)]
+    yield Figure("pages", f"{name} p95", _p95(times_ms), "ms", "limit", CALL_LIMIT_MS)
+    if first_ms > CALL_LIMIT_MS:
+        yield Figure("pages", f"{name} the first time", first_ms, "ms")
+
+
+def _took_ms(call: Callable[[], None]) -> float:
+    began_s = time.perf_counter()
+    call()
+    return 1000.0 * (time.perf_counter() - began_s)
+
+
+def _p95(times_ms: list[float]) -> float:
+    return float(np.percentile(times_ms, 95))

@@ -1,0 +1,103 @@
+"""A study with a thousand participants: a few are built, the others are copies with their own ids.
+
+Every row that a finished session has stands a thousand times, movement excepted: pages read none.
+"""
+
+from collections.abc import Sequence
+from datetime import timedelta
+from typing import Any
+
+from sqlalchemy import Column, ColumnElement, Connection, Table, func, insert, literal, select
+from sqlalchemy.orm import Session
+
+from app.database import Base, Database
+from app.features.participants.service import hold_slot, take_slot
+from app.features.studies.service import newest_version, protocol_of, study_by_key
+from app.models import (
+    Answer,
+    ClockProbe,
+    Completion,
+    Contact,
+    JointErrorRow,
+    Participant,
+    Phase,
+    PhaseLatency,
+    PhaseQuality,
+    ScoreValue,
+    SessionContent,
+    SessionEvent,
+    StudySession,
+    Submission,
+)
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session
+from tests.features.session_filler import stable_id
+
+Fresh = dict[str, ColumnElement[Any]]
+ORDERS = 6
+OWN = (
+    *(Phase, PhaseLatency, PhaseQuality, Contact, Completion, JointErrorRow, ClockProbe),
+    *(SessionContent, SessionEvent, Submission),
+)
+OF_A_SUBMISSION = (Answer, ScoreValue)
+
+
+def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
+    """Store them as completed sessions of people; the ids of the sessions."""
+    with database.writing() as db:
+        built = [build_session(db, SessionSpec(f"P-{at:04d}")) for at in range(ORDERS)]
+    sessions = [session.id for session in built]
+    for first in range(ORDERS, participants, 50):
+        with database.writing() as db:
+            last = min(first + 50, participants)
+            sessions += [_copy(db, built, at) for at in range(first, last)]
+    return sessions
+
+
+def _copy(db: Session, built: Sequence[StudySession], at: int) -> str:
+    """One more session with the rows of the built one that has its order."""
+    version = newest_version(db, study_by_key(db, STUDY))
+    slot = take_slot(db, version, protocol_of(version), "people", NOW)
+    model = built[at % len(built)]
+    person = Participant(
+        study_id=version.study_id, kind="people", code=f"P-{at:04d}", created_at=NOW
+    )
+    db.add(person)
+    db.flush()
+    values = {column.name: getattr(model, column.name) for column in StudySession.__table__.columns}
+    began = NOW + timedelta(hours=at)
+    own = {"id": stable_id("copy", at), "participant_id": person.id, "created_at": began}
+    session = StudySession(**(values | own))
+    db.add(session)
+    db.flush()
+    hold_slot(db, slot, session, NOW)
+    connection = db.connection()
+    for table in OWN:
+        _copy_rows(connection, _table(table), model.id, session.id)
+    return session.id
+
+
+def _copy_rows(connection: Connection, table: Table, old: str, new: str) -> None:
+    fresh: Fresh = {"session_id": literal(new)}
+    if "id" in table.c:
+        fresh["id"] = _own_id(table.c["id"], new)
+    _insert(connection, table, fresh, table.c["session_id"] == old)
+    if table.name == Submission.__tablename__:
+        for inner in map(_table, OF_A_SUBMISSION):
+            mine = select(table.c["id"]).where(table.c["session_id"] == old)
+            given = inner.c["submission_id"]
+            _insert(connection, inner, {"submission_id": _own_id(given, new)}, given.in_(mine))
+
+
+def _own_id(column: Column[Any], new: str) -> ColumnElement[Any]:
+    """Another id for the copy: half from the row it is copied from, half from its session."""
+    return func.substr(column, 1, 16).concat(new[:16])
+
+
+def _insert(connection: Connection, table: Table, fresh: Fresh, where: ColumnElement[bool]) -> None:
+    chosen = [fresh.get(column.name, column) for column in table.columns]
+    rows = select(*chosen).where(where)
+    connection.execute(insert(table).from_select([column.name for column in table.columns], rows))
+
+
+def _table(model: type[Base]) -> Table:
+    return Base.metadata.tables[model.__tablename__]

@@ -1,0 +1,131 @@
+"""Consent as a participant gives it and as a lab files it: drawn, typed, printed, on paper."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.people import Experimenter, Participant
+from tests.protocol.options import KEY, with_options
+from tests.support.browser import PageWatch
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+GO = "I agree to take part"
+READ, TAKE_PART, LATER = (
+    "I have read the page above.",
+    "I agree to take part.",
+    "My data may be used in later studies.",
+)
+
+
+@pytest.fixture
+def pages(
+    live_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
+) -> tuple[Experimenter, Participant]:
+    """A session of the study with a signed consent, started, and its tablet."""
+    page_watch.allow(r"status of 401")
+    with live_server.client() as api:
+        api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
+        if api.get(f"/api/studies/{KEY}").status_code == 404:
+            added = api.post("/api/studies", json={"yaml": with_options()})
+            assert added.status_code == 201, added.text
+    console, tablet = page_factory((1280, 800)), page_factory((1180, 820))
+    experimenter = Experimenter(console, live_server.url)
+    participant = Participant(tablet, live_server.url)
+    experimenter.log_in()
+    experimenter.open_tab(KEY)
+    experimenter.create_session()
+    participant.pair(experimenter.code_for("tablet"))
+    experimenter.press("Start session")
+    expect(participant.page.get_by_role("button", name=GO)).to_be_visible()
+    return experimenter, participant
+
+
+def sign(page: Page) -> None:
+    """Draw two strokes with the mouse."""
+    surface = page.get_by_role("img", name="Surface to sign on by finger, pen or mouse")
+    surface.scroll_into_view_if_needed()
+    box = surface.bounding_box()
+    assert box is not None
+    for points in (((60, 120), (120, 40), (180, 120)), ((240, 60), (320, 110), (400, 50))):
+        page.mouse.move(box["x"] + points[0][0], box["y"] + points[0][1])
+        page.mouse.down()
+        for x, y in points[1:]:
+            page.mouse.move(box["x"] + x, box["y"] + y, steps=8)
+        page.mouse.up()
+
+
+def test_a_drawn_signature_is_filed_as_it_was_given(
+    pages: tuple[Experimenter, Participant],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+) -> None:
+    """Nothing goes past an unticked line; the record shows text, lines, signature and hashes."""
+    experimenter, participant = pages
+    tablet, console = participant.page, experimenter.page
+    tablet.get_by_role("button", name=GO).click()
+    expect(tablet.get_by_text("Please tick every line that is not optional.")).to_be_visible()
+    for line in (READ, TAKE_PART):
+        tablet.get_by_label(line).check()
+    tablet.get_by_role("button", name=GO).click()
+    expect(tablet.get_by_text("Please sign on the surface above.")).to_be_visible()
+    sign(tablet)
+    tablet.get_by_role("button", name="Clear").click()
+    tablet.get_by_role("button", name=GO).click()
+    expect(tablet.get_by_text("Please sign on the surface above.")).to_be_visible()
+    sign(tablet)
+    assert axe(tablet) == []
+    screenshot(tablet, "consent-tablet")
+    tablet.get_by_role("button", name=GO).click()
+    expect(tablet.locator("[data-name]").first).to_be_visible()
+    console.get_by_role("link", name="Consent").click()
+    expect(console.get_by_role("img", name="Signature drawn on the tablet")).to_be_visible()
+    record = console.get_by_role("article")
+    for words in ("Thank you for coming.", READ, TAKE_PART, LATER, "Acting through another body"):
+        expect(record.get_by_text(words).first).to_be_visible()
+    assert record.get_by_text("not agreed", exact=True).count() == 1
+    assert record.get_by_text("agreed", exact=True).count() == 2
+    expect(record.get_by_text("P-0001")).to_be_visible()
+    assert axe(console) == []
+    screenshot(console, "consent-record")
+    console.emulate_media(media="print")
+    expect(console.get_by_role("button", name="Print")).to_be_hidden()
+    expect(console.get_by_role("navigation")).to_be_hidden()
+    assert console.pdf(format="A4").startswith(b"%PDF")
+    console.emulate_media(media="screen")
+
+
+def test_whoever_cannot_draw_signs_by_keyboard(
+    pages: tuple[Experimenter, Participant],
+) -> None:
+    """From the first line to the button without a pointer."""
+    experimenter, participant = pages
+    tablet, console = participant.page, experimenter.page
+    for line in (READ, TAKE_PART):
+        tablet.get_by_label(line).focus()
+        tablet.keyboard.press("Space")
+    tablet.get_by_role("button", name="Type my name instead").focus()
+    tablet.keyboard.press("Enter")
+    tablet.get_by_label("First and last name").focus()
+    tablet.keyboard.type("Ada Lovelace")
+    tablet.keyboard.press("Enter")
+    expect(tablet.locator("[data-name]").first).to_be_visible()
+    console.get_by_role("link", name="Consent").click()
+    expect(console.get_by_text("Ada Lovelace")).to_be_visible()
+
+
+def test_a_sheet_of_paper_is_recorded_by_the_experimenter(
+    pages: tuple[Experimenter, Participant],
+) -> None:
+    """Where it is and why; the participant's tablet goes on to the first form."""
+    experimenter, participant = pages
+    console = experimenter.page
+    experimenter.press("Signed on paper")
+    dialog = console.get_by_role("dialog")
+    dialog.get_by_label("Where the sheet is").fill("Folder A, sheet 12")
+    dialog.get_by_text("The participant prefers paper").click()
+    dialog.get_by_role("button", name="Record the consent").click()
+    expect(participant.page.locator("[data-name]").first).to_be_visible()
+    console.get_by_role("link", name="Consent").click()
+    expect(console.get_by_text("Folder A, sheet 12")).to_be_visible()

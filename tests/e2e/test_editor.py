@@ -1,0 +1,204 @@
+"""Writing a study and an instrument in the console, as a lab does it, on a real server."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.people import PATIENCE_MS, Experimenter
+from tests.features.instruments.test_library import OWN
+from tests.support.browser import ColorScheme
+from tests.support.server import LiveServer
+
+expect.set_options(timeout=PATIENCE_MS)
+STUDY = "reembodiment-latency"
+
+
+class Writer(Experimenter):
+    """Somebody who writes studies, at the console."""
+
+    @property
+    def text(self) -> str:
+        """The YAML in the field, as far as it is on the screen."""
+        return str(self.page.locator(".cm-content").inner_text())
+
+    def open_section(self, name: str) -> None:
+        """A page of the form."""
+        self.page.get_by_role("tab", name=name, exact=False).first.click()
+
+    def replace_all(self, text: str) -> None:
+        """Write the whole file anew."""
+        self.page.locator(".cm-content").click()
+        self.page.keyboard.press("Control+A")
+        self.page.keyboard.insert_text(text)
+
+    def sees_no_problem(self) -> None:
+        """Wait until the file was checked and is sound, and the page has come to rest."""
+        expect(self.page.get_by_text("No problems")).to_be_visible()
+        self.page.wait_for_load_state("networkidle")
+        self.page.wait_for_timeout(300)
+
+
+@pytest.fixture
+def writer(live_server: LiveServer, page_factory: Callable[..., Page]) -> Writer:
+    """Signed in, on the list of studies."""
+    writer = Writer(page_factory((1280, 800)), live_server.url)
+    writer.log_in()
+    return writer
+
+
+def test_a_study_from_template_to_second_version(
+    writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], Path]
+) -> None:
+    """Create it, break it, see where, undo, dry run, save, change, see what changes, compare."""
+    page = writer.page
+    page.get_by_role("link", name="New study").click()
+    expect(page.get_by_role("heading", name="From a template")).to_be_visible()
+    assert axe(page) == []
+    page.get_by_role("link", name="Two latencies, hand task").click()
+    writer.sees_no_problem()
+    assert axe(page) == []
+    page.get_by_label("Key", exact=True).fill("my-study")
+    expect(page.locator(".cm-content")).to_contain_text("key: my-study")
+
+    writer.open_section("Conditions")
+    latency = page.get_by_label("Added latency (ms)").nth(1)
+    latency.fill("-200")
+    problem = page.get_by_role("button", name="conditions[1].latency_ms")
+    expect(problem).to_contain_text("negative")
+    expect(page.locator(".cm-lint-marker-error")).to_have_count(1)
+    expect(page.get_by_role("button", name="Save the study")).to_be_disabled()
+    problem.click()
+    expect(page.locator(".cm-activeLine")).to_contain_text("latency_ms: -200")
+    assert axe(page) == []
+    screenshot(page, "editor-problem")
+    page.get_by_role("button", name="Undo").click()
+    writer.sees_no_problem()
+    expect(latency).to_have_value("200")
+
+    page.get_by_role("tab", name="Dry run").click()
+    expect(page.get_by_role("row", name="Debriefing")).to_be_visible()
+    expect(page.get_by_role("row", name="200 ms added").first).to_be_visible()
+    assert axe(page) == []
+    screenshot(page, "editor-dry-run")
+
+    page.get_by_role("button", name="Save the study").click()
+    expect(page.get_by_text("Saved as version 1")).to_be_visible()
+    expect(page.get_by_role("heading", name="Two latencies, hand task")).to_be_visible()
+    writer.open_section("Conditions")
+    page.get_by_label("Added latency (ms)").nth(1).fill("250")
+    expect(page.get_by_text("Not saved yet")).to_be_visible()
+    page.get_by_role("tab", name="What changes").click()
+    expect(page.get_by_text("Balance is affected")).to_be_visible()
+    expect(page.get_by_role("row", name="conditions[1].latency_ms")).to_contain_text("250")
+    assert axe(page) == []
+    screenshot(page, "editor-changes")
+    page.get_by_role("button", name="Save as a version").click()
+    expect(page.get_by_text("Saved as version 2")).to_be_visible()
+
+    writer.open_tab("my-study", "versions")
+    expect(page.get_by_role("row", name="conditions[1].latency_ms")).to_be_visible()
+    assert axe(page) == []
+    screenshot(page, "study-versions")
+
+
+def test_what_is_not_saved_is_not_lost(writer: Writer) -> None:
+    """Leaving asks; coming back finds what was written, and it can be dropped."""
+    page = writer.page
+    writer.open_tab(STUDY, "edit")
+    writer.sees_no_problem()
+    page.get_by_label("Title, English").fill("Another title")
+    expect(page.locator(".cm-content")).to_contain_text("en: Another title")
+    page.get_by_role("link", name="Instruments").click()
+    expect(page.get_by_role("dialog", name="Leave without saving?")).to_be_visible()
+    page.get_by_role("button", name="Leave", exact=True).click()
+    expect(page.get_by_role("heading", name="Instruments")).to_be_visible()
+    writer.open_tab(STUDY, "edit")
+    expect(page.locator(".cm-content")).to_contain_text("en: Another title")
+    page.get_by_role("button", name="Drop it").click()
+    expect(page.locator(".cm-content")).to_contain_text("en: Acting through another body")
+
+
+def test_an_archived_study_comes_back(writer: Writer) -> None:
+    """Archiving asks, takes it off the list, and restoring puts it there again."""
+    page = writer.page
+    writer.open_tab(STUDY, "versions")
+    page.get_by_role("button", name="Archive").click()
+    page.get_by_role("dialog").get_by_role("button", name="Archive").click()
+    expect(page.get_by_text("Archived: it takes no new sessions")).to_be_visible()
+    page.get_by_role("link", name="Studies").click()
+    expect(page.get_by_role("heading", name="No study yet")).to_be_visible()
+    page.get_by_role("button", name="Archived studies").click()
+    page.get_by_role("link", name="Acting through another body").click()
+    page.get_by_role("button", name="Restore").click()
+    expect(page.get_by_text("Archived: it takes no new sessions")).to_have_count(0)
+
+
+def test_an_own_instrument_is_written_tried_and_stored(
+    writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], Path]
+) -> None:
+    """A slip in a formula is shown at its line; the preview scores as the formula says."""
+    page = writer.page
+    page.get_by_role("link", name="Instruments").click()
+    expect(page.get_by_role("link", name="Presence (IPQ)")).to_be_visible()
+    assert axe(page) == []
+    page.get_by_role("link", name="New instrument").click()
+    writer.replace_all(OWN.replace("(calm - tense)", "(calm - tens)"))
+    expect(page.get_by_role("button", name="scores[0].formula")).to_contain_text("tens")
+    writer.replace_all(OWN)
+    writer.sees_no_problem()
+    page.locator('[data-name="calm"] input').nth(4).check(force=True)
+    page.locator('[data-name="tense"] input').nth(0).check(force=True)
+    scores = page.get_by_role("region", name="Scores as they stand")
+    expect(scores.get_by_role("row", name="Ease")).to_contain_text("(2 - (-2)) / 2")
+    expect(scores.get_by_role("row", name="Twice")).to_contain_text("4")
+    assert axe(page) == []
+    screenshot(page, "instrument-editor")
+    page.get_by_role("button", name="Save", exact=True).click()
+    expect(page.get_by_text("calm is stored")).to_be_visible()
+    expect(page.get_by_role("heading", name="Calm")).to_be_visible()
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_editor_and_library_are_accessible(
+    live_server: LiveServer,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+    scheme: ColorScheme,
+) -> None:
+    """Every section of the form and every tab of an instrument: nothing serious, in German too."""
+    writer = Writer(page_factory((1180, 820), scheme), live_server.url)
+    writer.log_in()
+    page = writer.page
+    writer.open_tab(STUDY, "edit")
+    writer.sees_no_problem()
+    sections = ("Conditions", "Orders", "Procedure", "Tasks", "Sickness", "Texts", "Blinding")
+    for section in (*sections, "Places"):
+        writer.open_section(section)
+        assert axe(page) == [], section
+    page.get_by_role("button", name="Deutsch").click()
+    expect(page.get_by_role("tab", name="Orte und Farben")).to_be_visible()
+    screenshot(page, f"editor-de-{scheme}")
+    for tab in ("", "scoring", "try", "file"):
+        page.goto(f"{live_server.url}/#/instruments/raw_tlx/{tab}")
+        page.wait_for_load_state("networkidle")
+        assert axe(page) == [], tab
+        screenshot(page, f"instrument-{tab or 'items'}-{scheme}")
+
+
+@pytest.mark.parametrize("size", [(1366, 1024), (1024, 1366), (1180, 820), (820, 1180)])
+def test_many_steps_fit_under_a_finger(
+    live_server: LiveServer, page_factory: Callable[..., Page], size: tuple[int, int]
+) -> None:
+    """All 21 answers of the sickness scale are in sight and at least 44 px wide and high."""
+    page = page_factory(size)
+    writer = Writer(page, live_server.url)
+    writer.log_in()
+    page.goto(f"{live_server.url}/#/instruments/fms/try")
+    expect(page.locator(".sd-rating__item")).to_have_count(21)
+    for box in (one.bounding_box() for one in page.locator(".sd-rating__item").all()):
+        assert box is not None
+        assert min(box["width"], box["height"]) >= 44
+        assert 0 <= box["x"] <= box["x"] + box["width"] <= size[0]

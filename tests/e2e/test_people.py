@@ -1,0 +1,190 @@
+"""People at the console: invited, blind where they must be, shut out at once."""
+
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.lab_people import (
+    PASSWORD,
+    STUDY,
+    BlindedLab,
+    Pages,
+    blinded_lab,
+    invite_in,
+    make_account,
+)
+from tests.e2e.people import PATIENCE_MS, Experimenter
+from tests.faults.figures import note
+from tests.support.browser import ColorScheme, PageWatch
+from tests.support.server import LiveServer
+
+Axe = Callable[[Page], list[str]]
+Screenshot = Callable[[Page, str], Path]
+
+
+@pytest.fixture(scope="module")
+def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BlindedLab]:
+    """One server for the tests of this file."""
+    folder = tmp_path_factory.mktemp("people")
+    with LiveServer(folder) as server, blinded_lab(server) as lab:
+        yield lab
+
+
+@pytest.fixture
+def admin(lab: BlindedLab, page_factory: Pages) -> Page:
+    """The admin's browser, signed in."""
+    console = Experimenter(page_factory(), lab.server.url)
+    console.log_in()
+    return console.page
+
+
+def test_an_operator_joins_by_a_link_and_runs_blind(
+    lab: BlindedLab, admin: Page, page_factory: Pages
+) -> None:
+    """The link makes an account that runs sessions and is told no condition anywhere."""
+    admin.goto(f"{lab.server.url}/#/people")
+    link = invite_in(admin, "Operator", "Weekend sessions")
+    operator = page_factory()
+    make_account(operator, link, "weekend")
+    assert "join" not in operator.url
+    operator.goto(f"{lab.server.url}/#/studies/{STUDY}")
+    expect(operator.get_by_text("This study is blinded for you")).to_be_visible()
+    expect(operator.get_by_role("tab", name="Ledger")).to_be_visible()
+    for tab in ("Dashboard", "Export", "Protocol", "Versions"):
+        expect(operator.get_by_role("tab", name=tab)).to_have_count(0)
+    console = Experimenter(operator, lab.server.url)
+    console.create_session()
+    expect(operator.get_by_text("Order hidden (blinded)")).to_be_visible()
+    expect(operator.get_by_text("latency hidden").first).to_be_visible()
+    expect(operator.get_by_role("button", name="Show condition")).to_have_count(0)
+    admin.get_by_role("tab", name="Invitations").click()
+    expect(admin.get_by_text("by weekend")).to_be_visible()
+
+
+def test_a_login_that_is_ended_shuts_its_open_page_at_once(
+    lab: BlindedLab, admin: Page, page_factory: Pages, page_watch: PageWatch
+) -> None:
+    """An open cockpit asks to sign in again, and what was being typed there is kept."""
+    page_watch.allow(r"status of 401")
+    operator = page_factory()
+    make_account(operator, lab.invitation("operator"), "lost-laptop")
+    operator.goto(lab.session("P-LOST"))
+    operator.get_by_label("New note").fill("half a sentence")
+    expect(operator.get_by_text("Live", exact=True)).to_be_visible(timeout=PATIENCE_MS)
+    admin.goto(f"{lab.server.url}/#/people")
+    admin.get_by_role("button", name="Change lost-laptop").click()
+    admin.get_by_role("button", name="End sign-ins").click()
+    ended_s = time.monotonic()
+    expect(operator.get_by_text("Your sign-in has ended")).to_be_visible(timeout=PATIENCE_MS)
+    shut_s = time.monotonic() - ended_s
+    note(31, "a login is ended", "seconds until its open page asks again", shut_s)
+    expect(operator.get_by_text("P-LOST")).not_to_be_visible()
+    expect(operator.get_by_label("User name")).to_have_value("lost-laptop")
+    operator.get_by_label("Password", exact=True).fill(PASSWORD)
+    operator.keyboard.press("Enter")
+    expect(operator.get_by_label("New note")).to_have_value("half a sentence")
+    expect(operator.get_by_text("Live", exact=True)).to_be_visible(timeout=PATIENCE_MS)
+
+
+def test_showing_a_condition_asks_why_and_is_on_record(lab: BlindedLab, admin: Page) -> None:
+    """An admin sees a blinded order only after giving a reason, and the event log says so."""
+    admin.goto(lab.session("P-SHOWN"))
+    admin.get_by_role("button", name="Show condition").click()
+    dialog = admin.get_by_role("dialog")
+    expect(dialog.get_by_role("button", name="Show condition")).to_be_disabled()
+    dialog.get_by_text("Adverse event").click()
+    dialog.get_by_role("button", name="Show condition").click()
+    expect(admin.get_by_text("Order of latencies:")).to_be_attached()
+    expect(admin.get_by_text("Order hidden (blinded)")).to_have_count(0)
+    admin.get_by_role("button", name="Log").click()
+    expect(admin.get_by_text("condition shown to the lab")).to_be_visible()
+
+
+def test_a_link_that_cannot_be_used_says_why(
+    lab: BlindedLab, admin: Page, page_factory: Pages, page_watch: PageWatch
+) -> None:
+    """Used, taken back and unknown links say so; whoever is signed in is told as whom."""
+    page_watch.allow(r"status of (404|410|422)")
+    link = lab.invitation("analyst")
+    guest = page_factory()
+    make_account(guest, link, "analyst")
+    taken = lab.admin.get("/api/invitations").json()
+    revoked = lab.invitation("analyst")
+    fresh = {row["id"] for row in lab.admin.get("/api/invitations").json()}
+    (id_,) = fresh - {row["id"] for row in taken}
+    lab.admin.delete(f"/api/invitations/{id_}")
+    admin.goto(link)
+    expect(admin.get_by_text("You are signed in as admin")).to_be_visible()
+    stranger = page_factory()
+    for url, said in (
+        (link, "This link was used already"),
+        (revoked, "This invitation was taken back"),
+        (link[:-3], "There is no such invitation"),
+        (link[:-40], "There is no such invitation"),
+    ):
+        stranger.goto("about:blank")
+        stranger.goto(url)
+        expect(stranger.get_by_text(said)).to_be_visible()
+
+
+def test_the_only_admin_cannot_be_closed(
+    lab: BlindedLab, admin: Page, page_watch: PageWatch
+) -> None:
+    """The server's refusal stands in the confirmation, with what to do."""
+    page_watch.allow(r"status of 409")
+    admin.goto(f"{lab.server.url}/#/people")
+    admin.get_by_role("button", name="Change admin").click()
+    admin.get_by_role("button", name="Close account").click()
+    admin.get_by_role("button", name="Close account").click()
+    expect(admin.get_by_text("Give somebody else the role admin first")).to_be_visible()
+
+
+def test_a_page_that_is_not_for_a_role_says_so(lab: BlindedLab, page_factory: Pages) -> None:
+    """An analyst who comes by address is told; a cockpit gives them nothing to press."""
+    analyst = page_factory()
+    make_account(analyst, lab.invitation("analyst"), "reader")
+    for address in ("people", "network", "new", f"studies/{STUDY}/edit", "instruments/new"):
+        analyst.goto(f"{lab.server.url}/#/{address}")
+        expect(analyst.get_by_text("This is not for your role")).to_be_visible()
+    expect(analyst.get_by_role("link", name="People")).to_have_count(0)
+    analyst.goto(lab.session("P-READ"))
+    expect(analyst.get_by_text("You are watching")).to_be_visible()
+    expect(analyst.get_by_role("button", name="Start session")).to_have_count(0)
+    expect(analyst.get_by_role("button", name="Show condition")).to_have_count(0)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_the_pages_of_people_are_accessible(
+    lab: BlindedLab, page_factory: Pages, axe: Axe, screenshot: Screenshot, scheme: ColorScheme
+) -> None:
+    """Nothing serious on the people's pages and dialogs, nor behind an invitation's link."""
+    guest = page_factory((1180, 820), scheme)
+    guest.goto(lab.invitation("experimenter"))
+    expect(guest.get_by_text("Your role will be")).to_be_visible()
+    assert axe(guest) == []
+    screenshot(guest, f"join-{scheme}")
+    console = Experimenter(page_factory((1280, 800), scheme), lab.server.url)
+    console.log_in()
+    page = console.page
+    for address, shown in (
+        ("people", "Last sign-in"),
+        ("people/invitations", "Valid until"),
+        ("people/audit", "signed in from"),
+    ):
+        page.goto(f"{lab.server.url}/#/{address}")
+        expect(page.get_by_text(shown).first).to_be_visible()
+        assert axe(page) == [], address
+        screenshot(page, f"console-{address.replace('/', '-')}-{scheme}")
+    page.get_by_role("button", name="Invite somebody").click()
+    expect(page.get_by_text("Who is it for?")).to_be_visible()
+    assert axe(page) == []
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="admin", exact=True).click()
+    expect(page.get_by_role("menuitem", name="Change password")).to_be_visible()
+    assert axe(page) == []
+    page.get_by_role("menuitem", name="Change password").click()
+    expect(page.get_by_label("Current password")).to_be_visible()
+    assert axe(page) == []

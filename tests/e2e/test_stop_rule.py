@@ -1,0 +1,106 @@
+"""A participant feels sick: what the tablet and the console do, and the two ways on."""
+
+import uuid
+from collections.abc import Callable
+from pathlib import Path
+
+import httpx2
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.people import Experimenter, Participant
+from tests.features.lab import Json, ok
+from tests.protocol.options import KEY, with_options
+from tests.support.browser import PageWatch
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+WAIT = "Please wait, the experimenter is coming"
+HELD = "Stop: see how the participant is"
+
+
+def session_at(api: httpx2.Client, step_key: str) -> Json:
+    """A session that stands at a step, by skipping what comes before."""
+    view: Json = ok(api.post(f"/api/studies/{KEY}/sessions", json={}))
+    view = command(api, view, "start")
+    while view["steps"][view["current"]["index"]]["key"] != step_key:
+        view = command(api, view, "skip", reason="not in this test")
+    return view
+
+
+def command(api: httpx2.Client, view: Json, kind: str, **fields: object) -> Json:
+    """Send a command decided on what was seen."""
+    body = {"command_id": str(uuid.uuid4()), "expected_version": view["version"], "type": kind}
+    after: Json = ok(api.post(f"/api/sessions/{view['id']}/commands", json={**body, **fields}))
+    return after
+
+
+@pytest.fixture
+def pages(
+    live_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
+) -> tuple[Experimenter, Participant, str]:
+    """Console and tablet of a session in which the sickness scale is due."""
+    page_watch.allow(r"status of 401")
+    with live_server.client() as api:
+        ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+        if api.get(f"/api/studies/{KEY}").status_code == 404:
+            ok(api.post("/api/studies", json={"yaml": with_options()}))
+        session = session_at(api, "block1.fms")["id"]
+    experimenter = Experimenter(page_factory((1280, 800)), live_server.url)
+    participant = Participant(page_factory((1180, 820)), live_server.url)
+    experimenter.log_in()
+    experimenter.page.goto(f"{live_server.url}/#/sessions/{session}")
+    participant.pair(experimenter.code_for("tablet"))
+    participant.page.locator("[data-name]").first.wait_for()
+    return experimenter, participant, session
+
+
+def test_the_session_is_held_until_the_experimenter_decides(
+    pages: tuple[Experimenter, Participant, str],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+) -> None:
+    """Unmissable on the console, calm on the tablet; a reason lets it go on."""
+    experimenter, participant, _ = pages
+    console, tablet = experimenter.page, participant.page
+    participant.fill_in({"sickness": "18"})
+    expect(tablet.get_by_role("heading", name=WAIT)).to_be_visible()
+    expect(console.get_by_role("heading", name=HELD)).to_be_visible()
+    expect(console.get_by_text("is at or above the limit of 15")).to_be_visible()
+    assert console.title().startswith("▲ Stop rule met")
+    assert axe(console) == []
+    assert axe(tablet) == []
+    screenshot(console, "stop-rule-console")
+    screenshot(tablet, "stop-rule-tablet")
+    experimenter.press("Go on with a reason")
+    dialog = console.get_by_role("dialog")
+    dialog.get_by_text("Recovered after a break, wants to go on").click()
+    dialog.get_by_role("button", name="Go on with a reason").click()
+    expect(console.get_by_role("heading", name=HELD)).to_have_count(0)
+    expect(console.get_by_role("button", name="Begin hand task")).to_be_visible()
+    expect(tablet.get_by_role("heading", name=WAIT)).to_have_count(0)
+
+
+def test_ending_is_the_first_thing_offered(
+    pages: tuple[Experimenter, Participant, str],
+) -> None:
+    """The session ends with the reason, and the tablet thanks."""
+    experimenter, participant, _ = pages
+    console = experimenter.page
+    participant.fill_in({"sickness": "20"})
+    experimenter.press("End the session")
+    dialog = console.get_by_role("dialog")
+    dialog.get_by_text("Stop rule: sickness").click()
+    dialog.get_by_role("button").last.click()
+    experimenter.sees_step("Session aborted")
+    expect(participant.page.get_by_role("heading", name="Thank you")).to_be_visible()
+
+
+def test_the_warning_is_seen_and_nothing_stops(
+    pages: tuple[Experimenter, Participant, str],
+) -> None:
+    """Between the limits the operator is told to ask."""
+    experimenter, participant, _ = pages
+    participant.fill_in({"sickness": "12"})
+    console = experimenter.page
+    expect(console.get_by_text("Sickness is rising").first).to_be_visible()
+    expect(console.get_by_role("button", name="Begin hand task")).to_be_visible()

@@ -1,0 +1,152 @@
+"""A blinded operator runs a whole session and nowhere meets its condition (fault 33).
+
+The conditions of this study have names and latencies that occur nowhere else, so that finding one
+of them in anything an operator is sent is a leak.
+"""
+
+import asyncio
+import re
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import httpx2
+
+from app.features.policy import POLICY
+from app.rehearsal.cast import Cast, perform
+from app.rehearsal.rehearse import RehearsalPlan, assembled
+from tests.faults.figures import note
+from tests.faults.short_study import KEY, PHASE_S, ROAM_S
+from tests.protocol.helpers import edited
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+CANARIES = re.compile(rb"0?\.?137[.]?25|0?\.?262[.]?5|canary", re.IGNORECASE)
+"""Both latencies in ms and s, and what their conditions are called."""
+LOOK_EVERY_S = 0.4
+SPEED = 16.0
+PAGES = ("/", "/tablet")
+
+
+def canary_study() -> str:
+    """The shipped study, short and blinded, with conditions that can be told from all else."""
+    return edited(
+        ("key: reembodiment-latency", f"key: {KEY}"),
+        ("duration_s: 120", f"duration_s: {ROAM_S}"),
+        *[("duration_s: 60\n        freeze_s: 5", f"duration_s: {PHASE_S}\n        freeze_s: 1")]
+        * 2,
+        ("operator: false", "operator: true"),
+        ("latency_125", "canary_small"),
+        ("latency_ms: 125", "latency_ms: 137.25"),
+        ("125 ms added", "canary small"),
+        ("latency_350", "canary_large"),
+        ("latency_ms: 350", "latency_ms: 262.5"),
+        ("350 ms added", "canary large"),
+    )
+
+
+@dataclass
+class Spy:
+    """Somebody with a login who keeps everything they are sent."""
+
+    client: httpx2.AsyncClient
+    role: str
+    heard: list[tuple[str, bytes]] = field(default_factory=list)
+
+    def leaks(self) -> list[str]:
+        """What they heard of the condition: where, and the word."""
+        found = [(where, CANARIES.search(body)) for where, body in self.heard]
+        return [f"{where}: {match.group().decode()}" for where, match in found if match]
+
+    async def look(self, session_id: str) -> None:
+        """Ask for everything that the role may ask for."""
+        for name, who in POLICY.items():
+            method, template = name.split()
+            if method == "GET" and self.role in who and not template.endswith("/live"):
+                await self._get(template.replace("{session_id}", session_id))
+        for page in PAGES:
+            await self._get(page)
+
+    async def _get(self, template: str) -> None:
+        path = template
+        if template.startswith("/api/studies/{key}"):
+            path = template.replace("{key}", KEY)
+        path = path.replace("{key}", "karas2020").replace("{number}", "1")
+        kinds = ("simulated",) if "ledger" in path or "sessions" in path else ("",)
+        for kind in kinds:
+            answer = await self.client.get(path, params={"kind": kind} if kind else {})
+            headers = repr(sorted(answer.headers.items())).encode()
+            self.heard.append((f"{answer.status_code} {path}", headers + answer.content))
+
+    async def listen(self, session_id: str) -> None:
+        """Keep the live stream, as the cockpit does."""
+        path = f"/api/sessions/{session_id}/live"
+        async with self.client.stream("GET", path, timeout=None) as answer:
+            async for piece in answer.aiter_bytes():
+                self.heard.append(("stream", piece))
+
+
+async def _spy(server: LiveServer, role: str) -> Spy:
+    """A new person, by the lab's own way: an invitation that is accepted."""
+    async with httpx2.AsyncClient(base_url=server.url) as admin:
+        await _done(admin.post("/api/login", json=_admin()))
+        link = (await _done(admin.post("/api/invitations", json={"role": role})))["url"]
+    client = httpx2.AsyncClient(base_url=server.url, timeout=30.0)
+    token = link.rpartition("/")[2]
+    wish = {"token": token, "username": f"a-{role}", "password": "four words and a comma"}
+    await _done(client.post("/api/invitations/accept", json=wish))
+    return Spy(client, role)
+
+
+def _admin() -> dict[str, str]:
+    return {"username": "admin", "password": ADMIN_PASSWORD}
+
+
+async def _done(asked: Any) -> Any:
+    answer = await asked
+    answer.raise_for_status()
+    return answer.json()
+
+
+async def _watched(cast: Cast, spies: list[Spy]) -> None:
+    """Look and listen until the rehearsal is over."""
+    session_id = cast.operator.session_id
+    async with asyncio.TaskGroup() as group:
+        listening = [group.create_task(spy.listen(session_id)) for spy in spies]
+        acting = group.create_task(perform(cast))
+        while not acting.done():
+            await asyncio.sleep(LOOK_EVERY_S)
+            for spy in spies:
+                await spy.look(session_id)
+        for task in listening:
+            task.cancel()
+    for spy in spies:
+        await spy.look(session_id)
+
+
+async def _run(server: LiveServer) -> tuple[Spy, Spy]:
+    async with httpx2.AsyncClient(base_url=server.url) as admin:
+        await _done(admin.post("/api/login", json=_admin()))
+        await _done(admin.post("/api/studies", json={"yaml": canary_study()}))
+    operator, analyst = await _spy(server, "operator"), await _spy(server, "analyst")
+    plan = RehearsalPlan(server.url, KEY, speed=SPEED, seed=5, password=ADMIN_PASSWORD)
+    async with assembled(plan) as cast:
+        with suppress(asyncio.CancelledError):
+            await _watched(cast, [operator])
+        await analyst.look(cast.operator.session_id)
+    for spy in (operator, analyst):
+        await spy.client.aclose()
+    return operator, analyst
+
+
+def test_a_blinded_operator_cannot_find_the_condition(tmp_path: Path) -> None:
+    """In no response, page, header or stream, during the session or after it."""
+    with LiveServer(tmp_path / "live") as server:
+        operator, analyst = asyncio.run(_run(server))
+    streamed = sum(len(body) for where, body in operator.heard if where == "stream")
+    note(33, "blinded operator", "answers and pages read", len(operator.heard))
+    note(33, "blinded operator", "bytes of live stream read", streamed)
+    note(33, "blinded operator", "canaries found", len(operator.leaks()))
+    assert any(b"event: telemetry" in body for _, body in operator.heard)
+    assert operator.leaks() == []
+    assert analyst.leaks(), "the search finds a condition where it may be known"

@@ -1,0 +1,103 @@
+"""Those who send too much: refused before it fills the memory."""
+
+import asyncio
+import socket
+import ssl
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import psutil
+import pytest
+from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosed
+
+from app.settings import Settings
+from app.wire.messages import PROTOCOL_VERSION, SUBPROTOCOL
+from tests.faults.figures import note
+from tests.faults.streaming import pair_headsets
+from tests.faults.test_pressure import watched_memory
+from tests.support.lan import LanServer
+
+MOST_GROWTH_MIB = 64
+
+
+@pytest.fixture(scope="module")
+def lan(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LanServer]:
+    """A server with all its doors open."""
+    with LanServer(tmp_path_factory.mktemp("large")) as server:
+        yield server
+
+
+@contextmanager
+def _bounded(lan: LanServer, what: str) -> Iterator[None]:
+    """Note how much the server's memory grew, and refuse a lot."""
+    before = psutil.Process(lan.pid).memory_info().rss
+    with watched_memory(lan) as rss:
+        yield
+        time.sleep(0.2)
+    growth_mib = (max(rss) - before) / 2**20
+    note(22, what, "server memory, growth at most (MiB)", growth_mib)
+    assert growth_mib < MOST_GROWTH_MIB
+
+
+def test_too_large_a_body_is_refused(lan: LanServer) -> None:
+    """Declared or in chunks without a length: 413, before it fills the memory."""
+    limit = Settings().max_body_bytes
+    with lan.client() as client:
+        client.get("/api/health")
+        with _bounded(lan, "256 MiB body, declared"):
+            declared = client.post(
+                "/api/login", content=_blocks(256), headers={"content-length": str(2**28)}
+            )
+        assert declared.status_code == 413
+    with _bounded(lan, "256 MiB body, in chunks"):
+        assert b"413" in _sent_in_chunks(lan.port, 256)
+    note(22, "bodies", "refused above (bytes)", limit)
+
+
+def _blocks(mebibytes: int) -> Iterator[bytes]:
+    yield from (b" " * 2**20 for _ in range(mebibytes))
+
+
+def _sent_in_chunks(port: int, mebibytes: int) -> bytes:
+    """Send until the server answers, which it does long before the end."""
+    with socket.create_connection(("127.0.0.1", port), timeout=30) as connection:
+        connection.sendall(
+            b"POST /api/login HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+            b"Transfer-Encoding: chunked\r\n\r\n"
+        )
+        try:
+            for block in _blocks(mebibytes):
+                connection.sendall(b"%x\r\n" % len(block) + block + b"\r\n")
+        except OSError:
+            pass
+        return connection.recv(65536)
+
+
+def test_too_large_a_frame_is_refused(lan: LanServer) -> None:
+    """1009, and the headset's socket is closed; over ws and wss."""
+    (headset,) = pair_headsets(lan, 1)
+    for url, trust in ((lan.url, None), (lan.secure_url, lan.trusting())):
+        scheme = url.partition(":")[0]
+        with _bounded(lan, f"64 MiB frame over {scheme.replace('http', 'ws')}"):
+            code = asyncio.run(_closed_with(url, headset.token, trust))
+        note(22, "64 MiB frame", f"close code over {scheme.replace('http', 'ws')}", code)
+        assert code == 1009
+
+
+async def _closed_with(url: str, token: str, trust: ssl.SSLContext | None) -> int | None:
+    async with connect(
+        f"{url.replace('http', 'ws', 1)}/api/vr/stream",
+        subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]
+        ssl=trust,
+    ) as connection:
+        hello = f'{{"type": "hello", "protocol": {PROTOCOL_VERSION}, "client": "test"}}'
+        await connection.send(hello)
+        try:
+            await connection.send(bytes(2**26))
+            async for _ in connection:
+                continue
+        except ConnectionClosed:
+            pass
+        return connection.close_code

@@ -1,0 +1,117 @@
+"""The library of instruments over HTTP: reading, checking, storing versions, trying the scoring."""
+
+import pytest
+
+from app.resources import study_configs_dir
+from tests.features.lab import STUDY, Json, Lab, error, ok
+
+OWN = """
+key: calm
+version: 1
+title: {en: Calm, de: Ruhe}
+languages: [en, de]
+provenance: {source: ours, licence: ours, verified: nothing}
+scale: {minimum: 1, maximum: 5, labels: []}
+recode: x - 3
+items:
+  - {key: calm, type: likert, text: {en: I felt calm., de: Ich war ruhig.}}
+  - {key: tense, type: likert, text: {en: I felt tense., de: Ich war angespannt.}}
+  - {key: note, type: text, required: false, text: {en: "Why?", de: "Warum?"}}
+scores:
+  - {key: ease, label: {en: Ease, de: Gelassenheit}, formula: (calm - tense) / 2}
+  - {key: twice, label: {en: Twice, de: Doppelt}, formula: ease * 2}
+"""
+# Karas (2020), table 7.2: the expert's raw answers after the hand task at 0 ms.
+EXPERT = dict(
+    zip((f"q{n}" for n in range(1, 13)), (2, 1, 1, 5, 1, 7, 7, 2, 1, 6, 1, 3), strict=True)
+)
+
+
+def score(lab: Lab, **wish: object) -> Json:
+    """The scoring of a form that is not stored."""
+    result: Json = ok(lab.operator.post("/api/instruments/score", json=wish))
+    return result
+
+
+def test_the_library_tells_source_licence_and_use(lab: Lab) -> None:
+    """Every shipped instrument, with where it comes from and who asks it."""
+    library = {one["key"]: one for one in ok(lab.operator.get("/api/instruments"))}
+    files = sorted((study_configs_dir() / "instruments").glob("*.yaml"))
+    assert len(library) == len(files)
+    assert library["karas2020"]["used_by"] == [STUDY]
+    assert library["ssq"]["used_by"] == []
+    assert library["ssq"]["items"] == 16
+    assert all(one["provenance"]["licence"] for one in library.values())
+
+
+def test_an_instrument_in_full_can_be_drawn(lab: Lab) -> None:
+    """Items, formulas and a form in the shape in which tablets get theirs."""
+    detail = ok(lab.operator.get("/api/instruments/karas2020"))
+    assert len(detail["preview"]["item_order"]) == 15
+    assert detail["preview"]["item_order"][-1] == "problems"
+    assert detail["preview"]["recode"] == "x - 4"
+    assert len(detail["versions"]) == 1
+    refusal = error(lab.operator.get("/api/instruments/nothing"), 404, "not_found")
+    assert "ssq" in refusal["valid"]
+
+
+def test_a_check_previews_or_tells_every_problem(lab: Lab) -> None:
+    """A formula with an unknown name is told with its path and line."""
+    fine = ok(lab.operator.post("/api/instruments/check", json={"yaml": OWN}))
+    assert (fine["ok"], fine["known"], fine["replaces"]) == (True, False, False)
+    assert fine["preview"]["scores"][0]["formula"] == "(calm - tense) / 2"
+    broken = OWN.replace("(calm - tense)", "(calm - tens)")
+    bad = ok(lab.operator.post("/api/instruments/check", json={"yaml": broken}))
+    (problem,) = bad["problems"]
+    assert problem["path"] == "scores[0].formula"
+    assert "tens" in broken.splitlines()[problem["line"] - 1]
+    assert "tense" in problem["remedy"]
+    assert bad["preview"] is None
+
+
+def test_the_experts_answers_score_as_printed(lab: Lab) -> None:
+    """Table 7.2 of Karas (2020): 8, 7, 4 and 1.04, with the recoded values on the way."""
+    result = score(lab, key="karas2020", answers=EXPERT)
+    values = {one["key"]: one["value"] for one in result["scores"]}
+    assert (values["ownership"], values["agency"], values["location"]) == (8, 7, 4)
+    assert values["soe_thesis"] == pytest.approx(1.0407, abs=5e-5)
+    recoded = [one["recoded"] for one in result["items"]][:12]
+    assert recoded == [-2, -3, -3, 1, -3, 3, 3, -2, -3, 2, -3, -1]
+    ownership = next(one for one in result["scores"] if one["key"] == "ownership")
+    assert ownership["filled_in"] == "((-2) - (-3)) - (-3) + (1 - (-3))"
+
+
+def test_a_half_filled_form_says_what_is_missing(lab: Lab) -> None:
+    """A score without value names its items, through other scores too; a bad answer is told."""
+    result = score(lab, yaml=OWN, answers={"calm": 5, "tense": 9, "note": "because"})
+    ease, twice = result["scores"]
+    assert (ease["value"], ease["missing"], ease["filled_in"]) == (None, ["tense"], "(2 - ?) / 2")
+    assert (twice["value"], twice["missing"]) == (None, ["tense"])
+    assert [one["item"] for one in result["problems"]] == ["tense"]
+    wish: Json = {"yaml": OWN, "answers": {"stranger": 1}}
+    error(lab.operator.post("/api/instruments/score", json=wish), 422, "invalid_input")
+    wish = {"answers": {}}
+    error(lab.operator.post("/api/instruments/score", json=wish), 422, "invalid_input")
+
+
+def test_a_new_wording_leaves_the_old_one_to_its_studies(fresh_lab: Lab) -> None:
+    """The stored study still asks the shipped wording; a new version of it asks the new one."""
+    shipped = ok(fresh_lab.operator.get("/api/instruments/karas2020"))
+    changed = (
+        shipped["yaml"]
+        .replace("version: 1", "version: 2")
+        .replace("I felt out of my body.", "I felt outside of my body.")
+    )
+    detail = ok(fresh_lab.operator.post("/api/instruments", json={"yaml": changed}))
+    assert [one["used_by"] for one in detail["versions"]] == [[STUDY], []]
+    assert (detail["version"], detail["used_by_older"]) == (2, [STUDY])
+    view = fresh_lab.skip_to(fresh_lab.join(), "block1.hand.karas2020")
+    form = ok(fresh_lab.operator.get(f"/api/sessions/{view['id']}/administration"))
+    assert "I felt out of my body." in str(form["instrument"])
+    yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    body = {"yaml": yaml.replace("Acting through", "Living through")}
+    ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json=body))
+    diff = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/diff?from=1&to=2"))
+    assert [one["key"] for one in diff["instruments"]] == ["karas2020"]
+    again = ok(fresh_lab.operator.post("/api/instruments", json={"yaml": changed}))
+    assert again["stored_versions"] == 2

@@ -1,0 +1,117 @@
+"""Every way to make orders, under a hundred simultaneous joins and with people dropping out."""
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from httpx2 import Client
+
+from tests.features.lab import Json, ok
+from tests.protocol.helpers import with_levels
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+JOINS, DROPOUTS, AT_ONCE = 100, 24, 20
+LISTED = """design: explicit
+  sequences:
+    - [c0, c1, c2, c3]
+    - [c1, c3, c0, c2]
+    - [c3, c2, c1, c0]
+"""
+SCHEMES: dict[str, tuple[int, str, int]] = {
+    "all permutations of 3": (3, "", 6),
+    "all permutations of 4": (4, "", 24),
+    "Williams, 4 conditions": (4, "design: williams\n", 4),
+    "Williams, 5 conditions": (5, "design: williams\n", 10),
+    "explicit list of 3": (4, LISTED, 3),
+}
+"""Name -> conditions, the design in the file, and how many orders it has."""
+
+
+def study(name: str) -> tuple[str, str]:
+    """Key and text of a study with that scheme, in three replicates."""
+    levels, design, _ = SCHEMES[name]
+    key = "scheme-" + "".join(letter for letter in name.lower() if letter.isalnum())
+    text = with_levels(levels).replace("key: reembodiment-latency", f"key: {key}", 1)
+    if design:
+        text = text.replace("design: all_permutations\n", design, 1)
+    return key, text.replace("replicates: 2", "replicates: 3", 1)
+
+
+@pytest.fixture
+def client(database_url: str, tmp_path: Path) -> Iterator[Client]:
+    """A signed-in client of a real server on each engine."""
+    environment = {"REEMBODY_DATABASE_URL": database_url}
+    with LiveServer(tmp_path, environment=environment) as server, server.client() as signed_in:
+        ok(signed_in.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+        yield signed_in
+
+
+def at_once(task: Callable[[Json], Json], wishes: list[Json]) -> list[Json]:
+    """Do all of them, twenty at a time."""
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        return list(pool.map(task, wishes))
+
+
+def imbalance(sequences: list[list[float]], orders: int) -> int:
+    """Between the order that was given out most and least often."""
+    counts = Counter(map(tuple, sequences))
+    assert len(counts) <= orders
+    return max(counts.values()) - (min(counts.values()) if len(counts) == orders else 0)
+
+
+def test_every_scheme_stays_balanced(client: Client) -> None:
+    """No order is more than one ahead, with all who joined and with all who stayed; a slot that
+    somebody left is filled again, and none is held twice.
+    """
+    for name, (levels, _, orders) in SCHEMES.items():
+        key, text = study(name)
+        ok(client.post("/api/studies", json={"yaml": text}))
+
+        def join(_: Json, key: str = key) -> Json:
+            view: Json = ok(client.post(f"/api/studies/{key}/sessions", json={}))
+            return view
+
+        views = at_once(join, [{}] * JOINS)
+        joined = imbalance([view["sequence"] for view in views], orders)
+        gone = views[:: JOINS // DROPOUTS][:DROPOUTS]
+        at_once(lambda view: withdraw(client, view), gone)
+        again = at_once(join, [{}] * DROPOUTS)
+        held = [*(view for view in views if view not in gone), *again]
+        refilled = imbalance([view["sequence"] for view in held], orders)
+        # One ahead where a block is begun and not full, none where the last one is.
+        expected = int(JOINS % orders > 0)
+        assert (name, joined, refilled) == (name, expected, expected)
+        assert sorted(view["slot"]["index"] for view in held) == list(range(JOINS))
+        assert {view["slot"]["index"] for view in again} == {one["slot"]["index"] for one in gone}
+        if "explicit" not in text:
+            check_carry_over(client, key, levels)
+
+
+def check_carry_over(client: Client, key: str, levels: int) -> None:
+    """Each ordered pair of neighbours equally often in each block of the ledger."""
+    slots = ok(client.get(f"/api/studies/{key}/ledger"))["slots"]
+    for block in {slot["block"] for slot in slots}:
+        rows = [slot["sequence"] for slot in slots if slot["block"] == block]
+        pairs = Counter(pair for row in rows for pair in pairwise(row))
+        assert len(pairs) == levels * (levels - 1)
+        assert len(set(pairs.values())) == 1
+
+
+def withdraw(client: Client, view: Json) -> Json:
+    """Start the session and let its participant leave."""
+    path = f"/api/sessions/{view['id']}/commands"
+    started = ok(client.post(path, json=command(view, "start")))
+    left: Json = ok(client.post(path, json={**command(started, "withdraw"), "reason": "unwell"}))
+    return left
+
+
+def command(view: Json, kind: str) -> Json:
+    """A command decided on what was seen."""
+    return {
+        "command_id": f"{kind}-{view['id']}"[:36],
+        "expected_version": view["version"],
+        "type": kind,
+    }

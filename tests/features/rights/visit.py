@@ -1,0 +1,204 @@
+"""A visit that leaves a canary wherever a participant leaves something, and the search for it."""
+
+import hashlib
+import io
+import zipfile
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from sqlalchemy import (
+    JSON,
+    Column,
+    ColumnElement,
+    Engine,
+    LargeBinary,
+    MetaData,
+    String,
+    cast,
+    func,
+    literal,
+    select,
+)
+
+from app.wire import StreamName
+from tests.features.headset.site import Site
+from tests.features.lab import STUDY, Json, key, ok
+from tests.wire.samples import message, standing
+
+CANARY = "CANARY-7f3a91c2"
+FRAMES = 180
+
+
+@dataclass(frozen=True)
+class Visit:
+    """A visit. Whatever its participant left behind holds their code, and frames `height_m`."""
+
+    session_id: str
+    participant_id: str
+    code: str
+    headset_token: str = ""
+
+    @property
+    def needles(self) -> tuple[bytes, bytes]:
+        """What to search for: the code, and two numbers side by side in single precision."""
+        return self.code.encode(), np.float32(height_m(self.code)).tobytes() * 2
+
+
+def height_m(code: str) -> float:
+    """A height of the hips that nobody has: its bits mark the frames of a participant."""
+    return 1000.0 + int(hashlib.sha256(code.encode()).hexdigest()[:6], 16) / 7919
+
+
+def make_visit(site: Site, code: str = CANARY) -> Visit:
+    """Notes, answers, names, touches and movement of somebody who is in the middle of a session."""
+    session_id = site.join(kind="people", participant_code=code)
+    _pair_tablet(site, session_id, name=code)
+    site.command(session_id, "start")
+    site.command(session_id, "complete_step")
+    submit(site, session_id, occupation=code, sex_self_description=code)
+    _refused_form(site, session_id, code)
+    site.command(session_id, "note", text=f"They said {code}.")
+    view = site.view(session_id)
+    while view["steps"][view["current"]["index"]]["kind"] != "questionnaire":
+        view = site.command(session_id, "skip", reason=f"because {code}")
+    submit(site, session_id, problems=code)
+    token = site.token(session_id)
+    with site.headset(token) as headset:
+        for first in range(0, FRAMES, 9):
+            for stream in StreamName:
+                headset.say(message(_frames(code), stream=stream, seq_first=first))
+        headset.acknowledged("actual", FRAMES)
+        headset.reported(kind="materialised", t_s=1.0)
+    return Visit(session_id, participant_of(site, session_id)["id"], code, token)
+
+
+def participant_of(site: Site, session_id: str) -> Json:
+    """The participant of a session, as the page lists them."""
+    listed: list[Json] = ok(site.operator.get(f"/api/studies/{STUDY}/participants"))
+    return next(one for one in listed if session_id in [own["id"] for own in one["sessions"]])
+
+
+def submit(site: Site, session_id: str, **given: object) -> Json:
+    """Fill in the form that is due; the items that are not given get their lowest answer."""
+    due = ok(site.operator.get(f"/api/sessions/{session_id}/administration"))
+    body = _filled(due, given)
+    receipt: Json = ok(site.operator.post(f"/api/sessions/{session_id}/submissions", json=body))
+    return {**receipt, "body": body, "instrument": due["instrument"]}
+
+
+def erase(site: Site, visit: Visit, reason_code: str = "requested") -> Json:
+    """Erase the participant of a visit."""
+    path = f"/api/studies/{STUDY}/participants/{visit.participant_id}/erasure"
+    answer = site.operator.post(path, json={"confirm": visit.code, "reason_code": reason_code})
+    erased: Json = ok(answer)
+    return erased
+
+
+def _pair_tablet(site: Site, session_id: str, name: str) -> None:
+    path = f"/api/sessions/{session_id}/pairings"
+    code = ok(site.operator.post(path, json={"device": "tablet"}))["code"]
+    with site.server.client() as device:
+        ok(device.post("/api/devices/pair", json={"code": code, "name": name}))
+
+
+def _refused_form(site: Site, session_id: str, code: str) -> None:
+    """Other answers to the form that is stored: they are kept beside it."""
+    forms = ok(site.operator.get(f"/api/sessions/{session_id}/answers"))
+    body = {
+        "idempotency_key": key(),
+        "administration": forms[0]["administration"],
+        "answers": {**forms[0]["answers"], "occupation": f"no, {code}"},
+        "shown_order": forms[0]["shown_order"],
+        "seed": 1,
+        "language": "en",
+    }
+    answer = site.operator.post(f"/api/sessions/{session_id}/submissions", json=body)
+    assert answer.status_code == 409, answer.text
+
+
+def _filled(due: Json, given: dict[str, object]) -> Json:
+    answers: Json = {}
+    for item in due["instrument"]["items"]:
+        scale = item.get("scale") or due["instrument"].get("scale") or {}
+        match item["type"]:
+            case "likert":
+                answers[item["key"]] = scale["minimum"]
+            case "choice":
+                answers[item["key"]] = item["choices"][0]["key"]
+            case "boolean":
+                answers[item["key"]] = False
+            case "text":
+                answers[item["key"]] = "words"
+            case _:
+                answers[item["key"]] = item["minimum"]
+    return {
+        "idempotency_key": key(),
+        "administration": due["key"],
+        "answers": {**answers, **given},
+        "shown_order": due["item_order"],
+        "seed": due["seed"],
+        "language": "en",
+        "timings": dict.fromkeys(due["item_order"], 1.5),
+    }
+
+
+def _frames(code: str) -> "np.ndarray[tuple[int, int], np.dtype[np.float32]]":
+    frames = standing(9)
+    frames[:, 1:3] = height_m(code)
+    return frames
+
+
+def in_files(visit: Visit, paths: Iterable[Path]) -> dict[str, int]:
+    """How often a visit is found in files, whatever they are; those without it are left out."""
+    found = {}
+    for path in paths:
+        if path.is_file():
+            count = in_bytes(visit, path.read_bytes())
+            if count:
+                found[str(path)] = count
+    return found
+
+
+def in_bytes(visit: Visit, data: bytes) -> int:
+    """How often a visit is found in some bytes, also inside of an archive."""
+    count = sum(data.count(needle) for needle in visit.needles)
+    if data[:4] == b"PK\x03\x04":
+        printed = f"{height_m(visit.code):.2f}".encode()
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            for name in archive.namelist():
+                held = archive.read(name)
+                count += in_bytes(visit, held) + in_bytes(visit, name.encode())
+                count += held.count(printed)
+    return count
+
+
+def in_tables(visit: Visit, engine: Engine) -> dict[str, int]:
+    """In how many rows a visit is found, by table and column: every text, JSON and byte string."""
+    metadata = MetaData()
+    metadata.reflect(engine)
+    found = {}
+    with engine.connect() as connection:
+        for column in (column for table in metadata.sorted_tables for column in table.columns):
+            for place in _places(visit, column, engine.dialect.name):
+                rows = connection.scalar(
+                    select(func.count()).select_from(column.table).where(place > 0)
+                )
+                if rows:
+                    found[f"{column.table.name}.{column.name}"] = rows
+    return found
+
+
+def _places(visit: Visit, column: Column[Any], dialect: str) -> Iterator[ColumnElement[int]]:
+    """Where each needle is in a column, counted from 1; nothing for a column of numbers."""
+    if isinstance(column.type, LargeBinary):
+        find = func.instr if dialect == "sqlite" else func.position
+        for needle in visit.needles:
+            wanted = literal(needle)
+            yield find(column, wanted) if dialect == "sqlite" else find(wanted.op("IN")(column))
+    elif isinstance(column.type, String | JSON):
+        held = cast(column, String)
+        find = func.instr if dialect == "sqlite" else func.strpos
+        yield find(held, literal(visit.code))

@@ -1,0 +1,90 @@
+"""Writing a study over HTTP: templates, checks with figures, changes of a form, dry runs."""
+
+import pytest
+
+from tests.features.lab import STUDY, Json, Lab, error, ok
+from tests.features.studies.test_studies import edit
+
+
+@pytest.fixture(scope="module")
+def yaml(lab: Lab) -> str:
+    """The shipped study's file."""
+    return str(ok(lab.operator.get(f"/api/studies/{STUDY}"))["yaml"])
+
+
+def test_templates_are_offered_and_not_studies(lab: Lab) -> None:
+    """Four beginnings, each of which checks out; only the shipped study is stored."""
+    templates = ok(lab.operator.get("/api/templates"))
+    assert templates[0]["key"] == STUDY
+    assert len(templates) == 4
+    for template in templates:
+        assert set(template["title"]) == {"en", "de"}
+        assert ok(lab.operator.post("/api/studies/check", json={"yaml": template["yaml"]}))["ok"]
+    assert [one["key"] for one in ok(lab.operator.get("/api/studies"))] == [STUDY]
+
+
+def test_a_check_tells_what_a_study_asks_for(lab: Lab, yaml: str) -> None:
+    """Three latencies in all 3! orders, twice: 12 people, 7 forms each, 9 minutes set."""
+    summary = ok(lab.operator.post("/api/studies/check", json={"yaml": yaml}))["summary"]
+    assert {key: summary[key] for key in ("conditions", "orders", "slots", "administrations")} == {
+        "conditions": 3,
+        "orders": 6,
+        "slots": 12,
+        "administrations": 7,
+    }
+    assert summary["planned_minutes"] == 9.0
+    assert summary["minutes"] > summary["planned_minutes"]
+
+
+def test_a_broken_file_still_has_its_values(lab: Lab, yaml: str) -> None:
+    """A form can show what is there while there are problems, and where each value stands."""
+    broken = edit(yaml, ("latency_ms: 125", "latency_ms: -125"))
+    answer = ok(lab.operator.post("/api/studies/check", json={"yaml": broken}))
+    assert not answer["ok"]
+    assert answer["tree"]["conditions"][1]["latency_ms"] == -125
+    line = answer["lines"]["conditions[1].latency_ms"]
+    assert broken.splitlines()[line - 1].strip() == "latency_ms: -125"
+    assert ok(lab.operator.post("/api/studies/check", json={"yaml": "a: ["}))["tree"] is None
+
+
+def test_a_form_changes_a_text_and_nothing_else(lab: Lab, yaml: str) -> None:
+    """One line differs; a change that does not fit is refused with its path."""
+    path = ["conditions", 1, "latency_ms"]
+    body = {"yaml": yaml, "changes": [{"path": path, "value": 200}]}
+    after = ok(lab.operator.post("/api/studies/edit", json=body))["yaml"]
+    changed = [
+        pair for pair in zip(yaml.splitlines(), after.splitlines(), strict=True) if len({*pair}) > 1
+    ]
+    assert changed == [("    latency_ms: 125", "    latency_ms: 200")]
+    body = {"yaml": yaml, "changes": [{"path": ["conditions", 7], "action": "remove"}]}
+    refusal = error(lab.operator.post("/api/studies/edit", json=body), 422, "invalid_config")
+    assert refusal["details"][0]["path"] == "conditions[7]"
+
+
+def test_a_dry_run_is_the_slot_that_is_given_out(fresh_lab: Lab) -> None:
+    """The first participant's session has the order, and the steps, of the dry run of slot 0."""
+    yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    dry: Json = ok(fresh_lab.operator.post("/api/studies/timeline", json={"yaml": yaml, "slot": 0}))
+    session = fresh_lab.join()
+    assert dry["latencies_ms"] == session["sequence"]
+    assert [step["key"] for step in dry["steps"]] == [step["key"] for step in session["steps"]]
+    assert dry["planned_s"] == 540
+    assert dry["steps"][-1]["start_s"] + dry["steps"][-1]["length_s"] == dry["total_s"]
+
+
+def test_a_dry_run_of_any_slot_and_order(lab: Lab, yaml: str) -> None:
+    """Slots beyond the first ledger are those it would grow by; an order is found by its place."""
+
+    def run(**wish: object) -> Json:
+        body = {"yaml": yaml, **wish}
+        view: Json = ok(lab.operator.post("/api/studies/timeline", json=body))
+        return view
+
+    assert run(slot=12)["replicate"] == 3
+    assert {tuple(run(sequence_index=at)["sequence"]) for at in range(6)} == {
+        tuple(run(slot=at)["sequence"]) for at in range(6)
+    }
+    assert run(slot=0, language="de")["steps"][0]["title"] == "Einwilligung"
+    body = {"yaml": yaml, "sequence_index": 6}
+    error(lab.operator.post("/api/studies/timeline", json=body), 422, "invalid_input")
+    error(lab.operator.post("/api/studies/timeline", json={"yaml": "a: 1"}), 422, "invalid_config")

@@ -1,0 +1,44 @@
+"""Sessions of experts: with the others in the list, in no figure and no export."""
+
+from pathlib import Path
+
+from app.features.analysis.tables import KINDS, sessions_table
+from app.features.exports.service import export_study, usual_kind
+from tests.features.lab import STUDY, Lab, ok
+
+
+def test_experts_have_a_ledger_of_their_own(fresh_lab: Lab) -> None:
+    """An expert takes nobody's slot."""
+    expert, person = fresh_lab.join(kind="expert"), fresh_lab.join()
+    assert (expert["slot"]["index"], person["slot"]["index"]) == (0, 0)
+    assert expert["participant_code"] == "EXPERT-0001"
+    slots = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/ledger?kind=expert"))["slots"]
+    assert [slot["state"] for slot in slots].count("open") == 1
+
+
+def test_an_expert_is_in_the_list_of_sessions(fresh_lab: Lab) -> None:
+    """With a kind of its own, and not simulated."""
+    fresh_lab.join(kind="expert")
+    (told,) = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/sessions?kind=expert"))
+    assert (told["kind"], told["simulated"]) == ("expert", False)
+
+
+def test_an_expert_runs_no_faster_than_life(lab: Lab) -> None:
+    """Only simulations may."""
+    assert lab.try_join(kind="expert", time_scale=2.0).status_code == 422
+
+
+def test_no_table_holds_an_expert(fresh_lab: Lab, tmp_path: Path) -> None:
+    """Not even when all kinds are asked for, and no route takes the kind."""
+    expert, person = fresh_lab.join(kind="expert"), fresh_lab.join()
+    with fresh_lab.database.reading() as db:
+        for kind in KINDS:
+            assert expert["id"] not in set(sessions_table(db, STUDY, kind)["session_id"])
+        assert set(sessions_table(db, STUDY, "all")["session_id"]) == {person["id"]}
+        assert usual_kind(db, STUDY) == "people"
+        export_study(db, STUDY, "all", tmp_path / "out", now=fresh_lab.context.clock.utc_now())
+    texts = [one.read_text("utf-8") for one in (tmp_path / "out").rglob("*") if one.is_file()]
+    assert not [text for text in texts if expert["id"] in text]
+    for route in ("dashboard", "export"):
+        answer = fresh_lab.operator.get(f"/api/studies/{STUDY}/{route}?kind=expert")
+        assert answer.status_code == 422

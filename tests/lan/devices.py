@@ -1,0 +1,34 @@
+"""An operator and a headset that come over the network."""
+
+import json
+
+import httpx2
+from websockets.asyncio.client import connect
+
+from app.wire.messages import PROTOCOL_VERSION, SUBPROTOCOL
+from tests.features.lab import STUDY, ok
+from tests.support.server import ADMIN_PASSWORD
+
+CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}
+
+
+def pair_headset(client: httpx2.Client) -> tuple[str, str]:
+    """A session's id, and the token of the headset that is paired with it."""
+    session = ok(client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"}))
+    shown = ok(client.post(f"/api/sessions/{session['id']}/pairings", json={"device": "headset"}))
+    paired = ok(client.post("/api/devices/pair", json={"code": shown["code"]}))
+    return session["id"], paired["token"]
+
+
+async def greeted(url: str, token: str, **options: object) -> dict[str, object]:
+    """Connect as a headset and take the welcome."""
+    async with connect(
+        f"{url.replace('http', 'ws', 1)}/api/vr/stream",
+        subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]
+        **options,  # type: ignore[arg-type]
+    ) as connection:
+        await connection.send(
+            json.dumps({"type": "hello", "protocol": PROTOCOL_VERSION, "client": "test"})
+        )
+        answer: dict[str, object] = json.loads(await connection.recv())
+        return answer

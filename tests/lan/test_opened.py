@@ -1,0 +1,46 @@
+"""What the terminal says before the server listens."""
+
+from pathlib import Path
+
+import pytest
+
+from app.cli.opened import addresses
+from app.clock import Clock
+from app.lan.network import Reach
+from app.lan.plan import make_plan
+from app.settings import Settings
+from tests.lan.machines import LAB_PC
+
+
+def test_this_machine_alone_needs_three_lines() -> None:
+    """Where to go, the tablet's page, where the data are."""
+    assert addresses(Reach(), "data").splitlines() == [
+        "Reembody   http://127.0.0.1:8321",
+        "Tablet     http://127.0.0.1:8321/tablet",
+        "Data       data",
+    ]
+
+
+def test_a_server_without_encryption_says_so_loudly() -> None:
+    """In capitals, with the way out."""
+    told = addresses(Reach(mode="without_tls", urls=("http://192.168.7.20:8321",)), "data")
+    assert "WITHOUT ENCRYPTION" in told
+    assert "--lan" in told
+
+
+@pytest.mark.parametrize("at_terminal", [True, False])
+def test_the_network_is_told_with_its_fingerprint(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, at_terminal: bool
+) -> None:
+    """All of the fingerprint and the help page; a code to scan only where a person looks."""
+    plan = make_plan(Settings(data_dir=tmp_path, lan=True), Clock())
+    assert plan.certificates is not None
+    identity = plan.certificates.current(LAB_PC)
+    monkeypatch.setattr("sys.stdout.isatty", lambda: at_terminal)
+    told = addresses(plan.reach(LAB_PC, identity), "data")
+    shown = identity.authority_fingerprint or ""
+    assert shown[:47] in told
+    assert shown[48:] in told
+    assert "Tablet     https://192.168.7.20:8443/tablet" in told
+    assert "http://192.168.7.20:8080" in told
+    assert ("█" in told) is at_terminal

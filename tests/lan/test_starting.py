@@ -1,0 +1,88 @@
+"""Starting, refusing to start, and starting again with another certificate."""
+
+import asyncio
+import json
+import socket
+import subprocess
+from pathlib import Path
+
+import httpx2
+
+from tests.features.lab import ok
+from tests.lan.devices import CREDENTIALS, greeted, pair_headset
+from tests.support.lan import LanServer
+from tests.support.server import REEMBODY, free_port
+
+
+def test_a_restart_and_a_renewal_leave_devices_paired(tmp_path: Path) -> None:
+    """Token, authority and fingerprint stay; only the server's own certificate is another."""
+    with LanServer(tmp_path) as server:
+        trust = server.trusting()
+        with server.secure_client() as client:
+            ok(client.post("/api/login", json=CREDENTIALS))
+            _, token = pair_headset(client)
+            before = ok(client.get("/api/network"))["certificate"]
+        assert asyncio.run(greeted(server.secure_url, token, ssl=trust))["type"] == "welcome"
+        server.stop()
+        renewed = _command(server, "tls", "renew", "--json")
+        server.start()
+        # `trust` is what the device installed before.
+        assert asyncio.run(greeted(server.secure_url, token, ssl=trust))["type"] == "welcome"
+        with httpx2.Client(base_url=server.secure_url, verify=trust) as client:
+            ok(client.post("/api/login", json=CREDENTIALS))
+            after = ok(client.get("/api/network"))["certificate"]
+    assert after["fingerprint"] == before["fingerprint"] == renewed["authority_fingerprint_sha256"]
+    assert after["server_fingerprint"] == renewed["server_fingerprint_sha256"]
+    assert after["server_fingerprint"] != before["server_fingerprint"]
+
+
+def test_an_open_address_without_tls_is_refused(tmp_path: Path) -> None:
+    """It ends before it listens or touches the data, and says three ways out."""
+    result = subprocess.run(
+        [*REEMBODY, "serve", "--host", "0.0.0.0", "--port", str(free_port())],  # noqa: S104
+        env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert result.returncode == 2
+    assert "--lan" in result.stderr
+    assert "--without-tls" in result.stderr
+    assert not (tmp_path / "data").exists()
+
+
+def test_a_taken_port_is_named(tmp_path: Path) -> None:
+    """With the option that chooses another one, before the data are touched."""
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        result = subprocess.run(
+            [
+                *(*REEMBODY, "serve", "--port", str(free_port()), "--lan"),
+                *("--lan-host", "127.0.0.1", "--lan-port", str(port)),
+                *("--help-port", str(free_port())),
+            ],
+            env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=60,
+        )
+    assert result.returncode == 2
+    assert f"port {port}" in result.stderr
+    assert "--lan-port" in result.stderr
+    assert not (tmp_path / "data" / "reembody.sqlite").exists()
+
+
+def _command(server: LanServer, *arguments: str) -> dict[str, str]:
+    result = subprocess.run(
+        [*REEMBODY, *arguments],
+        env={"REEMBODY_DATA_DIR": str(server.data_dir)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    told: dict[str, str] = json.loads(result.stdout)
+    return told

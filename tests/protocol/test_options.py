@@ -1,0 +1,98 @@
+"""Practice, stop rules and signed consents in a study file."""
+
+import json
+
+import pytest
+
+from app.protocol import compile_plan
+from tests.protocol.helpers import STUDY, loaded, problems
+from tests.protocol.options import with_options
+
+ORDER = ("latency_0", "latency_125", "latency_350")
+PROTOCOL = loaded(with_options()).protocol
+RULE = "score: sickness_score, stop_at: 15, warn_at: 10"
+SHIPPED = "61849165b02e169d88c0b006dcddd3ae8ad396995254a142e109fa3cd2817097"
+
+
+def test_the_hash_of_a_study_without_options_stays() -> None:
+    """What is not used is not part of the content: the shipped study is what it was."""
+    study = loaded()
+    assert study.content_hash == SHIPPED
+    for word in ("safety", "signature", "statements", "practice", "optional"):
+        assert word not in json.loads(study.canonical_json)["procedure"]["before"][0]
+    assert "safety" not in json.loads(study.canonical_json)
+
+
+def test_a_signature_of_none_is_no_change() -> None:
+    """Writing the default down gives the same content."""
+    plain = "{step: consent, text: consent}"
+    said = "{step: consent, text: consent, signature: none, statements: []}"
+    assert loaded(STUDY.replace(plain, said)).content_hash == SHIPPED
+
+
+def test_a_practice_stands_outside_the_blocks() -> None:
+    """It has boxes, times and a latency like a task, and neither block nor condition."""
+    plan = compile_plan(PROTOCOL, ORDER)
+    step = next(step for step in plan if step.kind == "practice")
+    assert (step.key, step.limb, step.latency_ms) == ("practice.hand", "hand", 0)
+    assert (step.preparation_s, step.duration_s, step.freeze_s) == (1, 30, 1)
+    assert (step.block, step.condition, step.instrument) == (None, None, None)
+    assert step.until_completions == 2
+    assert step.title == {"en": "Practice with the hand", "de": "Übung mit der Hand"}
+    assert [one.until_completions for one in plan if one.kind == "task"] == [None] * 6
+
+
+def test_the_design_is_that_of_the_study_without_options() -> None:
+    """Practice, signature and stop rules do not move the ledger."""
+    assert PROTOCOL.design_hash == loaded().protocol.design_hash
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "path", "said"),
+    [
+        (RULE, "score: fms, stop_at: 15", "safety.stop_rules[0].score", "no score 'fms'"),
+        (RULE, RULE.replace("15", "21"), "safety.stop_rules[0].stop_at", "by nobody"),
+        (RULE, RULE.replace("10", "0"), "safety.stop_rules[0].warn_at", "by everybody"),
+        (RULE, RULE.replace("10", "15"), "safety.stop_rules[0].warn_at", "not below"),
+        (RULE, f"{RULE}, change_from: form.fms", "safety.stop_rules[0].change_from", "no form"),
+        (RULE, f"{RULE}, change_from: fms", "safety.stop_rules[0].change_from", "no form"),
+        ("{instrument: fms", "{instrument: ssq", "safety.stop_rules[0].instrument", "not ask"),
+        ("limb: hand\n      prep", "limb: head\n      prep", "procedure.before[5].limb", "not v"),
+        ("completions: 2", "completions: 0", "procedure.before[5].repeat_until", "range"),
+        ("    - {step: materialise, text: t_pose}\n", "", "procedure.before[4].step", "a body"),
+        ("signature: drawn", "signature: stamp", "procedure.before[0].signature", "'stamp'"),
+        (
+            "text: {en: I agree to take part., de: Ich nehme freiwillig teil.}",
+            "text: {en: I agree to take part.}",
+            "procedure.before[0].statements[1].text.de",
+            "declared language",
+        ),
+    ],
+)
+def test_what_cannot_work_is_refused_at_its_place(old: str, new: str, path: str, said: str) -> None:
+    """Rules nobody or everybody meets, scores that are not there, practice without a body."""
+    found = [one for one in problems(with_options((old, new))) if one.path.startswith(path)]
+    assert found
+    assert said in found[0].message
+    assert found[0].remedy
+
+
+def test_a_rule_on_what_is_asked_too_late_is_refused() -> None:
+    """After the last block there is nothing left to stop."""
+    late = with_options(
+        ("    after: [{step: form, instrument: fms}]\n", ""),
+        ("    - {step: debrief", "    - {step: form, instrument: fms}\n    - {step: debrief"),
+    )
+    found = [one for one in problems(late) if one.path == "safety.stop_rules[0].instrument"]
+    assert "only after the blocks" in found[0].message
+
+
+def test_a_rule_may_look_at_the_rise() -> None:
+    """Its starting point is a form before the blocks, by the plan's key."""
+    text = with_options(
+        ("    - {step: height", "    - {step: form, instrument: fms}\n    - {step: height"),
+        (RULE, "score: sickness_score, stop_at: 8, change_from: form.fms"),
+    )
+    safety = loaded(text).protocol.safety
+    assert safety is not None
+    assert safety.stop_rules[0].change_from == "form.fms"
