@@ -90,7 +90,7 @@ def stages(*, long: bool) -> list[Stage]:
             "tests/house",
             *also_long,
         ),
-        pytest_stage("browser tests", "-m", "browser", *also_long),
+        pytest_stage("browser tests", "-n", "2", "--dist", "loadfile", "-m", "browser", *also_long),
         pytest_stage("house checks", "tests/house", *also_long),
     ]
 
