@@ -10,8 +10,9 @@ from app.models.types import UtcTime
 class AuditEntry(Base):
     """One act. `hash` covers the previous hash and every other column.
 
-    `subject` names what was acted upon by kind and pseudonym or key ("study:pilot",
-    "participant:P-0007"); `details` is canonical JSON without answers or names of participants.
+    `subject` names what was acted upon by kind and key or id ("study:pilot", "session:0f3a..."),
+    and `details` is canonical JSON. Neither holds anything of a participant, not even their code:
+    an entry cannot be erased.
     """
 
     __tablename__ = "audit_entries"

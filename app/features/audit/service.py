@@ -1,7 +1,8 @@
 """The audit trail: who did what to which object, appended and hash-chained, never switched off.
 
 A session has a log of its own; this one holds what happens around sessions: logins, accounts,
-studies, copies of data, erasures. It names participants by pseudonym and holds no answers.
+studies, copies of data, erasures. It holds nothing of participants, not even their codes: what is
+chained cannot be erased.
 """
 
 from collections.abc import Mapping, Sequence

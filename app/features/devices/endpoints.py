@@ -2,6 +2,7 @@
 
 from fastapi import APIRouter, Request, Response
 
+from app.features.audit.service import record
 from app.features.cookies import set_cookie
 from app.features.dependencies import TABLET_COOKIE, Context, SignedIn, Writing
 from app.features.devices.schemas import NewPairing, PairedView, PairingView, PairRequest
@@ -53,6 +54,14 @@ def post_pair(
     context.pairing_limiter.succeed(caller)
     device = paired.device
     context.hub.publish_after_commit(db, device.session_id)
+    record(
+        db,
+        actor=f"{device.kind}:{device.id}",
+        action="device.paired",
+        subject=f"session:{device.session_id}",
+        details={"device": device.kind, "address": caller},
+        now=device.paired_at,
+    )
     if device.kind == "tablet":
         set_cookie(request, response, TABLET_COOKIE, paired.token, TABLET_COOKIE_DAYS * 86_400)
     return PairedView(
@@ -64,8 +73,11 @@ def post_pair(
 
 @router.delete("/sessions/{session_id}/devices/{device_id}", status_code=204)
 def delete_device(
-    session_id: str, device_id: str, db: Writing, context: Context, _: SignedIn
+    session_id: str, device_id: str, db: Writing, context: Context, caller: SignedIn
 ) -> None:
     """Unpair a device: its token stops working at once."""
-    revoke(db, session_id=session_id, device_id=device_id, now=context.clock.utc_now())
+    now = context.clock.utc_now()
+    revoke(db, session_id=session_id, device_id=device_id, now=now)
+    subject = f"session:{session_id}"
+    record(db, actor=caller.actor, action="device.unpaired", subject=subject, now=now)
     context.hub.publish_after_commit(db, session_id)

@@ -8,6 +8,7 @@ from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
 from app.features.analysis.schemas import Kind
+from app.features.audit.service import record
 from app.features.dependencies import Context, SignedIn, Writing
 from app.features.exports.names import archive_name
 from app.features.rights.service import in_browser_of, record_copy, sessions_in
@@ -40,6 +41,14 @@ def get_export(
         by=caller.actor,
         now=now,
         sessions=sessions_in(db, study, kind),
+    )
+    record(
+        db,
+        actor=caller.actor,
+        action="study.exported",
+        subject=f"study:{study.key}",
+        details={"kind": kind},
+        now=now,
     )
     pieces = study_archive(context.database, study.key, kind, now=now)
     name = archive_name(study.key, kind)

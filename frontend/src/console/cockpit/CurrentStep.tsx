@@ -175,7 +175,7 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
         </Button>
       )}
       {dangers.length > 0 && (
-        <Menu position="bottom-end" width={280}>
+        <Menu position="bottom-end" width={280} withInitialFocusPlaceholder={false}>
           <Menu.Target>
             <Button
               variant="subtle"

@@ -150,7 +150,7 @@ function Add({ path, spec, count, last }: AddProps): JSX.Element {
   if (spec.item.kind === "union") {
     const { item } = spec;
     return (
-      <Menu>
+      <Menu withInitialFocusPlaceholder={false}>
         <Menu.Target>
           <Button size="xs" variant="default" leftSection={icon}>
             {t("editor.addStep")}

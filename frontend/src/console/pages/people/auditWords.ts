@@ -44,6 +44,9 @@ const SENTENCES: Readonly<Record<string, Key>> = {
   "study.duplicated": "act.study.duplicated",
   "study.archived": "act.study.archived",
   "study.restored": "act.study.restored",
+  "study.exported": "act.study.exported",
+  "device.paired": "act.device.paired",
+  "device.unpaired": "act.device.unpaired",
   "answer.corrected": "act.answer.corrected",
   "copy.destroyed": "act.copy.destroyed",
   "participant.copied": "act.participant.copied",
@@ -60,6 +63,7 @@ export const KINDS = [
   "participant",
   "answer",
   "copy",
+  "device",
 ] as const;
 
 function accountChanges(

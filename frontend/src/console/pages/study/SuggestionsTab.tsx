@@ -126,7 +126,7 @@ function Decide({ one, study }: ItemProps): JSX.Element {
   return (
     <div>
       <Group gap="xs" wrap="nowrap">
-        <Menu position="bottom-end">
+        <Menu position="bottom-end" withInitialFocusPlaceholder={false}>
           <Menu.Target>
             <Button size="xs" variant="default" rightSection={<Icon name="down" size={14} />}>
               {t("suggestions.adopt")}
