@@ -8,7 +8,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from argon2 import PasswordHasher
 
+from app.features.accounts import passwords
 from tests.support import postgres, shared_run
 from tests.support.server import LiveServer
 from tests.support.sqlite import fresh_sqlite
@@ -32,6 +34,17 @@ def pytest_unconfigure(config: pytest.Config) -> None:
     if not _is_worker(config):
         postgres.stop_cluster()
         shared_run.close_run()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _cheap_passwords() -> Iterator[None]:
+    """A password costs a sixth of a second on purpose; hundreds of applications need not pay it.
+
+    Servers that run as processes do.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(passwords, "_HASHER", PasswordHasher(time_cost=1, memory_cost=8))
+        yield
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -91,16 +91,22 @@ def telemetry_bundle(tmp_path_factory: pytest.TempPathFactory) -> Bundle:
 
 
 @pytest.fixture
-def headset_site(shared_server: LiveServer) -> Iterator[Site]:
-    """A server with its operator signed in; it runs again if the test before left it dead."""
+def running_server(shared_server: LiveServer) -> LiveServer:
+    """The server of this process; it runs again if the test before left it dead."""
     try:
         _ = shared_server.pid
     except RuntimeError:
         shared_server.start()
-    with shared_server.client() as operator:
+    return shared_server
+
+
+@pytest.fixture
+def headset_site(running_server: LiveServer) -> Iterator[Site]:
+    """A server with its operator signed in."""
+    with running_server.client() as operator:
         ok(operator.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
-        database = open_database(f"sqlite:///{shared_server.data_dir / 'reembody.sqlite'}")
-        yield Site(shared_server, operator, database)
+        database = open_database(f"sqlite:///{running_server.data_dir / 'reembody.sqlite'}")
+        yield Site(running_server, operator, database)
         database.close()
 
 

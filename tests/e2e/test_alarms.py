@@ -13,7 +13,7 @@ from tests.features.headset.streaming import in_free_movement, materialised
 from tests.support.browser import ColorScheme
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.long)])
 def test_an_alarm_comes_up_and_goes_away(
     headset_site: Site,
     page_factory: Callable[..., Page],

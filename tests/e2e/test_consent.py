@@ -21,18 +21,18 @@ READ, TAKE_PART, LATER = (
 
 @pytest.fixture
 def pages(
-    live_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
+    running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> tuple[Experimenter, Participant]:
     """A session of the study with a signed consent, started, and its tablet."""
     page_watch.allow(r"status of 401")
-    with live_server.client() as api:
+    with running_server.client() as api:
         api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
         if api.get(f"/api/studies/{KEY}").status_code == 404:
             added = api.post("/api/studies", json={"yaml": with_options()})
             assert added.status_code == 201, added.text
     console, tablet = page_factory((1280, 800)), page_factory((1180, 820))
-    experimenter = Experimenter(console, live_server.url)
-    participant = Participant(tablet, live_server.url)
+    experimenter = Experimenter(console, running_server.url)
+    participant = Participant(tablet, running_server.url)
     experimenter.log_in()
     experimenter.open_tab(KEY)
     experimenter.create_session()

@@ -160,7 +160,7 @@ def test_an_own_instrument_is_written_tried_and_stored(
     expect(page.get_by_role("heading", name="Calm")).to_be_visible()
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.long)])
 def test_editor_and_library_are_accessible(
     live_server: LiveServer,
     page_factory: Callable[..., Page],

@@ -14,13 +14,13 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 
 @pytest.fixture
-def experimenter(live_server: LiveServer, page_factory: Callable[..., Page]) -> Experimenter:
+def experimenter(running_server: LiveServer, page_factory: Callable[..., Page]) -> Experimenter:
     """Signed in, with the study that has options."""
-    with live_server.client() as api:
+    with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         if api.get(f"/api/studies/{KEY}").status_code == 404:
             ok(api.post("/api/studies", json={"yaml": with_options()}))
-    person = Experimenter(page_factory((1280, 800)), live_server.url)
+    person = Experimenter(page_factory((1280, 800)), running_server.url)
     person.log_in()
     return person
 
@@ -84,14 +84,14 @@ def test_a_measurement_of_the_equipment_is_recorded_and_retired(
 
 
 def test_heights_that_differ_are_asked_about(
-    experimenter: Experimenter, live_server: LiveServer
+    experimenter: Experimenter, running_server: LiveServer
 ) -> None:
     """More than 10 cm apart: the page asks once, then saves what was typed."""
-    with live_server.client() as api:
+    with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         session = session_at(api, "height")["id"]
     page = experimenter.page
-    page.goto(f"{live_server.url}/#/sessions/{session}")
+    page.goto(f"{running_server.url}/#/sessions/{session}")
     page.get_by_label("Height as stated").fill("172")
     page.get_by_label("Height as matched").fill("152")
     experimenter.press("Save heights")

@@ -156,7 +156,7 @@ def test_a_page_that_is_not_for_a_role_says_so(lab: BlindedLab, page_factory: Pa
     expect(analyst.get_by_role("button", name="Show condition")).to_have_count(0)
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.long)])
 def test_the_pages_of_people_are_accessible(
     lab: BlindedLab, page_factory: Pages, axe: Axe, screenshot: Screenshot, scheme: ColorScheme
 ) -> None:

@@ -36,19 +36,19 @@ def command(api: httpx2.Client, view: Json, kind: str, **fields: object) -> Json
 
 @pytest.fixture
 def pages(
-    live_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
+    running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> tuple[Experimenter, Participant, str]:
     """Console and tablet of a session in which the sickness scale is due."""
     page_watch.allow(r"status of 401")
-    with live_server.client() as api:
+    with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         if api.get(f"/api/studies/{KEY}").status_code == 404:
             ok(api.post("/api/studies", json={"yaml": with_options()}))
         session = session_at(api, "block1.fms")["id"]
-    experimenter = Experimenter(page_factory((1280, 800)), live_server.url)
-    participant = Participant(page_factory((1180, 820)), live_server.url)
+    experimenter = Experimenter(page_factory((1280, 800)), running_server.url)
+    participant = Participant(page_factory((1180, 820)), running_server.url)
     experimenter.log_in()
-    experimenter.page.goto(f"{live_server.url}/#/sessions/{session}")
+    experimenter.page.goto(f"{running_server.url}/#/sessions/{session}")
     participant.pair(experimenter.code_for("tablet"))
     participant.page.locator("[data-name]").first.wait_for()
     return experimenter, participant, session

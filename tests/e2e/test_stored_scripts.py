@@ -76,15 +76,15 @@ def _note(view: dict[str, Any]) -> dict[str, Any]:
 
 
 def test_nothing_that_was_written_is_run(
-    shared_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
+    running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
     """Titles, labels, answers, notes, invitations, suggestions: on every page just words."""
-    with shared_server.client() as api:
+    with running_server.client() as api:
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
-        session_id = write_everywhere(api, shared_server)
+        session_id = write_everywhere(api, running_server)
         joined = ok(api.post(f"/api/studies/{HOSTILE}/sessions", json={"kind": "test"}))
         shown = ok(api.post(f"/api/sessions/{joined['id']}/pairings", json={"device": "tablet"}))
-    experimenter = Experimenter(page_factory(), shared_server.url)
+    experimenter = Experimenter(page_factory(), running_server.url)
     page = experimenter.page
     dialogs: list[str] = []
 
@@ -102,7 +102,7 @@ def test_nothing_that_was_written_is_run(
         f"sessions/{session_id}/consent",
         f"sessions/{joined['id']}",
     ):
-        page.goto(f"{shared_server.url}/#/{address}")
+        page.goto(f"{running_server.url}/#/{address}")
         expect(page.get_by_role("main")).to_be_visible(timeout=PATIENCE_MS)
         page.wait_for_load_state("networkidle")
         seen += page.get_by_text("onerror").count() > 0
@@ -110,7 +110,7 @@ def test_nothing_that_was_written_is_run(
         assert page.locator("iframe, svg[onload], img[src=x]").count() == 0, address
     tablet = page_factory((1180, 820))
     page_watch.allow(r"401 \(Unauthorized\)")
-    Participant(tablet, shared_server.url).pair(shown["code"])
+    Participant(tablet, running_server.url).pair(shown["code"])
     tablet.wait_for_load_state("networkidle")
     assert tablet.evaluate("window.ran") is None
     assert dialogs == []

@@ -92,7 +92,7 @@ async def stream_and_back_up(server: LiveServer, ledger: LedgerJournal, to: Path
     ("origin", "target"),
     [
         pytest.param("sqlite", "sqlite", marks=pytest.mark.long),
-        ("postgresql", "sqlite"),
+        pytest.param("postgresql", "sqlite", marks=pytest.mark.long),
         ("sqlite", "postgresql"),
     ],
 )

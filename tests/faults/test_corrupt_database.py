@@ -81,7 +81,7 @@ def refusal(server: LiveServer) -> str:
         pytest.param(garble, "stop", marks=pytest.mark.long),
         pytest.param(cut, "stop", marks=pytest.mark.long),
         (overwrite, "stop"),
-        (damage_log, "kill"),
+        pytest.param(damage_log, "kill", marks=pytest.mark.long),
     ],
 )
 def test_it_is_put_away_and_a_backup_brings_everything_back(

@@ -161,7 +161,7 @@ def test_what_cannot_be_overwritten_at_once_is_at_the_next_start(
         assert site.view(other.session_id)["status"] == "active"
 
 
-@pytest.mark.parametrize("engine", ["sqlite", "postgresql"])
+@pytest.mark.parametrize("engine", ["sqlite", pytest.param("postgresql", marks=pytest.mark.long)])
 def test_a_restored_backup_does_not_undo_an_erasure(
     tmp_path: Path, elsewhere: Path, engine: str
 ) -> None:

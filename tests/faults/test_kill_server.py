@@ -23,7 +23,7 @@ from tests.rehearsal.performed import STUDY
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 FRAME_S = 1 / 90
-SHORT_KILLS = 8
+SHORT_KILLS = 5
 SPEED = 20.0
 
 

@@ -107,6 +107,7 @@ def _answer_to(port: int, request: bytes, patience_s: float) -> bytes:
 
 
 @pytest.mark.timeout(120)
+@pytest.mark.long
 def test_whoever_owes_a_request_is_told_and_closed(lan: LanServer) -> None:
     """Half a head and half a body get 408, silence and a stuck handshake just an end."""
     head = b"POST /api/login HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"

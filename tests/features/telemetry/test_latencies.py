@@ -1,6 +1,7 @@
 """The achieved latency of a phase, from its stored frames into its row and its view."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from app.features.telemetry.latencies import phase_latency
 from app.features.telemetry.summaries import Summariser
 from app.models import JointErrorRow, Phase, PhaseLatency, StudySession
 from app.science.rotations import FloatArray
+from tests.api.people import sign_in
 from tests.features.builders import SessionSpec, build_session
 from tests.features.lab import STUDY, Json, Lab, ok
 from tests.features.latency_builders import measured, store_movement
@@ -154,6 +156,7 @@ def test_a_blinded_operator_is_told_only_whether_it_is_off(fresh_lab: Lab) -> No
         row = measured(off, 0.370, flagged=True)
         row.reason = "The movement repeats itself: 1370 ms would fit as well."
         db.add_all([row, measured(still, None)])
+    fresh_lab = replace(fresh_lab, operator=sign_in(fresh_lab, "operator"))
     shown = view_of(fresh_lab, off)
     assert shown["latency_off"] is True
     assert [shown[name] for name in (*NUMBERS, "latency_ms", "latency_reason")] == [None] * 5
