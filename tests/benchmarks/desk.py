@@ -104,6 +104,7 @@ def _calls(
 
 def _timed(name: str, call: Callable[[], None]) -> Iterator[Figure]:
     first_ms = _took_ms(call)
+    call()
     times_ms = [_took_ms(call) for _ in range(REPEATS)]
     yield Figure("pages", f"{name} p95", _p95(times_ms), "ms", "limit", CALL_LIMIT_MS)
     if first_ms > CALL_LIMIT_MS:

@@ -34,6 +34,10 @@ from tests.features.session_filler import stable_id
 
 Fresh = dict[str, ColumnElement[Any]]
 ORDERS = 6
+COUNTS = (
+    *("gaps", "gap_s", "longest_gap_s", "jumps", "frozen_s", "non_unit", "non_finite"),
+    "backwards",
+)
 OWN = (
     *(Phase, PhaseLatency, PhaseQuality, Contact, Completion, JointErrorRow, ClockProbe),
     *(SessionContent, SessionEvent, Submission),
@@ -45,12 +49,33 @@ def fill_thousand(database: Database, participants: int = 1000) -> list[str]:
     """Store them as completed sessions of people; the ids of the sessions."""
     with database.writing() as db:
         built = [build_session(db, SessionSpec(f"P-{at:04d}")) for at in range(ORDERS)]
+        for session in built:
+            db.add_all(_summarised(db, session))
     sessions = [session.id for session in built]
     for first in range(ORDERS, participants, 50):
         with database.writing() as db:
             last = min(first + 50, participants)
             sessions += [_copy(db, built, at) for at in range(first, last)]
     return sessions
+
+
+def _summarised(db: Session, session: StudySession) -> list[PhaseQuality]:
+    """What a phase has once its movement was looked at; a server looks at all that has not."""
+    phases = db.scalars(select(Phase).where(Phase.session_id == session.id)).all()
+    return [
+        PhaseQuality(
+            session_id=session.id,
+            phase_id=phase.phase_id,
+            stream=stream,
+            frames=5400,
+            span_s=60.0,
+            frame_rate_hz=90.0,
+            frozen_joints=[],
+            **dict.fromkeys(COUNTS, 0),
+        )
+        for phase in phases
+        for stream in ("target", "actual")
+    ]
 
 
 def _copy(db: Session, built: Sequence[StudySession], at: int) -> str:

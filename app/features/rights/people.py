@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Literal, cast
 
 from sqlalchemy import select
-from sqlalchemy.orm import Session, defer
+from sqlalchemy.orm import Session
 
 from app.features.rights.copies import copies_by_participant
 from app.features.rights.overwriting import is_overwritten
@@ -30,12 +30,19 @@ def participants_of(db: Session, settings: Settings, study: Study) -> list[Parti
         .where(Participant.study_id == study.id)
         .order_by(Participant.created_at.desc(), Participant.code.desc())
     ).all()
-    sessions: dict[str, list[StudySession]] = defaultdict(list)
-    own = select(StudySession).where(StudySession.study_id == study.id)
-    # A thousand snapshots would be most of the work.
-    own = own.options(defer(StudySession.snapshot, raiseload=True))
-    for session in db.scalars(own.order_by(StudySession.created_at)):
-        sessions[session.participant_id].append(session)
+    sessions: dict[str, list[ParticipantSession]] = defaultdict(list)
+    # Just what is shown: a thousand whole sessions would be most of the work.
+    own = select(
+        StudySession.participant_id,
+        StudySession.id,
+        StudySession.status,
+        StudySession.created_at,
+        StudySession.started_at,
+        StudySession.ended_at,
+    ).where(StudySession.study_id == study.id)
+    for participant_id, *shown in db.execute(own.order_by(StudySession.created_at)):
+        fields = zip(ParticipantSession.model_fields, shown, strict=True)
+        sessions[participant_id].append(ParticipantSession.model_validate(dict(fields)))
     erased = {
         row.participant_id: row
         for row in db.scalars(select(Erasure).where(Erasure.study_id == study.id))
@@ -58,7 +65,7 @@ def _tomb(
 
 def _participant(
     row: Participant,
-    sessions: Sequence[StudySession],
+    sessions: Sequence[ParticipantSession],
     copies: Sequence[CopyMade],
     erasure: ErasureView | None,
 ) -> ParticipantView:
@@ -67,16 +74,7 @@ def _participant(
         code=row.code,
         kind=row.kind,
         created_at=row.created_at,
-        sessions=[
-            ParticipantSession(
-                id=session.id,
-                status=session.status,
-                created_at=session.created_at,
-                started_at=session.started_at,
-                ended_at=session.ended_at,
-            )
-            for session in sessions
-        ],
+        sessions=list(sessions),
         copies=[] if erasure is not None else [_left(one) for one in copies],
         erasure=erasure,
     )
