@@ -43,7 +43,9 @@ def _cheap_passwords() -> Iterator[None]:
     Servers that run as processes do.
     """
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(passwords, "_HASHER", PasswordHasher(time_cost=1, memory_cost=64, parallelism=1))
+        patch.setattr(
+            passwords, "_HASHER", PasswordHasher(time_cost=1, memory_cost=64, parallelism=1)
+        )
         yield
 
 
