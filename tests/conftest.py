@@ -53,10 +53,21 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Deselect the long tests unless they are asked for: not skipped, since nothing is missing."""
     if config.getoption("--long"):
         return
-    long = [item for item in items if item.get_closest_marker("long")]
+    long = [item for item in items if item.get_closest_marker("long") or _reads_again(item)]
     if long:
         config.hook.pytest_deselected(items=long)
-        items[:] = [item for item in items if not item.get_closest_marker("long")]
+        left_out = {id(item) for item in long}
+        items[:] = [item for item in items if id(item) not in left_out]
+
+
+def _reads_again(item: pytest.Item) -> bool:
+    """Tables and exports read by the same statements on either engine: PostgreSQL's turn is long.
+
+    Their reading on PostgreSQL is part of other tests, such as those of erasure and of backups.
+    """
+    return "postgresql" in item.name and any(
+        part in item.nodeid for part in ("features/analysis/", "features/exports/")
+    )
 
 
 def _is_worker(config: pytest.Config) -> bool:

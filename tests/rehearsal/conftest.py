@@ -16,7 +16,13 @@ CAPTURE = Path("motion") / "cmu_bvh" / "02_01.bvh"
 SPEED = 20.0
 
 
-@pytest.fixture(scope="module", params=["sqlite, captured movement", "postgresql"])
+@pytest.fixture(
+    scope="module",
+    params=[
+        "sqlite, captured movement",
+        pytest.param("postgresql", marks=pytest.mark.long),
+    ],
+)
 def performed(request: pytest.FixtureRequest) -> Performed:
     """A finished rehearsal at high speed, on each database."""
     if request.param == "postgresql":
