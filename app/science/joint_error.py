@@ -11,6 +11,10 @@ carry no delay and have no parent, and are left out.
 
 A sample counts only if both quaternions are finite and of unit length within 0.001; others are
 flagged and counted, not repaired. This is the joint error of Karas (2020), sections 3 and 7.
+
+The target is never clamped: what the limits of an avatar's hinges take away is error. How often
+they did stands beside it, as the share of the samples that count (`Clipping`), so that a joint that
+could not follow is told from one that followed badly.
 """
 
 from dataclasses import dataclass
@@ -34,6 +38,7 @@ ERROR_JOINTS: tuple[str, ...] = JOINT_NAMES[1:]
 #: What is summarised for each joint: the angle and the rotation vector's parts.
 ERROR_AXES: tuple[str, ...] = ("angle", "x", "y", "z")
 _P95 = 95.0
+_Bools = npt.NDArray[np.bool_]
 
 
 class JointErrorError(ValueError):
@@ -50,7 +55,37 @@ class JointErrors:
     """
 
     values_rad: FloatArray
-    valid: npt.NDArray[np.bool_]
+    valid: _Bools
+
+
+@dataclass(frozen=True, eq=False)
+class Clipping:
+    """Where the limits of an avatar's hinges took something from the target; N frames.
+
+    A hinge counts for the axis it lies along in the T-pose. Only the first hinge of a joint keeps
+    to the parent's axis in every pose; the others are carried by it.
+
+    Attributes:
+        clipped: (N, 21, 3) of the hinge along x, y and z.
+        turns: (21, 3) whether there is such a hinge, and it is not locked.
+        hinged: (21,) whether the joint has a hinge at all, locked or not. One that has none is not
+            asked for anything, so it has no error.
+    """
+
+    clipped: _Bools
+    turns: _Bools
+    hinged: _Bools
+
+    @property
+    def by_axis(self) -> _Bools:
+        """(N, 21, 4) in the order of ERROR_AXES; the angle is clipped where one of its axes is."""
+        each = self.clipped & self.turns
+        return np.concatenate((each.any(axis=2, keepdims=True), each), axis=2)
+
+    @property
+    def driven(self) -> _Bools:
+        """(21, 4) where there can be a share, in the order of ERROR_AXES."""
+        return np.concatenate((self.turns.any(axis=1, keepdims=True), self.turns), axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +99,8 @@ class JointErrorSummary:
         max_rad: (21, 4) largest absolute value.
         count: (21,) valid samples.
         left_out: (21,) samples that did not count.
+        clipped_share: (21, 4) share of the valid samples in which a limit took something from the
+            target; NaN without a hinge that turns, and everywhere for a body without limits.
     """
 
     joints: ClassVar[tuple[str, ...]] = ERROR_JOINTS
@@ -75,6 +112,7 @@ class JointErrorSummary:
     max_rad: FloatArray
     count: npt.NDArray[np.int64]
     left_out: npt.NDArray[np.int64]
+    clipped_share: FloatArray
 
 
 def joint_errors(target: FloatArray, actual: FloatArray) -> JointErrors:
@@ -102,12 +140,31 @@ def joint_errors(target: FloatArray, actual: FloatArray) -> JointErrors:
     return JointErrors(np.concatenate((angle[..., np.newaxis], vector), axis=-1), valid)
 
 
-def summarise_joint_errors(errors: JointErrors) -> JointErrorSummary:
-    """Summarise a phase's errors per joint and axis."""
-    joints = len(ERROR_JOINTS)
-    rows = np.full((4, joints, len(ERROR_AXES)), np.nan)
+def summarise_joint_errors(
+    errors: JointErrors, clipping: Clipping | None = None
+) -> JointErrorSummary:
+    """Summarise a phase's errors per joint and axis.
+
+    Args:
+        errors: of N frames.
+        clipping: of the same frames; left out for a body without limits.
+
+    Raises:
+        JointErrorError: the clipping is of another number of frames.
+    """
+    joints, axes = len(ERROR_JOINTS), len(ERROR_AXES)
+    rows = np.full((4, joints, axes), np.nan)
+    valid, frames = errors.valid, errors.valid.shape[0]
+    left_out = frames - valid.sum(axis=0, dtype=np.int64)
+    if clipping is not None:
+        if clipping.clipped.shape[0] != frames:
+            raise JointErrorError(
+                f"{clipping.clipped.shape[0]} frames of clipping do not fit {frames} of errors."
+            )
+        valid = valid & clipping.hinged
+        left_out[~clipping.hinged] = 0
     for joint in range(joints):
-        values = errors.values_rad[errors.valid[:, joint], joint]
+        values = errors.values_rad[valid[:, joint], joint]
         if values.shape[0] == 0:
             continue
         size = np.abs(values)
@@ -115,11 +172,27 @@ def summarise_joint_errors(errors: JointErrors) -> JointErrorSummary:
         rows[1, joint] = np.sqrt(np.mean(values**2, axis=0))
         rows[2, joint] = np.percentile(size, _P95, axis=0)
         rows[3, joint] = size.max(axis=0)
-    count = errors.valid.sum(axis=0, dtype=np.int64)
-    left_out = errors.valid.shape[0] - count
-    return JointErrorSummary(rows[0], rows[1], rows[2], rows[3], count, left_out)
+    count = valid.sum(axis=0, dtype=np.int64)
+    shares = _clipped_shares(valid, clipping)
+    return JointErrorSummary(rows[0], rows[1], rows[2], rows[3], count, left_out, shares)
 
 
-def joint_error_summary(target: FloatArray, actual: FloatArray) -> JointErrorSummary:
-    """Return the summary of two recordings; see `joint_errors` for shapes and errors raised."""
-    return summarise_joint_errors(joint_errors(target, actual))
+def _clipped_shares(valid: _Bools, clipping: Clipping | None) -> FloatArray:
+    shares = np.full((len(ERROR_JOINTS), len(ERROR_AXES)), np.nan)
+    if clipping is not None:
+        clipped = clipping.by_axis
+        for joint in np.flatnonzero(valid.any(axis=0)):
+            shares[joint] = clipped[valid[:, joint], joint].mean(axis=0)
+        shares[~clipping.driven] = np.nan
+    return shares
+
+
+def joint_error_summary(
+    target: FloatArray, actual: FloatArray, clipping: Clipping | None = None
+) -> JointErrorSummary:
+    """Return the summary of two recordings.
+
+    See `joint_errors` for shapes and `summarise_joint_errors` for the clipping, and both for the
+    errors raised.
+    """
+    return summarise_joint_errors(joint_errors(target, actual), clipping)

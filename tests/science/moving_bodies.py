@@ -6,15 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from app.adapters.bvh import read_bvh
-from app.rehearsal.body import METRES_PER_BVH_UNIT
+from app.rehearsal.captured import captured_movement
 from app.science import rotations as rot
 from app.science.achieved_latency import StreamPair
 from app.science.avatar.delay import delayed_pose
 from app.science.rotations import FloatArray
 from app.science.skeleton import build_skeleton
 from app.science.skeleton.movement import loop, resample
-from app.science.skeleton.retarget import retarget
 
 RATE_HZ = 90.0
 HISTORY_S = 2.0
@@ -91,8 +89,7 @@ def delayed_copy(times_s: FloatArray, rotations: FloatArray, latency_s: float) -
 
 def looped_capture(file: Path, duration_s: float) -> tuple[FloatArray, FloatArray]:
     """Times and rotations of a capture that repeats, at the headset's rate."""
-    clip = read_bvh(file, metres_per_unit=METRES_PER_BVH_UNIT)
-    movement = loop(resample(retarget(clip, build_skeleton(1.75)), RATE_HZ))
+    movement = loop(resample(captured_movement(file, build_skeleton(1.75)), RATE_HZ))
     frames = np.arange(round(duration_s * RATE_HZ))
     return frames / RATE_HZ, movement.rotations[frames % movement.frame_count]
 

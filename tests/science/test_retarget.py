@@ -1,17 +1,20 @@
-"""Captures on our skeleton, and movement without end."""
+"""Captures on our skeleton, moving in place, and movement without end."""
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from app.adapters.bvh import BvhClip, read_bvh
+from app.adapters.captures.files import read_capture_file
+from app.rehearsal.body import make_person
+from app.rehearsal.captured import UnusableCapture, captured_movement
 from app.science import rotations as rot
+from app.science.retargeting.in_place import movement_in_place
+from app.science.retargeting.joint_map import JointMapError
+from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, reference_avatar
+from app.science.rig import RigMotion
 from app.science.skeleton import (
     JOINT_INDEX,
-    JOINT_NAMES,
-    PARENTS,
     Movement,
     SkeletonError,
     build_skeleton,
@@ -19,27 +22,15 @@ from app.science.skeleton import (
     largest_step_rad,
     loop,
     resample,
-    retarget,
 )
 
-_OWN_NAMES = {name: name for name in JOINT_NAMES}
 
-
-@dataclass(frozen=True, eq=False)
-class _OwnCapture:
+def _own_capture(movement: Movement) -> RigMotion:
     """A capture made on our own skeleton, in its T-pose and axes."""
-
-    offsets_m: rot.FloatArray
-    root_m: rot.FloatArray
-    local: rot.FloatArray
-    names: tuple[str, ...] = JOINT_NAMES
-    parents: tuple[int, ...] = PARENTS
-    frame_time_s: float = 1 / 120
-
-    def world(self) -> tuple[rot.FloatArray, rot.FloatArray]:
-        """Places and rotations by forward kinematics."""
-        world = forward_kinematics(build_skeleton(1.75), self.root_m, self.local)
-        return world.positions_m, world.rotations
+    observed = np.ones(movement.rotations.shape[:2], dtype=np.bool_)
+    return RigMotion(
+        reference_avatar(1.75), 120.0, movement.root_positions_m, movement.rotations, observed
+    )
 
 
 @pytest.fixture
@@ -48,9 +39,8 @@ def rng() -> np.random.Generator:
     return np.random.default_rng(3)
 
 
-def _walk(shared_data: Path, name: str = "02_01") -> BvhClip:
-    path = shared_data / "motion" / "cmu_bvh" / f"{name}.bvh"
-    return read_bvh(path, metres_per_unit=0.056444)
+def _walk(shared_data: Path, name: str = "02_01") -> Path:
+    return shared_data / "motion" / "cmu_bvh" / f"{name}.bvh"
 
 
 def _swaying(rng: np.random.Generator, frames: int = 360) -> Movement:
@@ -66,8 +56,7 @@ def _swaying(rng: np.random.Generator, frames: int = 360) -> Movement:
 def test_a_capture_of_our_own_skeleton_comes_back_unchanged(rng: np.random.Generator) -> None:
     """Where rest pose, axes and size agree, retargeting is the identity."""
     skeleton, movement = build_skeleton(1.75), _swaying(rng)
-    clip = _OwnCapture(skeleton.offsets_m, movement.root_positions_m, movement.rotations)
-    result = retarget(clip, skeleton, _OWN_NAMES)
+    result = movement_in_place(_own_capture(movement), REFERENCE_JOINT_MAP, skeleton)
     assert float(np.max(rot.geodesic_angle(result.rotations, movement.rotations))) < 1e-6
     np.testing.assert_allclose(
         result.root_positions_m[:, 1], movement.root_positions_m[:, 1], atol=1e-9
@@ -83,16 +72,18 @@ def test_the_way_a_capture_faces_makes_no_difference(
     turn = rot.from_rotation_vector(np.array((0.0, np.radians(angle_deg), 0.0)))
     local = movement.rotations.copy()
     local[:, 0] = rot.multiply(turn, local[:, 0])
-    clip = _OwnCapture(skeleton.offsets_m, movement.root_positions_m, local)
-    result = retarget(clip, skeleton, _OWN_NAMES)
+    turned = Movement(120.0, movement.root_positions_m, local)
+    result = movement_in_place(_own_capture(turned), REFERENCE_JOINT_MAP, skeleton)
     assert float(np.max(rot.geodesic_angle(result.rotations, movement.rotations))) < 1e-6
 
 
 @pytest.mark.parametrize("name", ["02_01", "06_01", "12_02"])
 def test_bones_point_where_the_captures_bones_point(shared_data: Path, name: str) -> None:
     """A shank has the same angle to the vertical as in the capture."""
-    skeleton, clip = build_skeleton(1.75), _walk(shared_data, name)
-    movement = retarget(clip, skeleton)
+    skeleton, path = build_skeleton(1.75), _walk(shared_data, name)
+    clip = read_capture_file(path).motion
+    assert isinstance(clip, RigMotion)
+    movement = captured_movement(path, skeleton)
     ours = forward_kinematics(skeleton, movement.root_positions_m, movement.rotations).positions_m
     theirs = clip.world()[0][-movement.frame_count :]
     for upper, lower, a, b in (
@@ -100,7 +91,7 @@ def test_bones_point_where_the_captures_bones_point(shared_data: Path, name: str
         ("RightUpperArm", "RightLowerArm", "RightArm", "RightForeArm"),
     ):
         bone = ours[:, JOINT_INDEX[lower]] - ours[:, JOINT_INDEX[upper]]
-        source = theirs[:, clip.names.index(b)] - theirs[:, clip.names.index(a)]
+        source = theirs[:, clip.rig.index(b)] - theirs[:, clip.rig.index(a)]
         np.testing.assert_allclose(
             bone[:, 1] / np.linalg.norm(bone, axis=1),
             source[:, 1] / np.linalg.norm(source, axis=1),
@@ -113,7 +104,7 @@ def test_bones_point_where_the_captures_bones_point(shared_data: Path, name: str
 def test_a_walk_stays_in_place_on_the_floor(shared_data: Path, name: str, stature_m: float) -> None:
     """A walk of metres becomes one in place: upright, feet on the floor, facing -z."""
     skeleton = build_skeleton(stature_m)
-    movement = retarget(_walk(shared_data, name), skeleton)
+    movement = captured_movement(_walk(shared_data, name), skeleton)
     world = forward_kinematics(skeleton, movement.root_positions_m, movement.rotations)
     assert float(np.abs(movement.root_positions_m[:, [0, 2]]).max()) < 0.12
     head = world.positions_m[:, JOINT_INDEX["Head"], 1]
@@ -127,7 +118,7 @@ def test_a_walk_stays_in_place_on_the_floor(shared_data: Path, name: str, statur
 @pytest.mark.parametrize("name", ["02_01", "06_01", "12_02"])
 def test_a_loop_steps_no_further_than_its_clip(shared_data: Path, name: str) -> None:
     """The seam and the cross-fade add no jump: at most a tenth over the clip's own largest step."""
-    clip = resample(retarget(_walk(shared_data, name), build_skeleton(1.75)), 90.0)
+    clip = resample(captured_movement(_walk(shared_data, name), build_skeleton(1.75)), 90.0)
     looped = loop(clip)
     assert looped.loops
     assert 0.5 * clip.duration_s - 0.5 <= looped.duration_s < clip.duration_s
@@ -148,11 +139,12 @@ def test_resampling_keeps_duration_and_path(rng: np.random.Generator) -> None:
     assert rot.is_unit(again.rotations, 1e-12).all()
 
 
-def test_a_capture_without_our_joints_is_refused(shared_data: Path) -> None:
-    """A missing joint is named."""
-    path = shared_data / "motion" / "bvh_toolbox" / "walk01.bvh"
-    with pytest.raises(SkeletonError, match="no joint for Spine"):
-        retarget(read_bvh(path, metres_per_unit=0.01), build_skeleton(1.75))
+def test_a_map_that_does_not_fit_is_refused(rng: np.random.Generator) -> None:
+    """A joint that the capture lacks is named."""
+    with pytest.raises(JointMapError, match="no joint 'Bauch'"):
+        movement_in_place(
+            _own_capture(_swaying(rng)), {"Hips": "Hips", "Spine": "Bauch"}, build_skeleton(1.75)
+        )
 
 
 def test_movement_that_cannot_be_looped_or_resampled_is_refused(rng: np.random.Generator) -> None:
@@ -166,3 +158,50 @@ def test_movement_that_cannot_be_looped_or_resampled_is_refused(rng: np.random.G
         resample(movement, 0.0)
     with pytest.raises(SkeletonError, match="resample first"):
         resample(loop(movement), 90.0)
+
+
+def test_legs_that_were_not_captured_stand(shared_data: Path) -> None:
+    """Somebody whose trunk and arms were tracked stands on straight legs and still reaches."""
+    skeleton = build_skeleton(1.72)
+    path = shared_data / "motion" / "vicon_tracker" / "ObjectInspection_0.csv"
+    movement = captured_movement(path, skeleton)
+    world = forward_kinematics(skeleton, movement.root_positions_m, movement.rotations)
+    ankles = world.positions_m[:, [JOINT_INDEX["LeftFoot"], JOINT_INDEX["RightFoot"]], 1]
+    assert float(np.abs(ankles.min(axis=1) - skeleton.ankle_height_m).max()) < 1e-3
+    assert float(ankles.max()) < skeleton.ankle_height_m + 0.1
+    hands = world.positions_m[:, JOINT_INDEX["RightHand"]]
+    assert float(np.ptp(hands, axis=0).max()) > 0.5
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "bvh_toolbox/walk01.bvh",
+        "c3d/Gait.c3d",
+        "cmu_asfamc/02_01.amc",
+        "cmu_c3d/02_01.c3d",
+        "trc/walk.trc",
+        "vicon_tracker/HumanRobotHandover_0.csv",
+    ],
+)
+def test_any_capture_with_a_body_makes_a_rehearsing_person(shared_data: Path, file: str) -> None:
+    """Whatever its format: somebody upright of their own stature, in an endless loop."""
+    person = make_person(np.random.default_rng(5), shared_data / "motion" / file)
+    first = person.participant.pose(0.0, None)
+    world = forward_kinematics(person.skeleton, first.root_position_m, first.rotations)
+    head = float(world.positions_m[JOINT_INDEX["Head"], 1])
+    assert 0.8 * person.stature_m < head < 0.95 * person.stature_m
+
+
+@pytest.mark.parametrize(
+    ("file", "why"),
+    [
+        ("c3d/walkingOptiTrack.c3d", "pelvis"),
+        ("optitrack_csv/sample_optitrack_take.csv", "no skeleton"),
+        ("bvh_toolbox/walk01_pos.csv", "captures that can be read"),
+    ],
+)
+def test_what_shows_no_body_cannot_rehearse(shared_data: Path, file: str, why: str) -> None:
+    """The refusal names the file and the reason."""
+    with pytest.raises(UnusableCapture, match=why):
+        make_person(np.random.default_rng(5), shared_data / "motion" / file)

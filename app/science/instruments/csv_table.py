@@ -59,11 +59,7 @@ def _read(instrument: Instrument, text: str) -> tuple[str, list[str], list[_Row]
     lines = io.StringIO(text, newline="")
     first = next((line for line in lines if line.strip()), "")
     if not first:
-        raise InstrumentTableError(
-            "The table is empty. Give a header line with id columns and the items "
-            + ", ".join(instrument.by_key)
-            + "."
-        )
+        raise _empty(instrument)
 
     def n_items(separator: str) -> int:
         names = (cell.strip().strip('"') for cell in first.strip("\r\n").split(separator))
@@ -83,7 +79,17 @@ def _read(instrument: Instrument, text: str) -> tuple[str, list[str], list[_Row]
             f"Line {reader.line_num} cannot be read: {error}. "
             'Close every quote; write a quote inside a quoted cell twice ("").'
         ) from error
+    if not rows:  # a quoted empty cell is a line of text, but no row
+        raise _empty(instrument)
     return separator, rows[0].cells, rows[1:]
+
+
+def _empty(instrument: Instrument) -> InstrumentTableError:
+    return InstrumentTableError(
+        "The table is empty. Give a header line with id columns and the items "
+        + ", ".join(instrument.by_key)
+        + "."
+    )
 
 
 def _with_points(instrument: Instrument, header: list[str], cells: list[str]) -> list[str]:

@@ -217,5 +217,5 @@ def to_euler(order: str, q: FloatArray) -> FloatArray:
     from scipy.spatial.transform import Rotation
 
     rotation = Rotation.from_quat(q.reshape(-1, 4), scalar_first=True)
-    angles = rotation.as_euler(order, suppress_warnings=True)  # type: ignore[call-overload]
+    angles = rotation.as_euler(order, suppress_warnings=True)  # type: ignore[call-overload]  # stubs lag
     return np.asarray(angles, dtype=np.float64).reshape(*q.shape[:-1], 3)

@@ -4,12 +4,13 @@ An array call costs about a microsecond before it computes anything; one quatern
 floats costs less than that in total. The conventions are those of `arrays`.
 """
 
-from math import sqrt
+from math import acos, sin, sqrt
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)
+_TINY_RAD = 1e-6
 
 
 def q_multiply(a: Quaternion, b: Quaternion) -> Quaternion:
@@ -61,6 +62,21 @@ def q_blend(a: Quaternion, b: Quaternion, fraction: float) -> Quaternion:
     y, z = keep * ay + take * by, keep * az + take * bz
     scale = 1.0 / sqrt(w * w + x * x + y * y + z * z)
     return (w * scale, x * scale, y * scale, z * scale)
+
+
+def q_slerp(a: Quaternion, b: Quaternion, fraction: float) -> Quaternion:
+    """Go part of the way from a to b on the shorter side, at constant speed.
+
+    Source: Shoemake (1985), "Animating rotation with quaternion curves", SIGGRAPH 19:245-254.
+    """
+    cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
+    half = acos(min(1.0, abs(cosine)))
+    if half < _TINY_RAD:
+        return q_blend(a, b, fraction)
+    keep = sin((1.0 - fraction) * half) / sin(half)
+    take = sin(fraction * half) / sin(half) * (1.0 if cosine >= 0.0 else -1.0)
+    w, x, y, z = (keep * one + take * other for one, other in zip(a, b, strict=True))
+    return (w, x, y, z)
 
 
 def q_from_axes(x_axis: Vector, y_axis: Vector, z_axis: Vector) -> Quaternion:

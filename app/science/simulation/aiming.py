@@ -13,6 +13,7 @@ from app.science.simulation.traits import MovementTraits
 _WAYPOINT_SCATTER = 1.5
 _LEAST_OVERSHOOT, _MOST_OVERSHOOT = 0.04, 0.12
 _NEARLY_THERE_M = 0.02
+_CARE, _FURTHER_M = 0.5, 0.02
 
 
 @dataclass(frozen=True)
@@ -38,17 +39,24 @@ class Aim:
         goal: Goal,
         start_s: float,
         rng: np.random.Generator,
+        misses: int = 0,
     ) -> SmoothPath:
-        """Plan from `here`, out by `way_out`, to in front of the goal, and in."""
+        """Plan from `here`, out by `way_out`, to in front of the goal, and in.
+
+        After each miss the person looks more closely, and goes further in.
+        """
         target = goal.target_m or here
-        end = self._scattered(target, goal, 1.0, rng)
+        care = _CARE**misses
+        end = self._scattered(target, goal, care, rng)
         points = [here]
         if v_length(way_out) > _NEARLY_THERE_M:
             points.append(v_add(here, way_out))
         if v_length(goal.approach_m) > _NEARLY_THERE_M:
             front = v_add(target, goal.approach_m)
-            points.append(self._scattered(front, goal, _WAYPOINT_SCATTER, rng))
-            end = v_subtract(end, v_scale(goal.approach_m, self._press(goal, rng)))
+            points.append(self._scattered(front, goal, _WAYPOINT_SCATTER * care, rng))
+            further = misses * _FURTHER_M / v_length(goal.approach_m)
+            press = self._press(goal, rng) + further
+            end = v_subtract(end, v_scale(goal.approach_m, press))
         lasts_s = self.tempo * self.traits.movement_time(
             path_length([*points, end]), goal.near_m, self.latency_s, rng
         )

@@ -22,7 +22,8 @@ class Hand:
 
     A hand that is not asked for hangs with the base movement (work 0); asked for, it takes
     `_ENGAGE_S` to leave it (work 1). A touch counts only when it begins anew, so a hand whose goal
-    has not changed after the person's patience backs off and touches once more.
+    has not changed after the person's patience backs off and touches once more. If that was not it
+    either, as when the body that follows hangs at an edge, it leaves altogether and comes in anew.
     """
 
     def __init__(self) -> None:
@@ -34,6 +35,7 @@ class Hand:
         self._wanted: Goal | None = None
         self._react_s = self._settle_s = 0.0
         self._work = 0.0
+        self._misses = 0
         #: When the hand is (or was) out of what it was in; endless while that is not known.
         self.out_s = inf
 
@@ -73,7 +75,7 @@ class Hand:
         elif self.goal is not None and self._path is not None:
             patience_s = aim.traits.patience_s + aim.latency_s
             if time_s > self._path.end_s + patience_s:
-                self._plan(self.goal, self._back_off(self.goal), time_s, aim, rng)
+                self._try_again(self.goal, time_s, aim, rng)
         if self._path is not None:
             self.tip_m = self._path.at(time_s)
         change = step_s / _ENGAGE_S
@@ -91,12 +93,25 @@ class Hand:
             self.tip_m = tip_now_m
         elif self.goal is not None:
             way_out = self.goal.approach_m
-        self._plan(goal, way_out, time_s, aim, rng)
+        self._misses = 0
+        self._plan(goal, way_out, time_s, aim, rng, again=goal == self.goal)
+
+    def _try_again(self, goal: Goal, time_s: float, aim: Aim, rng: np.random.Generator) -> None:
+        self._misses += 1
+        again = self._misses == 1
+        way_out = self._back_off(goal) if again else goal.approach_m
+        self._plan(goal, way_out, time_s, aim, rng, again=again)
 
     def _plan(
-        self, goal: Goal, way_out: Vector, time_s: float, aim: Aim, rng: np.random.Generator
+        self,
+        goal: Goal,
+        way_out: Vector,
+        time_s: float,
+        aim: Aim,
+        rng: np.random.Generator,
+        *,
+        again: bool,
     ) -> None:
-        again = goal == self.goal
         # A second touch goes straight back in: the hand is in front of its surface already.
         inside = Goal(goal.kind, goal.effector, goal.target_m, goal.near_m, way_out)
         path = aim.path(
@@ -105,6 +120,7 @@ class Hand:
             inside if again else goal,
             time_s,
             rng,
+            self._misses,
         )
         left = v_length(way_out) > 0.0 and not again
         self.out_s = path.moves[0][0] + (_OUT_SHARE * path.moves[0][1] if left else 0.0)

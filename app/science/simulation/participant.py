@@ -7,6 +7,7 @@ What one sees of it, frame by frame:
   movement; the legs do not stride but stand and step (inverse kinematics to flat feet), so a
   walking capture cannot walk through the boxes; the asked hand or foot goes to the goal;
 - the body leans and side-steps as far as a reach needs it, and no further;
+- no joint turns and no body sinks more quickly than a person's can;
 - to walk somewhere it steps there facing ahead, backwards if need be. Obstacles are not seen: give
   way-points as goals, one after the other, to go round something.
 
@@ -30,6 +31,7 @@ from app.science.simulation.hands import Hand
 from app.science.simulation.paths import minimum_jerk
 from app.science.simulation.placement import Placement, ReachPlan
 from app.science.simulation.posture import SIDE_NAMES, Posture
+from app.science.simulation.quickness import no_quicker
 from app.science.simulation.stance import Stance
 from app.science.simulation.traits import MovementTraits, drawn_traits
 from app.science.skeleton import JOINT_INDEX, Movement, Pose, Skeleton, forward_kinematics
@@ -73,6 +75,7 @@ class SimulatedParticipant:
         self._goal: Goal | None = None
         self._time_s: float | None = None
         self._pose: Pose | None = None
+        self._local: list[Quaternion] | None = None
         self._plan: tuple[Hand, ReachPlan] | None = None
         self._task = 0.0
 
@@ -116,6 +119,9 @@ class SimulatedParticipant:
             root, local = self._roaming(time_s)
         else:
             root, local = self._at_task(time_s, step_s)
+        if self._local is not None:
+            local = no_quicker(self._local, local, time_s - before)
+        self._local = local
         self._pose = Pose(np.array(root), np.array(local))
         return self._pose
 

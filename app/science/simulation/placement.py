@@ -6,6 +6,7 @@ from math import exp, hypot, sqrt
 from app.science.rotations.scalars import Vector
 from app.science.simulation.goal import Goal
 from app.science.simulation.posture import SIDE_SIGNS, Posture
+from app.science.simulation.quickness import MOST_SINK_M_PER_S
 from app.science.simulation.stance import Stance
 
 _BODY_RATE, _LEAN_RATE, _HEIGHT_RATE = 7.0, 6.0, 9.0
@@ -68,7 +69,8 @@ class Placement:
         self._want_m, self._want_lean_m = home_m, (0.0, 0.0)
         self._x, self._z = Follower(home_m[0], _BODY_RATE), Follower(home_m[1], _BODY_RATE)
         self._lean_x, self._lean_z = Follower(0.0, _LEAN_RATE), Follower(0.0, _LEAN_RATE)
-        self._height = Follower(_SOFT_KNEES * posture.standing_m, _HEIGHT_RATE)
+        self._height_m = _SOFT_KNEES * posture.standing_m
+        self._height = Follower(self._height_m, _HEIGHT_RATE)
 
     def plan_reach(self, goal: Goal, side: int, fingers: Vector) -> ReachPlan:
         """Return the smallest shift from home with which the arm reaches, partly by leaning.
@@ -140,11 +142,17 @@ class Placement:
         return self._lean_x.follow(x, step_s), self._lean_z.follow(z, step_s)
 
     def height(self, highest_m: float, step_s: float) -> float:
-        """Return the height of the hips: standing with soft knees, lower where a leg needs it."""
+        """Return the height of the hips: standing with soft knees, lower where a leg needs it.
+
+        They sink no faster than a body can; a foot that is too far away then comes a little late.
+        """
+        lowest = self._height_m - MOST_SINK_M_PER_S * step_s
         wanted = min(_SOFT_KNEES * self._posture.standing_m, highest_m)
-        return min(self._height.follow(wanted, step_s), highest_m)
+        self._height_m = max(min(self._height.follow(wanted, step_s), highest_m), lowest)
+        return self._height_m
 
     def put(self, place_m: tuple[float, float], height_m: float) -> None:
         """Start over from the hips' present place."""
         self._x, self._z = Follower(place_m[0], _BODY_RATE), Follower(place_m[1], _BODY_RATE)
+        self._height_m = height_m
         self._height = Follower(height_m, _HEIGHT_RATE)

@@ -1,6 +1,5 @@
-"""The body: joints, proportions, forward kinematics, and movement brought onto them."""
+"""The product's own body: joints, proportions, forward kinematics and movement."""
 
-from app.science.skeleton.joint_map import CMU_JOINTS
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
 from app.science.skeleton.kinematics import (
     BodySegments,
@@ -11,16 +10,13 @@ from app.science.skeleton.kinematics import (
 )
 from app.science.skeleton.model import Skeleton, SkeletonError, build_skeleton
 from app.science.skeleton.movement import Movement, largest_step_rad, loop, resample
-from app.science.skeleton.retarget import CaptureClip, retarget
 
 __all__ = [
-    "CMU_JOINTS",
     "JOINT_COUNT",
     "JOINT_INDEX",
     "JOINT_NAMES",
     "PARENTS",
     "BodySegments",
-    "CaptureClip",
     "Movement",
     "Pose",
     "Skeleton",
@@ -32,5 +28,4 @@ __all__ = [
     "largest_step_rad",
     "loop",
     "resample",
-    "retarget",
 ]

@@ -34,4 +34,4 @@ _SMALL = Instrument(
 
 def small(**changes: object) -> Instrument:
     """A small instrument with some fields changed."""
-    return replace(_SMALL, **changes)  # type: ignore[arg-type]
+    return replace(_SMALL, **changes)  # type: ignore[arg-type]  # any field

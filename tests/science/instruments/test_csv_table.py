@@ -75,6 +75,7 @@ def test_a_header_alone_gives_a_header() -> None:
     [
         ("", "empty"),
         (" \n\n", "empty"),
+        ('"\n"', "empty"),
         ("id,age\n1,2\n", "No column is an item of karas2020"),
         ("id,q1,Q1\n1,2,3\n", r"'q1' is there more than once \(columns 2, 3\)"),
         ("id,q1\n\np1,3\np2\n", "Line 4 has 1 cells, but the header has 2"),

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.adapters.bvh import read_bvh
+from app.rehearsal.captured import captured_movement
 from app.science import rotations as rot
 from app.science.avatar import DelayBuffer
 from app.science.simulation import (
@@ -22,7 +22,6 @@ from app.science.skeleton import (
     largest_step_rad,
     loop,
     resample,
-    retarget,
 )
 from tests.science.simulation.people import (
     BOXES,
@@ -67,6 +66,25 @@ def test_movement_is_smooth_through_every_change_of_goal() -> None:
     assert rot.is_unit(q, 1e-9).all()
 
 
+@pytest.mark.parametrize("turned_deg", [120.0, 160.0, 180.0, 200.0])
+def test_no_joint_turns_quicker_than_a_persons(turned_deg: float) -> None:
+    """A hand that hangs palm out is half a turn from where it reaches: it turns there in time."""
+    idle, hand = idle_movement(SKELETON, rng_of(99)), JOINT_INDEX["RightHand"]
+    half = np.radians(turned_deg) / 2.0
+    rotations = idle.rotations.copy()
+    rotations[:, hand] = rot.multiply(
+        rotations[:, hand], np.array([np.cos(half), np.sin(half), 0.0, 0.0])
+    )
+    base = Movement(idle.rate_hz, idle.root_positions_m, rotations)
+    person = person_of(base=loop(base))
+    follow(person, None, 0.0, 0.2)
+    poses = follow(person, reach(BOXES[2]), 0.2, 2.0)
+    q = np.stack([pose.rotations for pose in poses])
+    turns = rot.geodesic_angle(q[1:], q[:-1]) * RATE_HZ
+    assert np.degrees(turns.max()) <= 1500.0 + 1e-6
+    assert float(np.abs(tip(poses[-1], "Right") - BOXES[2]).max()) < 0.02
+
+
 def test_without_a_goal_the_base_movement_is_played_whole() -> None:
     """Free roam is the base movement itself, in place."""
     base = idle_movement(SKELETON, rng_of(99))
@@ -79,7 +97,7 @@ def test_without_a_goal_the_base_movement_is_played_whole() -> None:
 def test_a_walking_capture_does_not_stride_at_the_boxes(shared_data: Path) -> None:
     """While a hand task is done the feet of a walker stand, except for single side steps."""
     path = shared_data / "motion" / "cmu_bvh" / "02_01.bvh"
-    clip = retarget(read_bvh(path, metres_per_unit=0.056444), SKELETON)
+    clip = captured_movement(path, SKELETON)
     base = loop(resample(clip, RATE_HZ))
     person = person_of(base=base)
     follow(person, reach(BOXES[2]), 0.0, 2.0)

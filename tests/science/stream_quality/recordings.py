@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from app.adapters.bvh import read_bvh
+from app.rehearsal.captured import captured_movement
 from app.science import rotations as rot
-from app.science.skeleton import JOINT_COUNT, loop, resample, retarget
+from app.science.skeleton import JOINT_COUNT, loop, resample
 from tests.science.simulation.people import (
     BOXES,
     RATE_HZ,
@@ -21,7 +21,6 @@ from tests.science.simulation.people import (
 )
 
 CAPTURES = ("02_01.bvh", "06_01.bvh")
-METRES_PER_UNIT = 0.056444
 
 
 @dataclass(frozen=True)
@@ -72,7 +71,7 @@ def generated(seed: int = 1) -> Recording:
 @lru_cache(maxsize=4)
 def captured(file: Path) -> Recording:
     """A capture of a person, repeated to half a minute."""
-    clip = retarget(read_bvh(file, metres_per_unit=METRES_PER_UNIT), SKELETON)
+    clip = captured_movement(file, SKELETON)
     movement = loop(resample(clip, RATE_HZ))
     frames = np.arange(round(30 * RATE_HZ)) % len(movement.rotations)
     return Recording(

@@ -1,0 +1,123 @@
+"""Convex pieces: few corners around many points, always the same for the same points.
+
+The hull of a body part may have hundreds of corners, and each costs at every contact. So a piece
+begins with the outermost points along 26 directions, and gets the point that is farthest outside of
+it, again and again, until every point is inside or at most `CLOSE_M` outside, or it has `MOST`
+corners. The outermost along 1000 directions are asked before all the others. How far the farthest
+point is outside is kept with the piece.
+
+Points are rounded to `GRID_M` first and corners are listed in order, so neither the order of the
+points nor a machine's last digit decides.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import product
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.rotations.scalars import Vector
+
+if TYPE_CHECKING:
+    from scipy.spatial import ConvexHull
+
+MOST: Final = 128
+CLOSE_M: Final = 0.001
+GRID_M: Final = 1e-5
+THINNEST_M: Final = 0.001
+"""Twice the volume over the surface: a thinner piece is a leaf, which nothing can rest against."""
+_DIGITS = 5
+_DIRECTIONS = np.array([row for row in product((-1.0, 0.0, 1.0), repeat=3) if any(row)])
+_CANDIDATES = 1000
+
+
+def _all_round(count: int) -> FloatArray:
+    """(count, 3) directions spread evenly over the sphere, on a spiral by the golden angle."""
+    step = np.arange(count)
+    turn, height = step * np.pi * (3.0 - np.sqrt(5.0)), 1.0 - (2.0 * step + 1.0) / count
+    radius = np.sqrt(1.0 - height**2)
+    return np.stack((radius * np.cos(turn), height, radius * np.sin(turn)), axis=1)
+
+
+_ALL_ROUND = _all_round(_CANDIDATES)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A convex solid.
+
+    Attributes:
+        corners_m: its corners in the frame of its part, in ascending order.
+        outside_m: how far the farthest of the points it was made of is outside of it.
+    """
+
+    corners_m: tuple[Vector, ...]
+    outside_m: float
+
+    def scaled(self, factor: float) -> "Piece":
+        """The same, larger or smaller, on the same grid."""
+        corners = np.array(self.corners_m) * factor
+        return Piece(_listed(corners), round(self.outside_m * factor, _DIGITS))
+
+
+def piece_of(points_m: FloatArray) -> Piece | None:
+    """Return the piece around (N, 3) points; None where they are too few or enclose nothing."""
+    # Loading it takes a while, and a server that only writes models never needs it.
+    from scipy.spatial import QhullError
+
+    points = np.unique(np.round(points_m, _DIGITS), axis=0)
+    if len(points) < 4:
+        return None
+    try:
+        outer = _hull(points)
+        if 2.0 * outer.volume < THINNEST_M * outer.area:
+            return None
+        corners = points[np.sort(outer.vertices)]
+        piece = _thinned(corners)
+    except QhullError:
+        return None
+    return Piece(_listed(piece.points[piece.vertices]), _outside_m(piece, corners))
+
+
+def _thinned(corners: FloatArray) -> "ConvexHull":
+    if len(corners) <= MOST:
+        return _hull(corners)
+    asked = corners[_outermost(corners, _ALL_ROUND)]
+    chosen = asked[_outermost(asked, _DIRECTIONS)]
+    while True:
+        hull = _hull(chosen)
+        heights = _heights(hull, asked)
+        if heights.max() <= CLOSE_M and asked is not corners:
+            asked, heights = corners, _heights(hull, corners)
+        if heights.max() <= CLOSE_M or len(chosen) >= MOST:
+            return hull
+        chosen = np.vstack((chosen, asked[int(np.argmax(heights))]))
+
+
+def _outermost(points: FloatArray, directions: FloatArray) -> list[int]:
+    """The points that are farthest out along any of the directions."""
+    return sorted(set(np.argmax(directions @ points.T, axis=1).tolist()))
+
+
+def _heights(hull: "ConvexHull", points: FloatArray) -> FloatArray:
+    """(N,) how far points are outside of the face they are farthest outside of; below 0 inside."""
+    normals, offsets = hull.equations[:, :3], hull.equations[:, 3]
+    heights: FloatArray = (points @ normals.T + offsets).max(axis=1)
+    return heights
+
+
+def _outside_m(hull: "ConvexHull", points: FloatArray) -> float:
+    return round(max(float(_heights(hull, points).max()), 0.0), _DIGITS)
+
+
+def _hull(points: FloatArray) -> "ConvexHull":
+    from scipy.spatial import ConvexHull
+
+    return ConvexHull(points)
+
+
+def _listed(corners: FloatArray) -> tuple[Vector, ...]:
+    rows: Iterable[list[float]] = np.unique(np.round(corners, _DIGITS) + 0.0, axis=0).tolist()
+    return tuple((x, y, z) for x, y, z in rows)

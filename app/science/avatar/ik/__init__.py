@@ -1,0 +1,19 @@
+"""Inverse kinematics: from tracked head, hands, waist and shins to the angles of the avatar.
+
+Loading this package loads MuJoCo.
+"""
+
+from app.science.avatar.ik.goals import GOAL_PARTS, Goals, IkError, goals_of
+from app.science.avatar.ik.rest_pose import REST_POSE_RAD
+from app.science.avatar.ik.solver import InverseKinematics, Solution, Weights
+
+__all__ = [
+    "GOAL_PARTS",
+    "REST_POSE_RAD",
+    "Goals",
+    "IkError",
+    "InverseKinematics",
+    "Solution",
+    "Weights",
+    "goals_of",
+]

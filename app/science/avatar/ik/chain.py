@@ -1,0 +1,133 @@
+"""The avatar's model as inverse kinematics sees it: hips that can be placed, hinges, tracked parts.
+
+The hips are a mocap body or hang on a free joint, as `mjcf.ModelOptions.hips` says; both are placed
+here by hand. Of the hinges only those can move a tracked part that lie between it and the hips;
+fingers, feet and toes stay at rest.
+"""
+
+import mujoco
+import numpy as np
+import numpy.typing as npt
+
+from app.science.avatar.ik.goals import GOAL_PARTS, IkError
+from app.science.avatar.ik.hips import Trunk
+from app.science.rotations import FloatArray
+
+_HINGE, _FREE = int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_FREE)
+_BODY = mujoco.mjtObj.mjOBJ_BODY
+
+
+class Chain:
+    """A model with data of its own, which no simulation uses.
+
+    Attributes:
+        axis_names: every hinge, in the order of the model.
+        low_rad, high_rad: their limits, shape (axes,); infinite where there are none.
+        moving: indices of the hinges that move a tracked part.
+        moves: (goals, moving) which of these moves which goal; the hips' row is empty.
+        trunk: lengths for estimating the hips.
+
+    Raises:
+        IkError: the model lacks a tracked part, or its hips are fixed.
+    """
+
+    def __init__(self, model: mujoco.MjModel) -> None:
+        self.model, self.data = model, mujoco.MjData(model)
+        self._bodies = [_body(model, part) for part in GOAL_PARTS]
+        hinges = [joint for joint in range(model.njnt) if model.jnt_type[joint] == _HINGE]
+        self.axis_names = tuple(model.joint(joint).name for joint in hinges)
+        self._at = model.jnt_qposadr[hinges]
+        limited = model.jnt_range[hinges, 0] < model.jnt_range[hinges, 1]
+        self.low_rad = np.where(limited, model.jnt_range[hinges, 0], -np.inf)
+        self.high_rad = np.where(limited, model.jnt_range[hinges, 1], np.inf)
+        above = [_above(model, body) for body in self._bodies]
+        moves = np.array([[model.jnt_bodyid[joint] in way for joint in hinges] for way in above])
+        self.moving = np.flatnonzero(moves.any(axis=0))
+        self.moves: npt.NDArray[np.bool_] = moves[:, self.moving]
+        self._columns = model.jnt_dofadr[hinges][self.moving]
+        self._mocap, self._free = _root(model, self._bodies[0])
+        self._jacobian = np.zeros((2, 3, model.nv))
+        self.trunk = self._trunk()
+
+    def place(self, hips_m: FloatArray, hips: FloatArray, angles_rad: FloatArray) -> None:
+        """Put the body somewhere: hips (3,) and (4,) in the world, every hinge's angle (axes,)."""
+        data = self.data
+        data.qpos[self._at] = angles_rad
+        if self._free is None:
+            data.mocap_pos[self._mocap], data.mocap_quat[self._mocap] = hips_m, hips
+        else:
+            data.qpos[self._free : self._free + 3] = hips_m
+            data.qpos[self._free + 3 : self._free + 7] = hips
+        mujoco.mj_kinematics(self.model, data)
+
+    def prepare_jacobians(self) -> None:
+        """After `place`, before `jacobian`."""
+        mujoco.mj_comPos(self.model, self.data)
+
+    def position_m(self, goal: int) -> FloatArray:
+        """Where a tracked part's joint is in the world, (3,)."""
+        position: FloatArray = self.data.xpos[self._bodies[goal]]
+        return position
+
+    def rotation(self, goal: int) -> FloatArray:
+        """Its orientation world_from_part, (4,) wxyz."""
+        rotation: FloatArray = self.data.xquat[self._bodies[goal]]
+        return rotation
+
+    def jacobian(self, goal: int) -> FloatArray:
+        """Its velocity and angular velocity in the world per moving hinge, (6, moving)."""
+        linear, angular = self._jacobian
+        mujoco.mj_jacBody(self.model, self.data, linear, angular, self._bodies[goal])
+        found: FloatArray = self._jacobian.reshape(6, -1)[:, self._columns]
+        return found
+
+    def _trunk(self) -> Trunk:
+        upright = np.array((1.0, 0.0, 0.0, 0.0))
+        self.place(np.zeros(3), upright, np.zeros(len(self.axis_names)))
+        sockets = [self.data.xpos[_body(self.model, f"{side}UpperLeg")] for side in _SIDES]
+        left, right = (_length(self.position_m(4 + i) - sockets[i]) for i in range(2))
+        return Trunk(
+            hips_to_head_m=_length(self.position_m(1)),
+            hips_to_sockets_m=-0.5 * float(sockets[0][1] + sockets[1][1]),
+            half_breadth_m=0.5 * float(sockets[1][0] - sockets[0][0]),
+            thigh_m=0.5 * (left + right),
+        )
+
+
+_SIDES = ("Left", "Right")
+
+
+def _length(v: FloatArray) -> float:
+    x, y, z = v.tolist()
+    return float(np.sqrt(x * x + y * y + z * z))
+
+
+def _body(model: mujoco.MjModel, part: str) -> int:
+    found = int(mujoco.mj_name2id(model, _BODY, part))
+    if found < 0:
+        raise IkError(
+            f"The model has no {part}: inverse kinematics needs {', '.join(GOAL_PARTS)} and what"
+            " lies between them."
+        )
+    return found
+
+
+def _above(model: mujoco.MjModel, body: int) -> set[int]:
+    way: set[int] = set()
+    while body > 0:
+        way.add(body)
+        body = int(model.body_parentid[body])
+    return way
+
+
+def _root(model: mujoco.MjModel, hips: int) -> tuple[int, int | None]:
+    """Index of the hips' mocap body, and address of their free joint if they have one."""
+    mocap = int(model.body_mocapid[hips])
+    for joint in range(model.njnt):
+        if model.jnt_bodyid[joint] == hips and model.jnt_type[joint] == _FREE:
+            return mocap, int(model.jnt_qposadr[joint])
+    if mocap < 0:
+        raise IkError(
+            "The model's Hips are fixed: they must be a mocap body or hang on a free joint."
+        )
+    return mocap, None

@@ -1,0 +1,51 @@
+"""What can be chosen about an avatar's model, and what is the same for all of them.
+
+The hips follow the participant in one of two ways:
+
+- `carried`: they are a mocap body, placed anew at each step. They never lag, a teleport does no
+  harm and the simulation is twice as fast; but they have no speed, so limbs do not feel the hips'
+  acceleration, and nothing pushes them.
+- `welded`: a free body, tied to the mocap body `HipsTarget` by a stiff weld. Limbs feel the hips'
+  inertia. Whoever teleports the target must also write the hips' own place and speed.
+"""
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+TIMESTEP_S: Final = 0.002
+"""5 ms is unstable under full-range jumps of the target at four times the gains, 2 ms at eight."""
+HIPS_TARGET = "HipsTarget"
+"""The mocap body that pulls welded hips; carried hips are a mocap body themselves."""
+LIMIT_SOLREF = (2.0 * TIMESTEP_S, 1.0)
+"""A limit pushes back as stiffly as two steps allow, critically damped: no rubbery joints."""
+WALL_SOLREF = (2.0 * TIMESTEP_S, 1.0)
+WALL_SOLIMP = (0.99, 0.999, 0.001, 0.5, 2.0)
+"""With `WALL_SOLREF` a hand at 2 m/s enters a wall by some 4 mm and never passes it."""
+WELD_SOLREF = (2.0 * TIMESTEP_S, 1.0)
+WELD_SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)
+"""The hips lag 6 ms behind their target. As hard as a wall, the weld and the motors of the legs
+would rock each other at 12 Hz when the feet are off the floor."""
+FRICTION = (0.5, 0.005, 0.0001)
+"""Sliding, torsional, rolling: skin and cloth on smooth board, an estimate."""
+
+
+@dataclass(frozen=True)
+class ModelOptions:
+    """Switches of the model.
+
+    Attributes:
+        hips: see the module.
+        gravity: whether the body is heavy.
+        self_collision: whether parts collide with each other as `layers` says.
+        longest_delay_s: the most latency that can be set while the model runs; see
+            `MjModel.actuator_delay`. Zero leaves the buffers out.
+    """
+
+    hips: Literal["carried", "welded"] = "carried"
+    gravity: bool = True
+    self_collision: bool = True
+    longest_delay_s: float = 1.0
+
+
+DEFAULT_OPTIONS: Final = ModelOptions()
+"""Carried hips, gravity, self-collision, up to one second of latency."""

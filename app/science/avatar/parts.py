@@ -1,0 +1,179 @@
+"""The 52 body parts, how they hang together, and about which axes each can turn.
+
+Names are Unity's HumanBodyBones. Every part is a rigid body; its frame lies in its joint and is
+parallel to the world in the T-pose (x right, y up, facing -z), so the left arm points along -x.
+
+An axis is called after the part and the world's axis it lies along in the T-pose:
+`LeftUpperLegX`. Its direction is chosen so that a positive angle is the movement that `movement`
+names, on both sides alike: the right side's axes are the left side's mirrored at the body's middle,
+(x, -y, -z). A part's rotation is the product of its axes' rotations in the order they are listed,
+
+    parent_from_part = R(axis 1, angle 1) R(axis 2, angle 2) R(axis 3, angle 3),
+
+which is how a chain of hinges turns: the first hinge carries the others.
+
+Degrees of freedom: hips 3 and 3 (bound to the participant, not driven), three joints of the spine,
+neck and head 3 each, shoulders none; an arm 29 (upper arm, forearm and hand 3, five fingers 2, 1
+and 1), a leg 9 (thigh 3, knee 2, foot 3, toes 1). Without the hips 91 axes are driven.
+
+Source: Karas (2020), section 3.2. The directions and their order are ours.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
+
+from app.science.rotations.scalars import Vector
+
+Letter = Literal["X", "Y", "Z"]
+SIDES = ("Left", "Right")
+FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
+SEGMENTS = ("Proximal", "Intermediate", "Distal")
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One hinge of a part.
+
+    Attributes:
+        part: HumanBodyBones name.
+        letter: the world's axis it lies along in the T-pose; for fingers that lie askew, nearly.
+        direction: unit vector in the part's frame.
+        movement: what a positive angle does.
+    """
+
+    part: str
+    letter: Letter
+    direction: Vector
+    movement: str
+
+    @property
+    def name(self) -> str:
+        """Name of the axis and of its motor, such as `LeftUpperLegX`."""
+        return f"{self.part}{self.letter}"
+
+
+def _arm_tree(side: str) -> Iterator[tuple[str, str]]:
+    yield f"{side}Shoulder", "UpperChest"
+    yield f"{side}UpperArm", f"{side}Shoulder"
+    yield f"{side}LowerArm", f"{side}UpperArm"
+    yield f"{side}Hand", f"{side}LowerArm"
+    for finger in FINGERS:
+        above = f"{side}Hand"
+        for segment in SEGMENTS:
+            part = f"{side}{finger}{segment}"
+            yield part, above
+            above = part
+
+
+def _leg_tree(side: str) -> Iterator[tuple[str, str]]:
+    above = "Hips"
+    for part in ("UpperLeg", "LowerLeg", "Foot", "Toes"):
+        yield f"{side}{part}", above
+        above = f"{side}{part}"
+
+
+def _tree() -> Iterator[tuple[str, str | None]]:
+    yield "Hips", None
+    above = "Hips"
+    for part in ("Spine", "Chest", "UpperChest", "Neck", "Head"):
+        yield part, above
+        above = part
+    for side in SIDES:
+        yield from _arm_tree(side)
+    for side in SIDES:
+        yield from _leg_tree(side)
+
+
+PARENT_OF: Mapping[str, str | None] = MappingProxyType(dict(_tree()))
+"""Each part's parent; a parent comes before its children."""
+PART_NAMES: tuple[str, ...] = tuple(PARENT_OF)
+FINGER_PARTS: tuple[str, ...] = tuple(
+    part for part in PART_NAMES if any(finger in part for finger in FINGERS)
+)
+
+_RIGHT, _UP, _BACK = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+_LEFT, _DOWN, _FORWARD = (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)
+_AxisRow = tuple[Letter, Vector, str]
+_TRUNK: tuple[_AxisRow, ...] = (
+    ("X", _LEFT, "bend forward"),
+    ("Z", _BACK, "bend to the left"),
+    ("Y", _UP, "turn to the left"),
+)
+# An order of three axes is bad where the second is near 90 degrees: first and third then lie along
+# each other, and tiny movements turn both far. With Y, Z, X arms that hang at the sides are there:
+# in four walks up to all frames were within 10 degrees of it, and angles moved at up to 280 rad/s.
+# With Z, X, Y no frame is, and 8 rad/s is the most (CMU 02_01, 02_06, 06_01, 12_02). Z, Y, X does
+# as well there, but locks where arms point forward, as in reaching. The hand's turn comes first, so
+# it lies along the forearm's own, which can take over what the wrist cannot.
+# Of the left side. A thumb lies in front of the palm and closes towards the little finger.
+_LIMBS: Mapping[str, tuple[_AxisRow, ...]] = {
+    "UpperArm": (
+        ("Z", _FORWARD, "raise"),
+        ("X", _LEFT, "turn inwards"),
+        ("Y", _DOWN, "swing forward"),
+    ),
+    "LowerArm": (
+        ("Y", _DOWN, "bend"),
+        ("Z", _FORWARD, "carry outwards (not anatomic)"),
+        ("X", _LEFT, "pronate"),
+    ),
+    "Hand": (
+        ("X", _LEFT, "turn inwards"),
+        ("Y", _DOWN, "deviate to the thumb"),
+        ("Z", _BACK, "bend to the palm"),
+    ),
+    "UpperLeg": (
+        ("X", _RIGHT, "lift forward"),
+        ("Z", _FORWARD, "spread outwards"),
+        ("Y", _DOWN, "turn inwards"),
+    ),
+    "LowerLeg": (("X", _LEFT, "bend"), ("Y", _DOWN, "turn inwards")),
+    "Foot": (
+        ("X", _RIGHT, "lift the toes"),
+        ("Z", _FORWARD, "raise the inner edge"),
+        ("Y", _DOWN, "turn inwards"),
+    ),
+    "Toes": (("X", _RIGHT, "lift"),),
+}
+_FINGER_BEND: _AxisRow = ("Z", _BACK, "bend")
+_FINGER_SPREAD: _AxisRow = ("Y", _DOWN, "spread to the thumb")
+_THUMB_BEND: _AxisRow = ("Y", _UP, "bend across the palm")
+_THUMB_SPREAD: _AxisRow = ("Z", _BACK, "lower to the palm")
+
+
+def _rows(part: str) -> tuple[_AxisRow, ...]:
+    if part in {"Spine", "Chest", "UpperChest", "Neck", "Head"}:
+        return _TRUNK
+    bare = part.removeprefix("Left").removeprefix("Right")
+    if bare.startswith("Thumb"):
+        return (_THUMB_BEND, _THUMB_SPREAD) if bare.endswith("Proximal") else (_THUMB_BEND,)
+    if bare.endswith("Proximal"):
+        return (_FINGER_BEND, _FINGER_SPREAD)
+    if bare.endswith(("Intermediate", "Distal")):
+        return (_FINGER_BEND,)
+    return _LIMBS.get(bare, ())
+
+
+def _axes(part: str) -> tuple[Axis, ...]:
+    mirrored = part.startswith("Right")
+    return tuple(
+        Axis(part, letter, (x, -y, -z) if mirrored else (x, y, z), movement)
+        for letter, (x, y, z), movement in _rows(part)
+    )
+
+
+AXES_OF: Mapping[str, tuple[Axis, ...]] = MappingProxyType(
+    {part: _axes(part) for part in PART_NAMES}
+)
+"""The driven axes of each part, outermost first; none for the hips and the shoulders."""
+AXES: tuple[Axis, ...] = tuple(axis for part in PART_NAMES for axis in AXES_OF[part])
+AXIS_NAMES: tuple[str, ...] = tuple(axis.name for axis in AXES)
+
+
+def mirrored_name(name: str) -> str:
+    """The same part or axis on the other side; of the middle, itself."""
+    if name.startswith("Left"):
+        return f"Right{name.removeprefix('Left')}"
+    return f"Left{name.removeprefix('Right')}" if name.startswith("Right") else name

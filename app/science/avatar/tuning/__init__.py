@@ -1,0 +1,33 @@
+"""Finds gains for every axis of an avatar by relay experiments, and proves them on the body."""
+
+from app.science.avatar.tuning.assessment import Assessment, assess
+from app.science.avatar.tuning.heuristics import HEURISTICS, Heuristic
+from app.science.avatar.tuning.results import (
+    AxisTuning,
+    TuningCancelled,
+    TuningError,
+    TuningOptions,
+    TuningProgress,
+    TuningReport,
+)
+from app.science.avatar.tuning.tracking import Followed, Spread, Tracking, follow_capture, track
+from app.science.avatar.tuning.tuner import tune
+
+__all__ = [
+    "HEURISTICS",
+    "Assessment",
+    "AxisTuning",
+    "Followed",
+    "Heuristic",
+    "Spread",
+    "Tracking",
+    "TuningCancelled",
+    "TuningError",
+    "TuningOptions",
+    "TuningProgress",
+    "TuningReport",
+    "assess",
+    "follow_capture",
+    "track",
+    "tune",
+]

@@ -1,0 +1,167 @@
+"""The tuning of a whole avatar: experiment, rule, trial; again at a lower frequency; or a flag.
+
+1. Every free axis is let oscillate by a relay, alone (`experiments`).
+2. A rule makes gains of it (`heuristics`).
+3. The whole body is given all the gains, and each axis must jump (`evaluation`).
+4. What `verdicts` objects to is tried again with a weaker relay, which means lower gains. After the
+   last attempt the best gains are kept and the axis is flagged with the reason.
+5. If anything changed since an axis was tried, the whole body is tried once more.
+
+Greatest torques and limits stay as they are. With `mirror` only the left side is experimented on;
+both sides are tried. An axis whose left counterpart is locked or missing is tuned itself.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from app.science.avatar.axis_settings import AxisSettings
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.figure import Figure
+from app.science.avatar.model import avatar_model
+from app.science.avatar.parts import mirrored_name
+from app.science.avatar.tuning.attempts import AxisAttempts
+from app.science.avatar.tuning.crew import Crew
+from app.science.avatar.tuning.evaluation import Trial
+from app.science.avatar.tuning.experiments import laboratory
+from app.science.avatar.tuning.results import (
+    AxisTuning,
+    TuningOptions,
+    TuningProgress,
+    TuningReport,
+)
+from app.science.avatar.tuning.step_response import StepFigures
+
+
+def tune(
+    configuration: Configuration,
+    stature_m: float,
+    options: TuningOptions | None = None,
+    *,
+    figure: Figure | None = None,
+    wall_s: Callable[[], float],
+    progress: Callable[[TuningProgress], None] = lambda _: None,
+    cancelled: Callable[[], bool] = lambda: False,
+) -> TuningReport:
+    """Find gains for every free axis; the same input gives the same gains.
+
+    Args:
+        configuration: its mass, locks, limits and greatest torques are taken; gains of axes that
+            are locked or that do not oscillate are kept.
+        stature_m: of the body.
+        options: see there.
+        figure: the model that the configuration names; it has all parts of the configuration.
+        wall_s: a clock in seconds that only goes forward, such as `time.monotonic`.
+        progress: told after each axis.
+        cancelled: asked again and again.
+
+    Raises:
+        BodyError: there is no such body.
+        TuningCancelled: `cancelled` said so.
+    """
+    chosen = TuningOptions() if options is None else options
+    tuning = _Tuning(configuration, stature_m, figure, chosen, wall_s, progress, cancelled)
+    started_s = wall_s()
+    tuning.run()
+    axes = tuning.results()
+    gains = {one.name: one for one in axes}
+    tuned = {
+        name: replace(own, kp=gains[name].kp, kd=gains[name].kd)
+        for name, own in configuration.axes.items()
+    }
+    return TuningReport(
+        configuration=replace(configuration, axes=tuned),
+        stature_m=stature_m,
+        options=chosen,
+        axes=axes,
+        wall_s=wall_s() - started_s,
+    )
+
+
+class _Tuning:
+    def __init__(
+        self,
+        configuration: Configuration,
+        stature_m: float,
+        figure: Figure | None,
+        options: TuningOptions,
+        wall_s: Callable[[], float],
+        progress: Callable[[TuningProgress], None],
+        cancelled: Callable[[], bool],
+    ) -> None:
+        self._configuration, self._options = configuration, options
+        self._locked = configuration.locked_axes
+        built = avatar_model(configuration, stature_m, figure=figure)
+        in_force = configuration.in_force
+        self._laboratory = laboratory(
+            built.body, built.masses, in_force, options, wall_s=wall_s, cancelled=cancelled
+        )
+        self._crew = Crew(options.workers, progress, cancelled)
+        self._free = tuple(name for name in in_force if name not in self._locked)
+        self._attempts = {
+            name: AxisAttempts(name, in_force[name], options)
+            for name in self._free
+            if self._source(name) == name
+        }
+        self._trials: dict[str, StepFigures] = {}
+        self._clearances: dict[str, float] = {}
+
+    def run(self) -> None:
+        """Attempt by attempt; at last the whole body."""
+        pending = tuple(self._attempts)
+        tried_s = 0
+        for attempt in range(1, self._options.attempts + 1):
+            self._experiment(attempt, pending)
+            affected = [name for name in self._free if self._source(name) in pending]
+            self._try(attempt, affected)
+            for name in affected:
+                self._attempts[self._source(name)].judge(
+                    name, self._trials[name], self._clearances[name]
+                )
+            tried_s = attempt
+            pending = tuple(name for name in pending if not self._attempts[name].accepted)
+            if not pending:
+                break
+        for one in self._attempts.values():
+            one.settle()
+        if tried_s > 1 or pending:
+            self._try(tried_s, self._free)
+
+    def results(self) -> tuple[AxisTuning, ...]:
+        """Of every axis, in the configuration's order."""
+        return tuple(self._result(name) for name in self._configuration.axes)
+
+    def _source(self, name: str) -> str:
+        """The axis whose gains this one gets: itself or, mirrored, its left counterpart."""
+        other = mirrored_name(name)
+        mirrors = self._options.mirror and name.startswith("Right") and other in self._free
+        return other if mirrors else name
+
+    def _experiment(self, attempt: int, axes: tuple[str, ...]) -> None:
+        found = self._crew.each(
+            attempt, "relay", axes, lambda axis: self._laboratory.experiment(axis, attempt)
+        )
+        for name, experiment in found.items():
+            self._attempts[name].take(experiment)
+
+    def _try(self, attempt: int, axes: tuple[str, ...] | list[str]) -> None:
+        if not axes:
+            return
+        lab = self._laboratory
+        trial = Trial(lab.body, lab.masses, self._settings(), gravity=self._configuration.gravity)
+        self._trials.update(self._crew.each(attempt, "steps", axes, trial.step))
+        self._clearances.update({name: trial.clearance(name) for name in axes})
+
+    def _settings(self) -> dict[str, AxisSettings]:
+        settings = dict(self._laboratory.settings)
+        for name in self._free:
+            gains = self._attempts[self._source(name)].gains
+            settings[name] = replace(settings[name], kp=gains.kp, kd=gains.kd)
+        return settings
+
+    def _result(self, name: str) -> AxisTuning:
+        own = self._configuration.axes[name]
+        if name in self._locked:
+            why = "its limits leave no range" if own.locked else "a locked group holds it"
+            return AxisTuning(name, own.kp, own.kd, "locked", f"skipped: {why}")
+        source = self._source(name)
+        return self._attempts[source].result(name, self._trials[name], self._clearances[name])

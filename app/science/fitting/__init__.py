@@ -1,0 +1,6 @@
+"""Skeletons from what carries none: markers on the skin, rigid bodies strapped to a person."""
+
+from app.science.fitting.fit import fit_skeleton
+from app.science.fitting.model import FitError, Fitted
+
+__all__ = ["FitError", "Fitted", "fit_skeleton"]

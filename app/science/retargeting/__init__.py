@@ -1,0 +1,1 @@
+"""Any body's movement on any avatar."""

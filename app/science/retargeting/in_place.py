@@ -1,0 +1,90 @@
+"""A capture as the movement of a body that stays where it is.
+
+A session takes many minutes and a walk a few seconds. So a walk that is to accompany a session is
+brought onto the participant's skeleton and its slow travel and slow turning are taken out: it
+becomes walking on the spot, facing -z, with standing feet flat on the floor. `skeleton.loop` then
+makes it endless. Legs that a capture does not show stand straight beneath the hips.
+"""
+
+import numpy as np
+
+from app.science.retargeting.joint_map import JointMap
+from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, reference_avatar
+from app.science.retargeting.transfer import Retargeter
+from app.science.rig import RigMotion, place, to_local
+from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply, rotate
+from app.science.skeleton.joints import JOINT_INDEX
+from app.science.skeleton.model import Skeleton, SkeletonError
+from app.science.skeleton.movement import Movement, continuous
+from app.science.skeleton.soles import flat_soles, ground_height
+
+# Slower than a stride, faster than a turn of the walk.
+_PATH_SMOOTHING_S = 0.6
+_LEGS = tuple(
+    f"{side}{part}"
+    for side in ("Left", "Right")
+    for part in ("UpperLeg", "LowerLeg", "Foot", "Toes")
+)
+
+
+def movement_in_place(source: RigMotion, joint_map: JointMap, skeleton: Skeleton) -> Movement:
+    """Carry a capture over to a skeleton, moving in place and facing -z.
+
+    The hips' height and sway are scaled by the ratio of leg lengths. Slow travel and slow turning
+    (over 0.6 s) are taken out; a standing foot is flat on the floor.
+
+    Raises:
+        JointMapError: the map does not fit the capture's skeleton.
+        SkeletonError: the capture has fewer than two frames.
+    """
+    if source.frame_count < 2:
+        raise SkeletonError("A capture of one frame holds no movement: give at least two frames.")
+    avatar = reference_avatar(skeleton.stature_m)
+    retargeter = Retargeter(source.rig, joint_map, avatar, REFERENCE_JOINT_MAP)
+    moved = retargeter.batch(source)
+    _, world = place(avatar, moved.root_positions_m, moved.rotations)
+    world, root = _in_place(world, moved.root_positions_m, _PATH_SMOOTHING_S * source.rate_hz)
+    if not set(_LEGS) & set(retargeter.carried):
+        world, root = _standing(world, root, skeleton)
+    world = flat_soles(world, skeleton, root)
+    root[:, 1] -= ground_height(world, skeleton, root)
+    return Movement(source.rate_hz, root, continuous(to_local(avatar, world)))
+
+
+def _standing(
+    world: FloatArray, root: FloatArray, skeleton: Skeleton
+) -> tuple[FloatArray, FloatArray]:
+    """Upright legs, the lower foot on the floor: how they bent the capture does not tell."""
+    world, root = world.copy(), root.copy()
+    world[:, [JOINT_INDEX[name] for name in _LEGS]] = identity(1)
+    sockets = [JOINT_INDEX["LeftUpperLeg"], JOINT_INDEX["RightUpperLeg"]]
+    below = rotate(world[:, :1], skeleton.offsets_m[sockets])[..., 1].min(axis=1)
+    root[:, 1] = skeleton.ankle_height_m + skeleton.leg_length_m - below
+    return world, root
+
+
+def _in_place(
+    world: FloatArray, root: FloatArray, smoothing: float
+) -> tuple[FloatArray, FloatArray]:
+    """Take slow heading and slow travel out of the movement; `smoothing` in frames."""
+    forward = rotate(world[:, 0], np.array((0.0, 0.0, -1.0)))
+    heading = np.unwrap(np.arctan2(-forward[:, 0], -forward[:, 2]))
+    back = _yaw(-_slow(heading, smoothing))
+    sway = root - np.stack(
+        (_slow(root[:, 0], smoothing), np.zeros(len(root)), _slow(root[:, 2], smoothing)), axis=-1
+    )
+    return multiply(back[:, np.newaxis], world), rotate(back, sway)
+
+
+def _yaw(angle_rad: FloatArray) -> FloatArray:
+    return from_rotation_vector(np.stack((0 * angle_rad, angle_rad, 0 * angle_rad), axis=-1))
+
+
+def _slow(values: FloatArray, smoothing: float) -> FloatArray:
+    """Return the slow part: the straight line through the values plus its smoothed remainder."""
+    from scipy.ndimage import gaussian_filter1d  # slow to load; a server seldom needs it
+
+    frames = np.arange(len(values))
+    line = np.polyval(np.polyfit(frames, values, 1), frames)
+    rest = gaussian_filter1d(values - line, smoothing, mode="nearest")
+    return np.asarray(line + rest, dtype=np.float64)

@@ -1,0 +1,167 @@
+"""Which joint of a skeleton is which part of a human body.
+
+A map names, for joints of the human body (HumanBodyBones, `app.science.skeleton.JOINT_NAMES`), the
+joint of a rig that plays them. Source and avatar each have one, so any two skeletons meet in the
+body's own words, and a map made once serves a skeleton wherever it is used.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Literal
+
+from app.science.retargeting.joint_chains import (
+    complete_limbs,
+    hips_above,
+    is_below,
+    spine_between,
+)
+from app.science.retargeting.joint_words import CENTRE_WORDS, SIDE_WORDS, side_and_word
+from app.science.rig import Rig, RigError
+from app.science.skeleton.joints import JOINT_NAMES, PARENTS
+
+JointMap = Mapping[str, str]
+"""Body joint -> joint of the rig; joints that are absent are unmapped."""
+Found = Literal["name", "hierarchy"]
+
+
+class JointMapError(RigError):
+    """A joint map does not fit its skeleton: an unknown joint, one joint used twice, wrong order.
+
+    Attributes:
+        problems: (body joint, what is wrong there and what is valid), one for each.
+    """
+
+    def __init__(self, problems: tuple[tuple[str, str], ...]) -> None:
+        self.problems = problems
+        super().__init__("; ".join(f"{joint}: {problem}" for joint, problem in problems))
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A joint map as far as names and hierarchy tell, and what they leave open.
+
+    Attributes:
+        joint_map: body joint -> rig joint.
+        sources: body joint -> whether its name or its place in the tree told.
+        unmapped_body_joints: of the 22 body joints; an avatar keeps them as in its T-pose.
+        unmapped_rig_joints: they move nothing, and on an avatar keep their rest pose.
+    """
+
+    joint_map: JointMap
+    sources: Mapping[str, Found]
+    unmapped_body_joints: tuple[str, ...]
+    unmapped_rig_joints: tuple[str, ...]
+
+
+def propose_joint_map(rig: Rig) -> Proposal:
+    """Read a map from the joints' names; where these say nothing, from how they hang together.
+
+    The spine is shared out by its place between hips and neck: one joint is the Spine, two are
+    Spine and Chest; of more the first is the Spine, the second the Chest, the last the UpperChest.
+    """
+    by_name = _by_name(rig)
+    found = {joint: place for joint, place in by_name.items() if _in_order(rig, by_name, joint)}
+    found |= hips_above(rig, found)
+    found |= spine_between(rig, found)
+    complete = complete_limbs(rig, found)
+    named = {joint: rig.names[place] for joint, place in complete.items()}
+    joint_map = {joint: named[joint] for joint in JOINT_NAMES if joint in named}
+    sources: dict[str, Found] = {
+        joint: "name" if by_name.get(joint) == complete[joint] else "hierarchy"
+        for joint in joint_map
+    }
+    return Proposal(
+        MappingProxyType(joint_map),
+        MappingProxyType(sources),
+        unmapped_body_joints(joint_map),
+        unmapped_rig_joints(rig, joint_map),
+    )
+
+
+def unmapped_body_joints(joint_map: JointMap) -> tuple[str, ...]:
+    """The body joints that a map leaves out, in their order."""
+    return tuple(joint for joint in JOINT_NAMES if joint not in joint_map)
+
+
+def unmapped_rig_joints(rig: Rig, joint_map: JointMap) -> tuple[str, ...]:
+    """The rig's joints that a map leaves out, in their order."""
+    used = set(joint_map.values())
+    return tuple(name for name in rig.names if name not in used)
+
+
+def check_joint_map(rig: Rig, joint_map: JointMap) -> None:
+    """Raise JointMapError with every problem of a map that somebody has changed by hand."""
+    problems = [problem for joint in joint_map for problem in _problems(rig, joint_map, joint)]
+    if "Hips" not in joint_map:
+        problems.append(("Hips", "is not mapped: without the hips no body can be placed"))
+    if problems:
+        raise JointMapError(tuple(problems))
+
+
+def _problems(rig: Rig, joint_map: JointMap, joint: str) -> list[tuple[str, str]]:
+    name = joint_map[joint]
+    if joint not in JOINT_NAMES:
+        return [(joint, f"is no body joint: valid are {', '.join(JOINT_NAMES)}")]
+    if name not in rig.names:
+        return [(joint, f"the skeleton has no joint {name!r}: it has {', '.join(rig.names)}")]
+    problems = []
+    others = [other for other in joint_map if other != joint and joint_map[other] == name]
+    if others:
+        problems.append((joint, f"{name!r} is also {others[0]}: a joint can play one part"))
+    above = _mapped_above(joint, joint_map)
+    if above is None or joint_map[above] not in rig.names or joint_map[above] == name:
+        return problems
+    if not is_below(rig, rig.index(name), rig.index(joint_map[above])):
+        told = f"{name!r} is not below {joint_map[above]!r}, which is {above}"
+        problems.append((joint, f"{told}: choose a joint further out"))
+    return problems
+
+
+def _mapped_above(joint: str, joint_map: Mapping[str, object]) -> str | None:
+    """The nearest body joint above that is mapped."""
+    above = PARENTS[JOINT_NAMES.index(joint)]
+    while above >= 0:
+        if JOINT_NAMES[above] in joint_map:
+            return JOINT_NAMES[above]
+        above = PARENTS[above]
+    return None
+
+
+def _in_order(rig: Rig, found: Mapping[str, int], joint: str) -> bool:
+    above = _mapped_above(joint, found)
+    return above is None or is_below(rig, found[joint], found[above])
+
+
+def _by_name(rig: Rig) -> dict[str, int]:
+    """The surest name of each part; of equally sure ones the joint nearest to the root."""
+    read = [side_and_word(name) for name in rig.names]
+    found: dict[str, int] = {}
+    taken: set[int] = set()
+    for part, words in CENTRE_WORDS.items():
+        _take(found, taken, part, [("", word) for word in words], read)
+    for side in ("Left", "Right"):
+        for part in ("UpperArm", "Shoulder", *(p for p in SIDE_WORDS if "Shoulder" not in p)):
+            if f"{side}{part}" in found:
+                continue
+            wanted = [(side, word) for word in SIDE_WORDS[part]]
+            if part == "UpperArm" and any(key in read for key in wanted[:-2]):
+                # There is a better word for the arm, so a shoulder is the collar bone.
+                wanted = wanted[:-2]
+            _take(found, taken, f"{side}{part}", wanted, read)
+    return found
+
+
+def _take(
+    found: dict[str, int],
+    taken: set[int],
+    joint: str,
+    wanted: list[tuple[str, str]],
+    read: list[tuple[str, str]],
+) -> None:
+    for key in wanted:
+        places = [place for place, told in enumerate(read) if told == key and place not in taken]
+        if places:
+            found[joint] = places[0]
+            taken.add(places[0])
+            return

@@ -1,0 +1,129 @@
+"""The legs of any rig: which joints they are, how long, and where they go.
+
+Feet are followed by the *ball*: the toe joint, which is the paper's "main toe joint" and the point
+that rests longest on the ground, from the flat foot to toe-off. A rig without toe joints is
+followed by the free end of its foot, and without one by the ankle.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from app.science.retargeting.joint_chains import is_below
+from app.science.retargeting.joint_map import JointMap
+from app.science.rig import Rig, RigError
+from app.science.rotations import FloatArray, rotate
+
+Side = Literal["left", "right"]
+SIDES: tuple[Side, Side] = ("left", "right")
+Place = tuple[float, float, float]
+_HERE: Place = (0.0, 0.0, 0.0)
+_PARTS = ("UpperLeg", "LowerLeg", "Foot")
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Joints of one leg as indices of the rig.
+
+    Attributes:
+        side: whose left or right.
+        thigh, shin, foot: the joints at hip, knee and ankle.
+        ball: joint that is followed as the foot's contact.
+        ball_in_joint_m: where the ball is in that joint's frame; zero for a toe joint.
+        length_m: thigh plus shin.
+        thigh_share: thigh over thigh plus shin.
+        sole: (joint, place in its frame) of every point that may touch the ground: ankle, toes and
+            free ends below.
+    """
+
+    side: Side
+    thigh: int
+    shin: int
+    foot: int
+    ball: int
+    ball_in_joint_m: Place
+    length_m: float
+    thigh_share: float
+    sole: tuple[tuple[int, Place], ...]
+
+    def ball_m(self, positions_m: FloatArray, world: FloatArray) -> FloatArray:
+        """Place of the ball, (N, 3), from joints (N, J, 3) and world_from_joint (N, J, 4)."""
+        return _point(positions_m, world, self.ball, self.ball_in_joint_m)
+
+    def lowest_m(self, positions_m: FloatArray, world: FloatArray) -> FloatArray:
+        """Height of the foot's lowest point, (N,)."""
+        heights = [_point(positions_m, world, joint, at)[..., 1] for joint, at in self.sole]
+        return np.asarray(np.min(heights, axis=0))
+
+
+@dataclass(frozen=True)
+class Legs:
+    """Both legs, and the pelvis between them."""
+
+    left: Leg
+    right: Leg
+    hips: int
+
+    @property
+    def both(self) -> tuple[Leg, Leg]:
+        """Left, then right."""
+        return self.left, self.right
+
+    def balls_m(self, positions_m: FloatArray, world: FloatArray) -> FloatArray:
+        """Places of both balls, (2, N, 3), from joints (N, J, 3) and world_from_joint (N, J, 4)."""
+        return np.stack([leg.ball_m(positions_m, world) for leg in self.both])
+
+    @property
+    def length_m(self) -> float:
+        """Thigh plus shin, the mean of both legs."""
+        return (self.left.length_m + self.right.length_m) / 2.0
+
+
+def has_legs(joint_map: JointMap) -> bool:
+    """Whether both legs are mapped from the hips to the ankles; upper bodies are not."""
+    sides = ("Left", "Right")
+    return all(f"{s}{p}" in joint_map for s in sides for p in _PARTS) and "Hips" in joint_map
+
+
+def legs_of(rig: Rig, joint_map: JointMap) -> Legs:
+    """Find the legs.
+
+    Raises:
+        RigError: a joint of a leg or the hips is not mapped, or a leg has no length.
+    """
+    if not has_legs(joint_map):
+        wanted = ["Hips", *(f"{s}{p}" for s in ("Left", "Right") for p in _PARTS)]
+        missing = ", ".join(name for name in wanted if name not in joint_map)
+        raise RigError(
+            f"The joint map has no {missing}: walking can be followed only where both legs are"
+            " mapped. Map them, or take a capture of the whole body."
+        )
+    positions, _ = rig.rest_world()
+    left, right = (_leg(rig, joint_map, side, positions) for side in SIDES)
+    return Legs(left, right, rig.index(joint_map["Hips"]))
+
+
+def _leg(rig: Rig, joint_map: JointMap, side: Side, rest_m: FloatArray) -> Leg:
+    prefix = side.capitalize()
+    thigh, shin, foot = (rig.index(joint_map[f"{prefix}{part}"]) for part in _PARTS)
+    upper = float(np.linalg.norm(rest_m[shin] - rest_m[thigh]))
+    lower = float(np.linalg.norm(rest_m[foot] - rest_m[shin]))
+    if upper < 1e-6 or lower < 1e-6:
+        raise RigError(f"The {side} leg has a bone without length: check its joints in the map.")
+    toes = joint_map.get(f"{prefix}Toes")
+    ends = dict(reversed(rig.ends))
+    ball = foot if toes is None else rig.index(toes)
+    within = _HERE if toes is not None else ends.get(foot, _HERE)
+    below = [joint for joint in range(rig.joint_count) if is_below(rig, joint, foot)]
+    sole = [(joint, _HERE) for joint in sorted({foot, *below})]
+    sole += [(joint, end) for joint, end in rig.ends if joint in {foot, *below}]
+    share = upper / (upper + lower)
+    return Leg(side, thigh, shin, foot, ball, within, upper + lower, share, tuple(sole))
+
+
+def _point(positions_m: FloatArray, world: FloatArray, joint: int, place_m: Place) -> FloatArray:
+    place = positions_m[..., joint, :]
+    if place_m == _HERE:
+        return place
+    return np.asarray(place + rotate(world[..., joint, :], np.array(place_m)))

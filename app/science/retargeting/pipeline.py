@@ -1,0 +1,166 @@
+"""A skeleton's movement in, an avatar's movement and its figures out.
+
+What a command, a server and a rehearsal all do with a capture once it is read: carry it over
+(`transfer`), hold the feet if asked (`foot_locking`), and measure (`gait`). Both walks are measured
+over the source's contacts, so step number i is the same step on both, and under uniform scaling
+their lengths have the ratio of the legs.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.science.retargeting.contacts import find_contacts
+from app.science.retargeting.foot_locking import LockedFeet, lock_feet
+from app.science.retargeting.gait import Walk, walk_figures
+from app.science.retargeting.ground import Flat, Ground
+from app.science.retargeting.joint_map import JointMap
+from app.science.retargeting.legs import has_legs, legs_of
+from app.science.retargeting.proportions import ScaledBy
+from app.science.retargeting.transfer import Retargeter
+from app.science.rig import Rig, RigError, RigMotion
+
+_FLAT = Flat()
+# About half a step: so long a body takes to go up or down an edge.
+_EASING_S = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Walks:
+    """The same steps of the source and of the avatar, and what became of its feet.
+
+    Attributes:
+        source, avatar: measured over the source's contacts; the avatar's after foot locking.
+        slide_before_m_s: the avatar's mean foot slide before foot locking; None without contact.
+        locked: what foot locking did; None where it was not asked for.
+    """
+
+    source: Walk
+    avatar: Walk
+    slide_before_m_s: float | None
+    locked: LockedFeet | None
+
+    @property
+    def slide_m_s(self) -> float | None:
+        """Mean horizontal speed of the avatar's feet while they should stand, as delivered."""
+        return self.avatar.slide_m_s
+
+
+@dataclass(frozen=True, eq=False)
+class Retargeted:
+    """A movement on its avatar.
+
+    Attributes:
+        motion: the avatar's.
+        scale: factor on the hips' travel.
+        scaled_by: "legs", or what it was taken from where one of the bodies has none.
+        carried: body joints that move the avatar.
+        unmapped_avatar_joints: they keep their T-pose.
+        unmapped_source_joints: they move none of the avatar's joints themselves.
+        walks: figures; None where one of the bodies has no legs.
+    """
+
+    motion: RigMotion
+    scale: float
+    scaled_by: ScaledBy
+    carried: tuple[str, ...]
+    unmapped_avatar_joints: tuple[str, ...]
+    unmapped_source_joints: tuple[str, ...]
+    walks: Walks | None
+
+    @property
+    def leg_ratio(self) -> float | None:
+        """Leg length of the avatar over the source's; None where one of them has no legs."""
+        return self.scale if self.scaled_by == "legs" else None
+
+
+def retarget_motion(
+    source: RigMotion,
+    source_map: JointMap,
+    avatar: Rig,
+    avatar_map: JointMap,
+    *,
+    ground: Ground = _FLAT,
+    lock: bool = False,
+    standing_frame: int = 0,
+) -> Retargeted:
+    """Carry a movement over to an avatar and measure it.
+
+    Args:
+        source: the capture's movement.
+        source_map: body joint -> joint of its rig.
+        avatar: any rig; its rest pose is aligned to the T-pose by itself.
+        avatar_map: body joint -> joint of the avatar.
+        ground: under the avatar.
+        lock: hold the avatar's feet while the source's are down.
+        standing_frame: one in which the source stands on the ground.
+
+    Raises:
+        RigError: a map does not fit its rig, or feet are to be held and one body has no legs.
+    """
+    legged = has_legs(source_map) and has_legs(avatar_map)
+    if lock and not legged:
+        raise RigError(
+            "Feet can be held only where both bodies have legs: leave foot locking out, or map"
+            " both legs from the hips to the feet."
+        )
+    retargeter = Retargeter(source.rig, source_map, avatar, avatar_map)
+    # Held feet carry the body over the ground; otherwise the ground below the hips does.
+    moved = retargeter.batch(source, _FLAT if lock else ground, standing_frame=standing_frame)
+    if not lock:
+        moved = _eased(retargeter, moved, ground)
+    walks = _walks(source, source_map, moved, avatar_map, ground, lock=lock) if legged else None
+    locked = None if walks is None else walks.locked
+    return _result(retargeter, moved if locked is None else locked.motion, walks)
+
+
+def _result(retargeter: Retargeter, motion: RigMotion, walks: Walks | None) -> Retargeted:
+    return Retargeted(
+        motion=motion,
+        scale=retargeter.scale,
+        scaled_by=retargeter.scaled_by,
+        carried=retargeter.carried,
+        unmapped_avatar_joints=retargeter.unmapped_avatar_joints,
+        unmapped_source_joints=retargeter.unmapped_source_joints,
+        walks=walks,
+    )
+
+
+def _eased(retargeter: Retargeter, moved: RigMotion, ground: Ground) -> RigMotion:
+    """The movement with the ground's edges taken smoothly: no body jumps up a kerb at once.
+
+    The height below the hips is replaced by its mean over nearby frames. The ends are continued by
+    their mirror image through the last point, so that the first frame stays as it was, and even
+    ground and even slopes stay everywhere.
+    """
+    hips = retargeter.hips_m(moved.root_positions_m, moved.rotations)
+    height = ground.height_m(hips[:, 0], hips[:, 2])
+    reach = min(round(_EASING_S * moved.rate_hz), moved.frame_count - 1)
+    if reach < 1 or not float(np.ptp(height)) > 0.0:
+        return moved
+    longer = np.pad(height, reach, mode="reflect", reflect_type="odd")
+    window = np.hanning(2 * reach + 3)[1:-1]
+    root = moved.root_positions_m.copy()
+    root[:, 1] += np.convolve(longer, window / window.sum(), mode="valid") - height
+    return replace(moved, root_positions_m=root)
+
+
+def _walks(
+    source: RigMotion,
+    source_map: JointMap,
+    moved: RigMotion,
+    avatar_map: JointMap,
+    ground: Ground,
+    *,
+    lock: bool,
+) -> Walks:
+    source_legs, legs = legs_of(source.rig, source_map), legs_of(moved.rig, avatar_map)
+    contacts = find_contacts(source, source_legs)
+    before = walk_figures(moved, legs, ground, contacts)
+    locked = lock_feet(moved, avatar_map, contacts, ground) if lock else None
+    return Walks(
+        source=walk_figures(source, source_legs, contacts=contacts),
+        avatar=before if locked is None else walk_figures(locked.motion, legs, ground, contacts),
+        slide_before_m_s=before.slide_m_s,
+        locked=locked,
+    )

@@ -1,0 +1,60 @@
+"""How large one body is beside another, by which the hips' travel is scaled.
+
+The length of a step goes with the length of the legs, so scale = leg length avatar / source, each
+thigh plus shin, the mean of both sides. A source without legs (upper body only) is scaled by the
+trunk, hips to neck, as both bodies have it; without that by nothing.
+
+Source: Degen et al. (2022), section 2.3.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from app.science.retargeting.joint_map import JointMap
+from app.science.retargeting.t_pose import TPose
+
+ScaledBy = Literal["legs", "trunk", "nothing"]
+_TRUNK_ENDS = ("Neck", "Head", "UpperChest", "Chest")
+_SHORTEST_M = 1e-3
+
+
+@dataclass(frozen=True)
+class Scale:
+    """A factor on lengths, and what it was taken from."""
+
+    factor: float
+    scaled_by: ScaledBy
+
+
+def leg_length_m(pose: TPose, joint_map: JointMap) -> float | None:
+    """Thigh plus shin, the mean of the sides that are mapped; None for a body without legs."""
+    sides = []
+    for side in ("Left", "Right"):
+        names = [f"{side}{part}" for part in ("UpperLeg", "LowerLeg", "Foot")]
+        if all(name in joint_map for name in names):
+            upper, lower, foot = (pose.positions_m[pose.rig.index(joint_map[n])] for n in names)
+            sides.append(float(np.linalg.norm(lower - upper) + np.linalg.norm(foot - lower)))
+    length = float(np.mean(sides)) if sides else 0.0
+    return length if length > _SHORTEST_M else None
+
+
+def scale_between(
+    source: TPose, source_map: JointMap, avatar: TPose, avatar_map: JointMap
+) -> Scale:
+    """Return how much larger the avatar is than the source."""
+    theirs, ours = leg_length_m(source, source_map), leg_length_m(avatar, avatar_map)
+    if theirs is not None and ours is not None:
+        return Scale(ours / theirs, "legs")
+    for end in _TRUNK_ENDS:
+        if end in source_map and end in avatar_map:
+            theirs, ours = _trunk_m(source, source_map, end), _trunk_m(avatar, avatar_map, end)
+            if min(theirs, ours) > _SHORTEST_M:
+                return Scale(ours / theirs, "trunk")
+    return Scale(1.0, "nothing")
+
+
+def _trunk_m(pose: TPose, joint_map: JointMap, end: str) -> float:
+    hips, top = (pose.positions_m[pose.rig.index(joint_map[name])] for name in ("Hips", end))
+    return float(np.linalg.norm(top - hips))

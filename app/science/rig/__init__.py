@@ -1,0 +1,15 @@
+"""Skeletons of any kind, markers and rigid bodies, and how they move."""
+
+from app.science.rig.model import BoolArray, Rig, RigError, RigMotion, place, to_local
+from app.science.rig.points import BodyMotion, MarkerMotion
+
+__all__ = [
+    "BodyMotion",
+    "BoolArray",
+    "MarkerMotion",
+    "Rig",
+    "RigError",
+    "RigMotion",
+    "place",
+    "to_local",
+]

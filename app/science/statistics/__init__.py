@@ -1,0 +1,108 @@
+"""Statistics of studies with few subjects and repeated measures: arrays in, frozen results out.
+
+    cells_of                            a tidy table as cells; the rules for missing values
+    friedman, pairwise, page_trend      ranks of one within-subject factor, exact where possible
+    signed_rank, holm
+    rm_anova, split_plot_anova          analysis of variance, sphericity, effect sizes
+    aligned_ranks_*, aligned_contrasts  the aligned rank transform, labelled as contested
+    cronbach_alpha, mcdonald_omega      reliability of scales
+    bootstrap_interval, mean_interval, within_subject_intervals, spearman
+    rm_anova_power, subjects_needed     planning
+    against_reference, directional      what a study declares beforehand
+    share_of_maximum, contact_shares, explore
+
+Every result says how many subjects it is of and what was left out. Mixed models are in modules of
+their own (`mixed_*`, `cumulative_*`, `carry_over`).
+"""
+
+from app.science.statistics.aligned_contrasts import aligned_contrasts
+from app.science.statistics.aligned_ranks import (
+    AlignedRanks,
+    aligned_ranks_split_plot,
+    aligned_ranks_within,
+)
+from app.science.statistics.bootstrap import Interval, bootstrap_interval, mean_of, median_of
+from app.science.statistics.cronbach import Cronbach, cronbach_alpha
+from app.science.statistics.effects import Effect
+from app.science.statistics.errors import (
+    ConstantData,
+    StatisticsError,
+    TooFewData,
+    UnusableTable,
+)
+from app.science.statistics.exploring import Explored, explore
+from app.science.statistics.friedman import Friedman, friedman
+from app.science.statistics.holm import holm
+from app.science.statistics.mean_intervals import (
+    MeanInterval,
+    mean_interval,
+    within_subject_intervals,
+)
+from app.science.statistics.omega import Omega, mcdonald_omega
+from app.science.statistics.page import PageTrend, page_trend
+from app.science.statistics.pairwise import Comparison, pairwise
+from app.science.statistics.planned import (
+    AgainstReference,
+    DirectionalHypothesis,
+    against_reference,
+    directional,
+)
+from app.science.statistics.power import Expected, rm_anova_power, subjects_needed
+from app.science.statistics.rm_anova import RmAnova, rm_anova
+from app.science.statistics.shares import ContactShares, contact_shares, share_of_maximum
+from app.science.statistics.signed_rank import SignedRank, signed_rank
+from app.science.statistics.spearman import Spearman, spearman
+from app.science.statistics.split_plot import SplitPlot, split_plot_anova
+from app.science.statistics.tidy import Cells, cells_of
+
+__all__ = [
+    "AgainstReference",
+    "AlignedRanks",
+    "Cells",
+    "Comparison",
+    "ConstantData",
+    "ContactShares",
+    "Cronbach",
+    "DirectionalHypothesis",
+    "Effect",
+    "Expected",
+    "Explored",
+    "Friedman",
+    "Interval",
+    "MeanInterval",
+    "Omega",
+    "PageTrend",
+    "RmAnova",
+    "SignedRank",
+    "Spearman",
+    "SplitPlot",
+    "StatisticsError",
+    "TooFewData",
+    "UnusableTable",
+    "against_reference",
+    "aligned_contrasts",
+    "aligned_ranks_split_plot",
+    "aligned_ranks_within",
+    "bootstrap_interval",
+    "cells_of",
+    "contact_shares",
+    "cronbach_alpha",
+    "directional",
+    "explore",
+    "friedman",
+    "holm",
+    "mcdonald_omega",
+    "mean_interval",
+    "mean_of",
+    "median_of",
+    "page_trend",
+    "pairwise",
+    "rm_anova",
+    "rm_anova_power",
+    "share_of_maximum",
+    "signed_rank",
+    "spearman",
+    "split_plot_anova",
+    "subjects_needed",
+    "within_subject_intervals",
+]

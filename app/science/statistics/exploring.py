@@ -1,0 +1,119 @@
+"""Scores against demographics: explored, never tested.
+
+A dozen people have a dozen ages, and among many tables one looks striking by chance. So each
+result is labelled exploratory, and p is adjusted by Holm's rule over everything that was looked at.
+Numbers are correlated by ranks (Spearman), categories are compared by ranks (Kruskal and Wallis
+1952; the effect size epsilon squared = H / (n - 1), 0 to 1).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import numpy.typing as npt
+from scipy.special import chdtrc
+
+from app.science.statistics.arrays import midranks
+from app.science.statistics.errors import StatisticsError
+from app.science.statistics.holm import holm
+from app.science.statistics.spearman import spearman
+
+LABEL = "exploratory"
+
+
+@dataclass(frozen=True)
+class Explored:
+    """One demographic variable against the scores.
+
+    Attributes:
+        variable: its name.
+        kind: "number" or "category".
+        effect: Spearman's rho, or epsilon squared.
+        p, p_holm: two-sided; adjusted for all that was explored together. NaN without enough.
+        n: subjects with both; n_left_out: the others.
+        why_not: what was too little; empty if nothing was.
+        label: to be shown with every number.
+    """
+
+    variable: str
+    kind: Literal["number", "category"]
+    effect: float
+    p: float
+    p_holm: float
+    n: int
+    n_left_out: int
+    why_not: str = ""
+    label: str = LABEL
+
+
+@dataclass(frozen=True)
+class _Found:
+    kind: Literal["number", "category"]
+    effect: float
+    p: float
+    n: int
+    why_not: str = ""
+
+
+def explore(
+    scores: npt.ArrayLike,
+    numbers: Mapping[str, npt.ArrayLike] | None = None,
+    categories: Mapping[str, Sequence[str | None]] | None = None,
+) -> tuple[Explored, ...]:
+    """Look at the scores of n subjects by each variable; numbers first.
+
+    Args:
+        scores: (n,), NaN where missing.
+        numbers: (n,) each, NaN where missing.
+        categories: n words each, None or "" where missing.
+
+    Raises StatisticsError for columns of another length. What cannot be computed is in the result
+    with its reason.
+    """
+    values = np.asarray(scores, dtype=np.float64)
+    found: dict[str, _Found] = {}
+    for name, column in (numbers or {}).items():
+        found[name] = _number(values, np.asarray(column, dtype=np.float64), name)
+    for name, words in (categories or {}).items():
+        found[name] = _category(values, words, name)
+    adjusted = holm([one.p for one in found.values()])
+    return tuple(
+        Explored(name, one.kind, one.effect, one.p, p, one.n, values.size - one.n, one.why_not)
+        for (name, one), p in zip(found.items(), adjusted, strict=True)
+    )
+
+
+def _number(scores: npt.NDArray[np.float64], column: npt.NDArray[np.float64], name: str) -> _Found:
+    _check(scores, column.size, name)
+    try:
+        found = spearman(column, scores)
+    except StatisticsError as error:
+        n = int((~(np.isnan(column) | np.isnan(scores))).sum())
+        return _Found("number", np.nan, np.nan, n, str(error))
+    return _Found("number", found.rho, found.p, found.n)
+
+
+def _category(scores: npt.NDArray[np.float64], words: Sequence[str | None], name: str) -> _Found:
+    _check(scores, len(words), name)
+    kept = ~np.isnan(scores) & np.array([bool(word) for word in words], dtype=np.bool_)
+    values = scores[kept]
+    names, group = np.unique(
+        [word or "" for word, keep in zip(words, kept, strict=True) if keep], return_inverse=True
+    )
+    n = values.size
+    if n < 3 or names.size < 2 or names.size == n or np.ptp(values) <= 0.0:
+        why = f"{n} subjects in {names.size} categories tell nothing"
+        return _Found("category", np.nan, np.nan, n, why)
+    ranks = midranks(values)
+    sizes = np.bincount(group)
+    means = np.bincount(group, weights=ranks) / sizes
+    middle = 0.5 * (n + 1)
+    between = float(sizes @ np.square(means - middle))
+    h = (n - 1) * between / float(np.square(ranks - middle).sum())
+    return _Found("category", h / (n - 1), float(chdtrc(names.size - 1, h)), n)
+
+
+def _check(scores: npt.NDArray[np.float64], size: int, name: str) -> None:
+    if scores.ndim != 1 or scores.size != size:
+        raise StatisticsError(f"{name} has {size} values for scores of shape {scores.shape}.")

@@ -1,0 +1,88 @@
+"""Scores and contact times as shares.
+
+A component of embodiment has a range of its own (ownership -15 to 15, agency -12 to 12, location -9
+to 9): as a share of its maximum components can stand side by side. Contact time is told by finger,
+hand and arm: what share of the time in contact each had.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.science.statistics.arrays import FloatArray
+from app.science.statistics.errors import StatisticsError
+
+
+def share_of_maximum(scores: npt.ArrayLike, maximum: float) -> FloatArray:
+    """Return scores as shares of the largest possible score, -1 to 1; NaN stays NaN.
+
+    0 is the middle of the scale, so a share is no percentage of answers.
+
+    Raises StatisticsError for a maximum that is not positive, or a score beyond it.
+    """
+    values = np.asarray(scores, dtype=np.float64)
+    if not (np.isfinite(maximum) and maximum > 0.0):
+        raise StatisticsError(f"A maximum of {maximum}; it must be positive.")
+    if values.size and not np.all(np.isnan(values) | (np.abs(values) <= maximum)):
+        worst = float(values.flat[np.nanargmax(np.abs(values))])
+        raise StatisticsError(
+            f"A score of {worst} is beyond the maximum of {maximum}; check which score this is."
+        )
+    return values / maximum
+
+
+@dataclass(frozen=True)
+class ContactShares:
+    """How the contact time of each subject divides among groups of body parts.
+
+    Attributes:
+        groups: names, in the order given.
+        shares: (n, groups), each row adds up to 1; NaN for subjects without any contact.
+        total_s: (n,) the summed time of all parts. Parts can touch at once, so this is no duration
+            of contact: that is the union of the intervals, and is not computed here.
+        n_without_contact: subjects without any.
+    """
+
+    groups: tuple[str, ...]
+    shares: FloatArray
+    total_s: FloatArray
+    n_without_contact: int
+
+
+def contact_shares(
+    times_s: Mapping[str, npt.ArrayLike], group_of: Mapping[str, str]
+) -> ContactShares:
+    """Divide the contact times of body parts among their groups (finger, hand, arm).
+
+    Args:
+        times_s: for each part the contact time of n subjects, s; 0 where it never touched.
+        group_of: the group of each part; groups appear in the order of this table.
+
+    Raises StatisticsError for no part, a part without a group, times that are negative or missing,
+    columns of different length.
+    """
+    if not times_s:
+        raise StatisticsError("No body part was given; give the times of one at least.")
+    homeless = [part for part in times_s if part not in group_of]
+    if homeless:
+        raise StatisticsError(f"No group was given for {', '.join(homeless)}.")
+    columns = {part: np.asarray(times, dtype=np.float64) for part, times in times_s.items()}
+    if len({column.shape for column in columns.values()}) != 1:
+        raise StatisticsError("The parts have times of different numbers of subjects.")
+    for part, column in columns.items():
+        if column.ndim != 1 or not np.all(np.isfinite(column) & (column >= 0.0)):
+            raise StatisticsError(f"{part}: give one time of 0 s or more for each subject.")
+    groups = tuple(dict.fromkeys(group_of[part] for part in group_of if part in columns))
+    sums = np.stack(
+        [
+            sum((columns[part] for part in columns if group_of[part] == group), np.float64(0.0))
+            for group in groups
+        ],
+        axis=1,
+    )
+    total = sums.sum(axis=1)
+    shares = np.full_like(sums, np.nan)
+    np.divide(sums, total[:, np.newaxis], out=shares, where=total[:, np.newaxis] > 0.0)
+    return ContactShares(groups, shares, total, int((total <= 0.0).sum()))

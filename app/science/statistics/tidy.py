@@ -1,0 +1,221 @@
+"""A tidy table as cells: one value for every subject and every combination of levels.
+
+A tidy table has one row an observation: who (subject), under what (a level of each within-subject
+factor), how much (the measure). Each row belongs to one cell.
+
+The rules for what is missing or doubled, none of it in silence:
+
+    several rows in one cell    are averaged, and counted (`n_averaged`)
+    rows without a value        do not count in that mean, and are counted (`n_empty`)
+    a cell without a value      is NaN
+    Friedman, Page, ANOVA, ART  take subjects with every cell only (listwise): `complete` names
+                                those it leaves out
+    signed-rank tests           take each pair of levels of a subject that is there (pairwise), and
+                                count what is left out of each
+
+Nothing is imputed.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.science.statistics.arrays import FloatArray, IntArray
+from app.science.statistics.errors import StatisticsError, TooFewData, UnusableTable
+from app.science.statistics.levels import as_number, level_places, ordered_levels
+
+MISSING = frozenset({"", "na", "n/a", "nan", "null", "none", "."})
+"""What stands for a missing value, in any case of letters."""
+_AVERAGE_DIGITS = 14
+
+
+@dataclass(frozen=True, eq=False)
+class Complete:
+    """Subjects with every cell.
+
+    Attributes:
+        values: (n, a) or (n, a, b), no NaN.
+        subjects: n names, in the order of rows.
+        left_out: names of those with a missing cell.
+    """
+
+    values: FloatArray
+    subjects: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """A table by cells, in the unit of the measure.
+
+    Attributes:
+        subjects: n names, as they first appear.
+        factors: one name an axis after the first.
+        levels: of each factor, in order (see `levels.py`).
+        values: (n, a) or (n, a, b) mean of each cell; NaN where nothing was measured.
+        rows: same shape, how many values each mean is of.
+        n_empty: rows without a value.
+    """
+
+    subjects: tuple[str, ...]
+    factors: tuple[str, ...]
+    levels: tuple[tuple[str, ...], ...]
+    values: FloatArray
+    rows: IntArray
+    n_empty: int
+
+    @property
+    def n_averaged(self) -> int:
+        """Cells that are the mean of several rows."""
+        return int((self.rows > 1).sum())
+
+    @property
+    def n_missing(self) -> int:
+        """Cells without a value."""
+        return int((self.rows == 0).sum())
+
+    def complete(self) -> Complete:
+        """Leave out, listwise, every subject with a missing cell; there may be none left."""
+        kept = (self.rows > 0).reshape(len(self.subjects), -1).all(axis=1)
+        names = np.array(self.subjects, dtype=object)
+        return Complete(self.values[kept], tuple(names[kept]), tuple(names[~kept]))
+
+    def of_factor(self, axis: int) -> FloatArray:
+        """(n, levels) of the factor on `axis` (from 1), averaged over the other factors.
+
+        A subject's mean is NaN where one of its cells is missing.
+        """
+        others = tuple(one for one in range(1, self.values.ndim) if one != axis)
+        return _even(self.values.mean(axis=others)) if others else self.values
+
+
+def cells_of(
+    subjects: Sequence[str],
+    within: Mapping[str, Sequence[str]],
+    measure: Sequence[str | float],
+    *,
+    measure_name: str = "measure",
+    subject_name: str = "subject",
+    lines: Sequence[int] | None = None,
+) -> Cells:
+    """Sort the rows of a tidy table into cells.
+
+    Args:
+        subjects: one name a row.
+        within: each within-subject factor's name, with one level a row.
+        measure: one value a row, as number or text; NaN or one of MISSING where missing.
+        measure_name, subject_name: for messages.
+        lines: where each row stands in its file, for messages; else rows count from 1.
+
+    Raises:
+        UnusableTable: a subject or level is empty, a value is no finite number; names line, column
+            and value.
+        TooFewData: no row, fewer than two subjects, or a factor with one level.
+        StatisticsError: columns of different length, no factor.
+    """
+    _check_lengths(subjects, within, measure)
+    where = list(lines) if lines is not None else list(range(1, len(subjects) + 1))
+    names = [_named(text, subject_name, line) for text, line in zip(subjects, where, strict=True)]
+    told = {
+        factor: [_named(text, factor, line) for text, line in zip(column, where, strict=True)]
+        for factor, column in within.items()
+    }
+    values = [
+        _number(value, measure_name, line) for value, line in zip(measure, where, strict=True)
+    ]
+    levels = tuple(ordered_levels(column) for column in told.values())
+    who = tuple(dict.fromkeys(names))
+    _check_numbers(who, tuple(within), levels)
+    sums, rows = _sorted_in(who, names, levels, list(told.values()), values)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        means = _even(sums / rows)
+    empty = sum(math.isnan(value) for value in values)
+    return Cells(who, tuple(within), levels, means, rows, empty)
+
+
+def _sorted_in(
+    who: tuple[str, ...],
+    names: list[str],
+    levels: tuple[tuple[str, ...], ...],
+    told: list[list[str]],
+    values: list[float],
+) -> tuple[FloatArray, IntArray]:
+    """The sum and the number of the values in each cell."""
+    shape = (len(who), *(len(one) for one in levels))
+    subject_place = {name: place for place, name in enumerate(who)}
+    index = [np.array([subject_place[name] for name in names])]
+    for factor_levels, column in zip(levels, told, strict=True):
+        places = level_places(factor_levels)
+        index.append(np.array([places.get(one, places.get(as_number(one), -1)) for one in column]))
+    flat = np.ravel_multi_index(tuple(index), shape)
+    numbers = np.array(values)
+    there = ~np.isnan(numbers)
+    size = math.prod(shape)
+    sums = np.bincount(flat[there], weights=numbers[there], minlength=size).astype(np.float64)
+    rows = np.bincount(flat[there], minlength=size).astype(np.int64)
+    return sums.reshape(shape), rows.reshape(shape)
+
+
+def _even(means: FloatArray) -> FloatArray:
+    """Means to 14 digits: 0.1 + 0.2 + 0.3 and 3 x 0.2 must tie."""
+    size = np.abs(means)
+    digits = np.floor(np.log10(np.where(size > 0.0, size, 1.0)))
+    unit = 10.0 ** (_AVERAGE_DIGITS - 1 - digits)
+    even: FloatArray = np.where(np.isfinite(unit), np.round(means * unit) / unit, means)
+    return even
+
+
+def _check_lengths(
+    subjects: Sequence[str], within: Mapping[str, Sequence[str]], measure: Sequence[object]
+) -> None:
+    if not within:
+        raise StatisticsError("No within-subject factor was named; name one at least.")
+    lengths = {len(subjects), len(measure), *(len(column) for column in within.values())}
+    if len(lengths) != 1:
+        raise StatisticsError(f"The columns have {sorted(lengths)} rows; give all the same number.")
+    if not subjects:
+        raise TooFewData("The table has no row; give one row for each observation.")
+
+
+def _check_numbers(
+    who: tuple[str, ...], factors: tuple[str, ...], levels: tuple[tuple[str, ...], ...]
+) -> None:
+    if len(who) < 2:
+        raise TooFewData(
+            f"There is one subject only, {who[0]!r}; two at least are needed to test anything."
+        )
+    for factor, found in zip(factors, levels, strict=True):
+        if len(found) < 2:
+            raise TooFewData(
+                f"Column {factor!r} has one level only, {found[0]!r}; two at least are needed to"
+                " compare."
+            )
+
+
+def _named(text: str, column: str, line: int) -> str:
+    name = text.strip()
+    if name.casefold() in MISSING - {"none"}:
+        raise UnusableTable(
+            f"Line {line}, column {column!r}: {text!r} names nothing. Give every row one."
+        )
+    return name
+
+
+def _number(value: str | float, column: str, line: int) -> float:
+    if isinstance(value, str):
+        text = value.strip()
+        if text.casefold() in MISSING:
+            return math.nan
+        number = as_number(text)
+        if number is None:
+            raise UnusableTable(
+                f"Line {line}, column {column!r}: {value!r} is no finite number. Write numbers with"
+                " a point, and leave the cell empty (or NA) where a value is missing."
+            )
+        return number
+    number = float(value)
+    if math.isinf(number):
+        raise UnusableTable(f"Line {line}, column {column!r}: {value!r} is infinite.")
+    return number

@@ -1,0 +1,213 @@
+"""The records of walking: what was tracked, one walk from rest to rest, the path planned for it.
+
+A `Track` is a person's place on the floor over time. Cut where the person stands still, and
+smoothed, it gives `Walk`s. The planner lays a `PlannedPath` between a walk's start and goal; with
+the numbers that a walk is said to depend on (length, turning, stature, or any other) that is a
+`PlannedWalk`, an entry of the database. Dependencies come from the planned path and not from the
+walked one, since a path still to be walked has nothing else.
+
+The floor is seen from above: x to the right, y ahead, which is (x, -z) of the world's y-up frame.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+
+Kind = Literal["human", "synthetic"]
+"""Whether a person walked or a program; it stays with everything derived from a walk."""
+LENGTH, TURNING, STATURE = "length_m", "turning_per_m", "stature_m"
+"""Names of the paper's three dependencies: metres, radians a metre, metres."""
+
+
+class WalkingError(ValueError):
+    """A walk, a scene or a model cannot be; the message says what is wrong and what to do."""
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """One person's place on the floor over time.
+
+    Attributes:
+        times_s: (N,) increasing.
+        xy_m: (N, 2) finite.
+        subject: who walked; walks of one subject are never split between training and test.
+        source: where it comes from, such as a file's name.
+        kind: human or synthetic.
+        stature_m: the person's height, None where unknown.
+
+    Raises:
+        WalkingError: fewer than two points, positions that are not finite, times that do not grow.
+    """
+
+    times_s: FloatArray
+    xy_m: FloatArray
+    subject: str
+    source: str
+    kind: Kind = "human"
+    stature_m: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is no track."""
+        _check_course(self.times_s, self.xy_m, f"The track of {self.subject!r} ({self.source})")
+        check_stature(self.stature_m)
+
+    @property
+    def rate_hz(self) -> float:
+        """Samples a second by the median step."""
+        return float(1.0 / np.median(np.diff(self.times_s)))
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """One walk from a start to a goal, smoothed.
+
+    Attributes:
+        times_s: (N,) from 0, increasing.
+        xy_m: (N, 2) the centre of mass on the floor.
+        subject, source, kind, stature_m: as of its track.
+        begins_still, ends_still: whether the person stood before and after. Where a recording
+            begins or ends amid the walk, its agent begins at speed or does not brake.
+        note: what its reader should know, such as the name of the scene's path.
+    """
+
+    times_s: FloatArray
+    xy_m: FloatArray
+    subject: str
+    source: str
+    kind: Kind = "human"
+    stature_m: float | None = None
+    begins_still: bool = True
+    ends_still: bool = True
+    note: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse what is no walk."""
+        _check_course(self.times_s, self.xy_m, f"The walk of {self.subject!r} ({self.source})")
+        check_stature(self.stature_m)
+        if self.times_s[0] != 0.0:
+            raise WalkingError(f"A walk's time begins at 0, not at {self.times_s[0]:g} s.")
+
+    @property
+    def duration_s(self) -> float:
+        """The travel time."""
+        return float(self.times_s[-1])
+
+    @cached_property
+    def arc_m(self) -> FloatArray:
+        """(N,) distance walked up to each sample."""
+        return arc_of(self.xy_m)
+
+    @property
+    def length_m(self) -> float:
+        """Distance walked; longer than the planned path, since people sway."""
+        return float(self.arc_m[-1])
+
+    @cached_property
+    def speeds_m_s(self) -> FloatArray:
+        """(N,) speed at each sample by central differences."""
+        velocity = np.gradient(self.xy_m, self.times_s, axis=0)
+        return np.asarray(np.linalg.norm(velocity, axis=1), dtype=np.float64)
+
+    @property
+    def start_m(self) -> tuple[float, float]:
+        """Where the walk begins."""
+        return float(self.xy_m[0, 0]), float(self.xy_m[0, 1])
+
+    @property
+    def goal_m(self) -> tuple[float, float]:
+        """Where the walk ends."""
+        return float(self.xy_m[-1, 0]), float(self.xy_m[-1, 1])
+
+    def at(self, times_s: FloatArray) -> FloatArray:
+        """Places (T, 2) at any times; before the start and after the end the person stands."""
+        columns = [np.interp(times_s, self.times_s, self.xy_m[:, axis]) for axis in (0, 1)]
+        return np.stack(columns, axis=-1)
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedPath:
+    """A polyline from start to goal, free of obstacles.
+
+    Attributes:
+        points_m: (P, 2), P >= 2, no two neighbours equal.
+    """
+
+    points_m: FloatArray
+
+    def __post_init__(self) -> None:
+        """Raises WalkingError for fewer than two points, repeated points, or not finite ones."""
+        points = self.points_m
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
+            raise WalkingError(f"A path needs two points or more, (P, 2), got {points.shape}.")
+        if not np.isfinite(points).all():
+            raise WalkingError("A path's points must be finite.")
+        if not (np.linalg.norm(np.diff(points, axis=0), axis=1) > 0.0).all():
+            raise WalkingError("A path's neighbouring points must differ.")
+
+    @cached_property
+    def arc_m(self) -> FloatArray:
+        """(P,) distance along the path of each point."""
+        return arc_of(self.points_m)
+
+    @property
+    def length_m(self) -> float:
+        """Length of the whole path."""
+        return float(self.arc_m[-1])
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedWalk:
+    """A walk, the path planned for it, and what it depends on: an entry of the database.
+
+    Attributes:
+        walk: the reference.
+        path: from the walk's start to its goal.
+        dependencies: name to number; `LENGTH`, `TURNING`, `STATURE` and whatever else was given.
+    """
+
+    walk: Walk
+    path: PlannedPath
+    dependencies: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Raises WalkingError naming a dependency that is not finite."""
+        for name, value in self.dependencies.items():
+            if not np.isfinite(value):
+                raise WalkingError(f"Dependency {name} is {value}; give a finite number.")
+
+
+def arc_of(points_m: FloatArray) -> FloatArray:
+    """(N,) distance along a line (N, 2) up to each of its points."""
+    steps = np.linalg.norm(np.diff(points_m, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def check_stature(stature_m: float | None) -> None:
+    """Raise WalkingError for a height that no walking person has."""
+    if stature_m is not None and not 0.5 <= stature_m <= 2.6:
+        raise WalkingError(f"Stature {stature_m} is not between 0.5 and 2.6 m: give metres.")
+
+
+def _check_course(times_s: FloatArray, xy_m: FloatArray, what: str) -> None:
+    if times_s.ndim != 1 or xy_m.shape != (len(times_s), 2):
+        raise WalkingError(
+            f"{what} has times {times_s.shape} and places {xy_m.shape}: (N,), (N, 2)."
+        )
+    if len(times_s) < 2:
+        raise WalkingError(f"{what} has {len(times_s)} point(s); a walk needs at least two.")
+    bad = ~(np.isfinite(times_s) & np.isfinite(xy_m).all(axis=1))
+    if bad.any():
+        first = int(np.argmax(bad))
+        raise WalkingError(
+            f"{what} has {int(bad.sum())} sample(s) that are not finite, the first at index"
+            f" {first}: fill short gaps (`tracks.bridged`) or cut the recording there."
+        )
+    steps = np.diff(times_s)
+    if not (steps > 0.0).all():
+        at = int(np.argmin(steps > 0.0))
+        raise WalkingError(f"{what} has times that do not grow, at index {at + 1}.")

@@ -1,0 +1,50 @@
+"""Real movements at the rate of a headset, as a participant's body has them."""
+
+from functools import cache
+from pathlib import Path
+
+from app.rehearsal.captured import captured_movement, skeleton_motion
+from app.science.retargeting.joint_map import propose_joint_map
+from app.science.retargeting.pipeline import retarget_motion
+from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, reference_avatar
+from app.science.skeleton import Movement, build_skeleton, resample
+from app.science.skeleton.movement import continuous
+
+RATE_HZ = 90.0
+STATURE_M = 1.75
+WALK = "cmu_bvh/02_01.bvh"
+REACH = "vicon_tracker/ObjectInspection_0.csv"
+TURN = "cmu_bvh/05_06.bvh"
+LONG = "cmu_asfamc/02_06.amc"
+WALKS = (WALK, "cmu_bvh/06_01.bvh", "cmu_bvh/12_02.bvh")
+
+
+def movement_of(path: Path, *, travels: bool) -> Movement:
+    """A capture on the product's body at 90 Hz.
+
+    It moves in place and faces -z, as a participant who stays at the tables, or it keeps its own
+    travel and turning.
+    """
+    if not travels:
+        return resample(captured_movement(path, build_skeleton(STATURE_M)), RATE_HZ)
+    source = skeleton_motion(path)
+    joint_map = propose_joint_map(source.rig).joint_map
+    avatar = reference_avatar(STATURE_M)
+    moved = retarget_motion(source, joint_map, avatar, REFERENCE_JOINT_MAP).motion
+    rotations = continuous(moved.rotations)
+    return resample(Movement(source.rate_hz, moved.root_positions_m, rotations), RATE_HZ)
+
+
+def captured(shared_data: Path, name: str) -> Movement:
+    """A capture of the shared data at 90 Hz, in place; read once."""
+    return _read(shared_data / "motion" / name, travels=False)
+
+
+def travelling(shared_data: Path, name: str) -> Movement:
+    """The same with its own travel and turning."""
+    return _read(shared_data / "motion" / name, travels=True)
+
+
+@cache
+def _read(path: Path, *, travels: bool) -> Movement:
+    return movement_of(path, travels=travels)

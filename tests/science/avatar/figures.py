@@ -1,0 +1,51 @@
+"""Bodies of humanoid models for tests."""
+
+from dataclasses import replace
+from functools import cache
+
+from app.adapters.humanoids import read_humanoid
+from app.science.avatar.colliders import ColliderKind
+from app.science.avatar.configuration import Hips
+from app.science.avatar.defaults import default_configuration
+from app.science.avatar.figure import Figure, figure_of
+from app.science.avatar.model import AvatarModel, avatar_model
+from app.science.avatar.scene import Scene
+from tests.support.humanoid_files import humanoid_file
+from tests.support.humanoid_model import Model, without
+
+STATURE_M = 1.75
+HASH = "0" * 64
+"""What a configuration calls the model."""
+EMPTY = Scene(floor=False)
+
+
+@cache
+def figure(*lacking: str) -> Figure:
+    """Of the made-up model, without parts that have one of these words in their name."""
+    return figure_of(read_humanoid(humanoid_file(Model(parts=without(*lacking)))).humanoid)
+
+
+def model(
+    colliders: ColliderKind = "simple",
+    *,
+    own: Figure | None = None,
+    scene: Scene = EMPTY,
+    hips: Hips = "carried",
+    both: bool = False,
+    **parts: ColliderKind,
+) -> AvatarModel:
+    """Its avatar, whole unless told otherwise; `parts` have colliders of their own."""
+    configuration = replace(
+        default_configuration(),
+        humanoid=HASH,
+        colliders=colliders,
+        part_colliders=parts,
+        hips=hips,
+    )
+    return avatar_model(
+        configuration,
+        STATURE_M,
+        figure=own or figure(),
+        scene=scene,
+        switchable_colliders=both,
+    )

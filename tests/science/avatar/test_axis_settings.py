@@ -1,0 +1,84 @@
+"""Settings of one axis: what is refused and why, locking, and angles that files keep."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+
+from app.science.avatar.axis_settings import (
+    AvatarSettingsError,
+    AxisSettings,
+    degrees_of,
+    settled_angle,
+)
+from tests.science.avatar.configurations import FINE_SPRING, angles_rad, axis_settings
+
+
+@pytest.mark.parametrize(
+    ("change", "path", "said"),
+    [
+        ({"kp": math.nan}, "kp_nm_per_rad", "not finite"),
+        ({"kp": -1.0}, "kp_nm_per_rad", "-1 is out of range"),
+        ({"kd": math.inf}, "kd_nm_s_per_rad", "not finite"),
+        ({"kd": -0.5}, "kd_nm_s_per_rad", "-0.5 is out of range"),
+        ({"max_torque_nm": -2.0}, "max_torque_nm", "-2 is out of range"),
+        ({"low_rad": -4.0}, "low_deg", "-229.183 deg is out of range"),
+        ({"high_rad": math.nan}, "high_deg", "not finite"),
+        ({"low_rad": 3.0}, "low_deg", "171.887 deg, lies above the upper one, 125 deg"),
+    ],
+)
+def test_a_value_that_cannot_be_is_refused_by_name(
+    change: dict[str, float], path: str, said: str
+) -> None:
+    """With its key in a file, the value in the file's unit, and what is valid."""
+    with pytest.raises(AvatarSettingsError) as caught:
+        replace(FINE_SPRING, **change)
+    (problem,) = caught.value.problems
+    assert problem.path == path
+    assert said in problem.message
+    assert problem.valid
+    assert problem.remedy
+
+
+def test_all_that_is_wrong_is_told_at_once() -> None:
+    """Not only the first value."""
+    with pytest.raises(AvatarSettingsError) as caught:
+        AxisSettings(-1.0, -1.0, -1.0, -9.0, 9.0)
+    assert len(caught.value.problems) == 5
+
+
+def test_limits_that_are_one_angle_lock_the_axis() -> None:
+    """Also away from the T-pose; then the body starts there."""
+    locked = FINE_SPRING.held_at(math.radians(30.0))
+    assert locked.locked
+    assert not FINE_SPRING.locked
+    assert locked.range_rad == 0.0
+    assert degrees_of(locked.rest_rad) == 30.0
+    assert FINE_SPRING.rest_rad == 0.0
+    assert FINE_SPRING.held_at(9.0).low_rad == FINE_SPRING.high_rad
+
+
+@given(angles_rad)
+def test_degrees_give_the_angle_back_to_the_bit(angle_rad: float) -> None:
+    """A settled angle is what its file says, and within 1e-11 rad of the angle that was given."""
+    settled = settled_angle(angle_rad)
+    assert math.radians(degrees_of(settled)) == settled
+    assert settled_angle(settled) == settled
+    assert abs(settled - angle_rad) < 1e-11
+
+
+@given(axis_settings(), angles_rad)
+def test_clamping_keeps_what_is_allowed(settings: AxisSettings, angle_rad: float) -> None:
+    """An allowed angle stays; any other becomes the nearer limit."""
+    clamped = settings.clamped(angle_rad)
+    assert settings.low_rad <= clamped <= settings.high_rad
+    allowed = settings.low_rad <= angle_rad <= settings.high_rad
+    assert (clamped == angle_rad) if allowed else (clamped in (settings.low_rad, settings.high_rad))
+
+
+def test_zero_has_no_sign() -> None:
+    """So equal settings have one spelling in a file."""
+    settings = AxisSettings(-0.0, 0.0, 0.0, -0.0, 0.0)
+    assert math.copysign(1.0, settings.kp) == 1.0
+    assert math.copysign(1.0, settings.low_rad) == 1.0

@@ -1,0 +1,93 @@
+"""A recording is followed as its frames are, one by one."""
+
+import numpy as np
+import pytest
+
+from app.science.avatar.limits import ANATOMIC
+from app.science.avatar.parts import AXES, AXIS_NAMES, PART_NAMES
+from app.science.avatar.targets import TargetAngles, Targets
+from app.science.rotations import FloatArray, from_rotation_vector, multiply, normalise
+from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX
+
+FRAMES = 1300
+"""More than two blocks of what is followed in a row."""
+
+
+def wild_movement(frames: int = FRAMES, seed: int = 1) -> FloatArray:
+    """Every joint turns at random, all the way round and through every lock."""
+    rng = np.random.default_rng(seed)
+    turns = from_rotation_vector(rng.normal(scale=0.15, size=(frames, JOINT_COUNT, 3)))
+    poses = np.empty((frames, JOINT_COUNT, 4))
+    poses[0] = normalise(rng.normal(size=(JOINT_COUNT, 4)))
+    for frame in range(1, frames):
+        poses[frame] = normalise(multiply(poses[frame - 1], turns[frame]))
+    return poses
+
+
+def _one_by_one(poses: FloatArray, fingers: dict[str, FloatArray], anew: set[int]) -> Targets:
+    follower = TargetAngles(ANATOMIC)
+    found = []
+    for frame, pose in enumerate(poses):
+        if frame in anew:
+            follower.forget()
+        found.append(follower.follow(pose, {name: q[frame] for name, q in fingers.items()}))
+    return Targets(
+        np.stack([one.angles_rad for one in found]),
+        np.stack([one.wanted_rad for one in found]),
+        np.stack([one.residual_rad for one in found]),
+    )
+
+
+@pytest.mark.parametrize("anew", [set(), {0, 1, 511, 512, 700, 1024}])
+def test_a_recording_is_the_same_to_the_bit(anew: set[int]) -> None:
+    """With fingers, through blocks, and with new beginnings within and at the edges of them."""
+    poses = wild_movement()
+    fingers = {"LeftIndexProximal": wild_movement(seed=2)[:, 3]}
+    begins = np.isin(np.arange(FRAMES), list(anew))
+    together = TargetAngles(ANATOMIC).batch(poses, fingers, anew=begins)
+    alone = _one_by_one(poses, fingers, anew)
+    np.testing.assert_array_equal(together.wanted_rad, alone.wanted_rad)
+    np.testing.assert_array_equal(together.angles_rad, alone.angles_rad)
+    np.testing.assert_array_equal(together.residual_rad, alone.residual_rad)
+
+
+def test_beginning_anew_gives_what_a_new_follower_gives() -> None:
+    """Nothing of the frames before is left, and without it something would be."""
+    poses = wild_movement()
+    begins = np.arange(FRAMES) == 700
+    joined = TargetAngles(ANATOMIC).batch(poses, anew=begins).wanted_rad
+    np.testing.assert_array_equal(
+        joined[700:], TargetAngles(ANATOMIC).batch(poses[700:]).wanted_rad
+    )
+    followed = TargetAngles(ANATOMIC).batch(poses).wanted_rad
+    assert not np.array_equal(joined[700:], followed[700:])
+
+
+def test_a_rotation_that_is_not_finite_costs_its_frame_only() -> None:
+    """What follows from it is unknown there, and followed from the frame before in the next."""
+    poses = wild_movement(40)
+    broken = poses.copy()
+    broken[20, JOINT_INDEX["LeftLowerArm"]] = np.nan
+    found = TargetAngles(ANATOMIC).batch(broken)
+    # The bone above an elbow is turned until the hinge fits.
+    lost = np.array([axis.part in {"LeftUpperArm", "LeftLowerArm"} for axis in AXES])
+    np.testing.assert_array_equal(np.isnan(found.wanted_rad[20]), lost)
+    np.testing.assert_array_equal(np.isnan(found.angles_rad[20]), lost)
+    assert not found.clipped[20, lost].any()
+    unknown = {PART_NAMES[part] for part in np.flatnonzero(np.isnan(found.residual_rad[20]))}
+    assert unknown == {"LeftUpperArm", "LeftLowerArm"}
+    as_ever = TargetAngles(ANATOMIC).batch(poses)
+    np.testing.assert_array_equal(found.wanted_rad[:, ~lost], as_ever.wanted_rad[:, ~lost])
+    without = TargetAngles(ANATOMIC).batch(np.delete(poses, 20, axis=0))
+    arm = [column for column, axis in enumerate(AXES) if axis.part == "LeftUpperArm"]
+    np.testing.assert_array_equal(
+        np.delete(found.wanted_rad, 20, axis=0)[:, arm], without.wanted_rad[:, arm]
+    )
+
+
+def test_what_rounding_takes_is_not_clipped() -> None:
+    """An elbow held straight, at its limit, to the digits that a pose travels with."""
+    straight = np.zeros((1, len(AXIS_NAMES)))
+    noise = np.full_like(straight, -1e-7)
+    assert not Targets(straight, noise, straight).clipped.any()
+    assert Targets(straight, 100.0 * noise, straight).clipped.all()

@@ -1,0 +1,225 @@
+"""The body of an avatar: where its joints lie, what it may lack, which lengths it takes."""
+
+import numpy as np
+import pytest
+
+from app.science.avatar.body import REQUIRED_PARTS, Body, BodyError, build_body
+from app.science.avatar.parts import FINGER_PARTS, PARENT_OF, PART_NAMES, mirrored_name
+from app.science.avatar.proportions import SEGMENT_NAMES, segment_lengths
+from app.science.avatar.shapes import Box, Capsule
+from app.science.rotations.scalars import v_add, v_length, v_subtract
+from app.science.skeleton import JOINT_NAMES, build_skeleton
+
+
+def _without(*absent: str) -> list[str]:
+    return [part for part in PART_NAMES if part not in absent]
+
+
+@pytest.mark.parametrize("stature_m", [0.5, 1.518, 1.75, 2.6])
+def test_the_body_joints_are_those_of_the_skeleton(stature_m: float) -> None:
+    """All 22 joints of the product's skeleton lie at the same offsets, to the bit."""
+    body, skeleton = build_body(stature_m), build_skeleton(stature_m)
+    offsets = np.array([body.parts[name].joint_m for name in JOINT_NAMES])
+    assert np.array_equal(offsets, skeleton.offsets_m)
+    for index, name in enumerate(JOINT_NAMES):
+        if not name.endswith("Hand"):
+            assert body.parts[name].end_m == tuple(skeleton.ends_m[index])
+
+
+def test_the_middle_finger_ends_near_the_tip_of_the_hand() -> None:
+    """Buchholz 1992: palm .446, segments .266, .170 and .108 make .990 of the hand's length."""
+    body = build_body(1.75)
+    tip = v_add(body.places_m()["LeftMiddleDistal"], body.parts["LeftMiddleDistal"].end_m)
+    reach = v_length(v_subtract(tip, body.places_m()["LeftHand"]))
+    assert reach == pytest.approx(0.990 * 0.108 * 1.75)
+
+
+def test_fingers_lie_in_their_order_with_the_thumb_in_front() -> None:
+    """In the T-pose the thumb is foremost (-z) and the little finger hindmost, palms down."""
+    places = build_body(1.75).places_m()
+    for side in ("Left", "Right"):
+        tips = [places[f"{side}{f}Distal"][2] for f in ("Thumb", "Index", "Middle", "Ring")]
+        assert tips == sorted(tips)
+        assert places[f"{side}RingDistal"][2] < places[f"{side}LittleDistal"][2]
+
+
+def test_both_sides_are_mirror_images() -> None:
+    """Joints, bone ends and shapes of the left are those of the right, mirrored at x = 0."""
+    body = build_body(1.8)
+    for name, part in body.parts.items():
+        other = body.parts[mirrored_name(name)]
+        assert _mirrored(part.joint_m) == other.joint_m
+        assert _mirrored(part.end_m) == other.end_m
+        for shape, twin in zip(part.shapes, other.shapes, strict=True):
+            if isinstance(shape, Box):
+                assert isinstance(twin, Box)
+                assert _mirrored(shape.center_m) == twin.center_m
+                assert shape.half_size_m == twin.half_size_m
+            else:
+                assert isinstance(twin, Capsule)
+                assert shape.radius_m == twin.radius_m
+                ends = {_mirrored(shape.start_m), _mirrored(shape.end_m)}
+                assert ends == {twin.start_m, twin.end_m}
+
+
+def _mirrored(v: tuple[float, float, float]) -> tuple[float, float, float]:
+    return (-v[0], v[1], v[2])
+
+
+@pytest.mark.parametrize("stature_m", [1.5, 1.75, 2.0])
+def test_its_shapes_reach_from_the_floor_to_the_stature(stature_m: float) -> None:
+    """In the T-pose soles lie on the floor and the head ends at the body height."""
+    body = build_body(stature_m)
+    places = body.places_m()
+    low, high = [], []
+    for name, part in body.parts.items():
+        for shape in part.shapes:
+            if isinstance(shape, Box):
+                middle, half = shape.center_m[1], shape.half_size_m[1]
+                low.append(places[name][1] + middle - half)
+                high.append(places[name][1] + middle + half)
+            else:
+                ends = (shape.start_m[1], shape.end_m[1])
+                low.append(places[name][1] + min(ends) - shape.radius_m)
+                high.append(places[name][1] + max(ends) + shape.radius_m)
+    assert min(low) == pytest.approx(0.0, abs=1e-12)
+    assert max(high) == pytest.approx(stature_m)
+
+
+@pytest.mark.parametrize("name", SEGMENT_NAMES)
+def test_a_measured_length_replaces_the_expected_one(name: str) -> None:
+    """Each segment becomes as long as it was measured, and the feet stay on the floor."""
+    measured = 1.1 * segment_lengths(1.75)[name]
+    body = build_body(1.75, segments_m={name: measured})
+    places = body.places_m()
+    assert _lengths(body)[name] == pytest.approx(measured)
+    for other in set(SEGMENT_NAMES) - {name}:
+        assert _lengths(body)[other] == pytest.approx(segment_lengths(1.75)[other])
+    assert places["LeftFoot"][1] == pytest.approx(0.039 * 1.75)
+
+
+def _lengths(body: Body) -> dict[str, float]:
+    """Measure a built body with a ruler."""
+    at, end = body.places_m(), {name: part.end_m for name, part in body.parts.items()}
+
+    def between(a: str, b: str) -> float:
+        return v_length(v_subtract(at[a], at[b]))
+
+    toe_tip = at["LeftToes"][2] + end["LeftToes"][2]
+    finger_tip = at["LeftMiddleDistal"][0] + end["LeftMiddleDistal"][0]
+    (foot,) = body.parts["LeftFoot"].shapes
+    assert isinstance(foot, Box)
+    heel = at["LeftFoot"][2] + foot.center_m[2] + foot.half_size_m[2]
+    return {
+        "upper_arm": between("LeftUpperArm", "LeftLowerArm"),
+        "forearm": between("LeftLowerArm", "LeftHand"),
+        "hand": abs(finger_tip - at["LeftHand"][0]) / 0.990,
+        "thigh": between("LeftUpperLeg", "LeftLowerLeg"),
+        "shank": between("LeftLowerLeg", "LeftFoot"),
+        "foot": heel - toe_tip,
+        "trunk": at["Neck"][1] - at["Hips"][1],
+        "head": at["Head"][1] + end["Head"][1] - at["Neck"][1],
+        "shoulders": between("LeftUpperArm", "RightUpperArm"),
+        "hips": between("LeftUpperLeg", "RightUpperLeg"),
+    }
+
+
+@pytest.mark.parametrize(
+    ("segments", "words"),
+    [
+        ({"thigh": 43.0}, ["thigh", "43.0", "0.300", "0.557", "metres"]),
+        ({"hand": float("nan")}, ["hand", "nan"]),
+        ({"tail": 0.3}, ["tail", "upper_arm", "shoulders"]),
+    ],
+)
+def test_an_implausible_length_is_refused(segments: dict[str, float], words: list[str]) -> None:
+    """The error names the segment, the value and what would be valid."""
+    with pytest.raises(BodyError) as caught:
+        build_body(1.75, segments_m=segments)
+    assert all(word in str(caught.value) for word in words)
+
+
+@pytest.mark.parametrize("stature_m", [0.4, 175.0, float("nan")])
+def test_an_impossible_stature_is_refused(stature_m: float) -> None:
+    """A stature in centimetres, of nobody, or of no number is an error."""
+    with pytest.raises(BodyError, match="stature"):
+        build_body(stature_m)
+
+
+@pytest.mark.parametrize("missing", REQUIRED_PARTS)
+def test_a_model_without_a_required_part_is_no_humanoid(missing: str) -> None:
+    """The error names the part that is missing."""
+    with pytest.raises(BodyError, match=f"no {missing}, so it is no humanoid"):
+        build_body(1.75, parts=_without(missing))
+
+
+def test_a_model_that_is_nothing_like_a_human_is_refused() -> None:
+    """A quadruped's bones give one error that names all required parts."""
+    with pytest.raises(BodyError) as caught:
+        build_body(1.75, parts=["Spine", "FrontLeftPaw", "Tail"])
+    assert "Hips, Head" in str(caught.value)
+
+
+def test_children_of_a_missing_part_hang_on_the_next_one_above() -> None:
+    """Without Chest, UpperChest, Neck and shoulders, joints stay where they were."""
+    absent = ("Chest", "UpperChest", "Neck", "LeftShoulder", "RightShoulder", "LeftToes")
+    whole, body = build_body(1.75), build_body(1.75, parts=_without(*absent))
+    assert body.parts["Head"].parent == "Spine"
+    assert body.parts["LeftUpperArm"].parent == "Spine"
+    for name, place in body.places_m().items():
+        assert place == pytest.approx(whole.places_m()[name], abs=1e-12)
+        above = body.parts[name].parent
+        if above is not None:
+            seen = v_add(body.places_m()[above], body.parts[name].joint_m)
+            assert seen == pytest.approx(place, abs=1e-12)
+
+
+def test_the_shapes_of_a_missing_part_stay_where_they_were() -> None:
+    """The trunk is as thick without Chest and UpperChest as with them: the spine carries it."""
+    body = build_body(1.75, parts=_without("Chest", "UpperChest"))
+    shapes = body.parts["Spine"].shapes
+    assert len(shapes) == 3
+    places = build_body(1.75).places_m()
+    heights = [s.start_m[1] for s in shapes if isinstance(s, Capsule)]
+    chest = build_body(1.75).parts["Chest"].shapes[0]
+    assert isinstance(chest, Capsule)
+    assert heights[1] == pytest.approx(places["Chest"][1] - places["Spine"][1] + chest.start_m[1])
+
+
+def test_a_hand_of_four_fingers_has_no_fifth() -> None:
+    """A model without ring fingers has neither their parts nor their shapes."""
+    ring = [part for part in FINGER_PARTS if "Ring" in part]
+    body = build_body(1.75, parts=_without(*ring))
+    assert len(body.parts) == 46
+    assert len(body.parts["LeftHand"].shapes) == 1
+
+
+def test_a_finger_of_two_segments_keeps_its_length() -> None:
+    """The shape of a missing last segment goes to the one before."""
+    body = build_body(1.75, parts=_without("LeftIndexDistal"))
+    assert len(body.parts["LeftIndexIntermediate"].shapes) == 2
+
+
+def test_a_hand_without_fingers_is_one_box_as_long_as_the_hand() -> None:
+    """Palm and fingers together, from the wrist to the tip."""
+    body = build_body(1.75, parts=_without(*FINGER_PARTS))
+    (box,) = body.parts["RightHand"].shapes
+    assert isinstance(box, Box)
+    assert 2.0 * box.half_size_m[0] == pytest.approx(0.108 * 1.75)
+    assert body.parts["RightHand"].end_m == pytest.approx((0.108 * 1.75, 0.0, 0.0))
+
+
+def test_names_of_other_bones_are_skipped() -> None:
+    """Eyes and jaw of a rig are no parts of the body."""
+    body = build_body(1.75, parts=[*PART_NAMES, "LeftEye", "Jaw"])
+    assert tuple(body.parts) == PART_NAMES
+
+
+def test_parts_come_parents_first() -> None:
+    """A present part's parent is present and comes before it."""
+    body = build_body(1.75)
+    seen: set[str | None] = {None}
+    for name, part in body.parts.items():
+        assert part.parent == PARENT_OF[name]
+        assert part.parent in seen
+        seen.add(name)

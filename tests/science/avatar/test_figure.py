@@ -1,0 +1,136 @@
+"""The body of a humanoid model: its joints and lengths, a person's masses."""
+
+from dataclasses import replace
+from math import dist
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.adapters.humanoids import read_humanoid
+from app.science.avatar.body import BodyError, build_body
+from app.science.avatar.figure import figure_of
+from app.science.avatar.hinges import hinges_of
+from app.science.avatar.masses import body_masses
+from app.science.avatar.model import avatar_model
+from app.science.avatar.parts import AXES_OF, FINGER_PARTS, PART_NAMES
+from app.science.avatar.proportions import segment_lengths
+from app.science.avatar.shapes import Capsule
+from tests.science.avatar.bodies import loaded
+from tests.science.avatar.configurations import whole_body
+from tests.science.avatar.figures import HASH, STATURE_M, figure, model
+from tests.support import humanoid_model
+from tests.support.humanoid_files import humanoid_file
+from tests.support.humanoid_model import Model, places
+
+SCALE = STATURE_M / humanoid_model.STATURE_M
+LACKING = [(), ("Little",), ("Little", "Ring"), ("Toes", "UpperChest", "Neck", "Shoulder")]
+
+
+@pytest.mark.parametrize("lacking", LACKING)
+def test_joints_lie_where_the_model_has_them(lacking: tuple[str, ...]) -> None:
+    """As large as the person, in the body and in the simulated model."""
+    own = figure(*lacking)
+    body = build_body(STATURE_M, figure=own)
+    assert set(body.parts) == set(own.places_m)
+    _, data = loaded(model(own=own).mjcf)
+    expected, hips = places(), places()["Hips"]
+    for part, place in body.places_m().items():
+        told = SCALE * (expected[part] - np.array((hips[0], 0.0, hips[2])))
+        assert place == pytest.approx(told.tolist(), abs=2e-6)
+        assert data.body(part).xpos == pytest.approx(told, abs=2e-6)
+
+
+def test_lengths_are_the_models_own() -> None:
+    """The short arms count, as long as the person makes them."""
+    own = figure()
+    usual = segment_lengths(humanoid_model.STATURE_M)
+    assert own.segments_m["upper_arm"] == pytest.approx(0.93 * usual["upper_arm"], abs=1e-5)
+    assert own.segments_m["thigh"] == pytest.approx(usual["thigh"], abs=1e-5)
+    body = build_body(STATURE_M, figure=own)
+    arm = body.proportions.segments_m["forearm"]
+    assert arm == pytest.approx(0.93 * SCALE * usual["forearm"], abs=1e-5)
+
+
+def test_shapes_reach_from_joint_to_joint() -> None:
+    """Limbs and fingers of the model's own lengths; soles on the floor."""
+    body = build_body(STATURE_M, figure=figure())
+    places_m = body.places_m()
+    for part, after in (
+        ("LeftUpperArm", "LeftLowerArm"),
+        ("RightLowerLeg", "RightFoot"),
+        ("LeftThumbProximal", "LeftThumbIntermediate"),
+    ):
+        shape = body.parts[part].shapes[0]
+        assert isinstance(shape, Capsule)
+        assert shape.length_m == pytest.approx(dist(places_m[part], places_m[after]), rel=1e-9)
+    geoms, data = loaded(model().mjcf)
+    for part in ("LeftFoot", "RightToes"):
+        geom = geoms.geom(f"{part}/0")
+        assert data.geom(f"{part}/0").xpos[1] - geom.size[1] == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("lacking", LACKING)
+def test_masses_are_a_persons(lacking: tuple[str, ...]) -> None:
+    """All of the mass is there, and every part can be turned."""
+    body = build_body(STATURE_M, figure=figure(*lacking))
+    masses = body_masses(body, 72.0)
+    assert masses.total_kg == pytest.approx(72.0)
+    assert min(hinge.inertia_kg_m2 for hinge in hinges_of(body, masses).values()) > 0.0
+    plain = body_masses(build_body(STATURE_M, segments_m=dict(body.proportions.segments_m)), 72.0)
+    if not lacking:
+        assert masses.parts == plain.parts
+
+
+def test_what_the_model_lacks_has_no_hinge() -> None:
+    """A configuration of the whole body serves a hand with four fingers."""
+    built = model(own=figure("Little"))
+    found, _ = loaded(built.mjcf)
+    names = {found.joint(row).name for row in range(found.njnt)}
+    free = set(built.configuration.axes) - built.configuration.locked_axes
+    assert names == {name for name in free if "Little" not in name}
+
+
+def test_a_configuration_without_fingers_leaves_them_out() -> None:
+    """The configuration decides as well as the model."""
+    usual = whole_body()
+    axes = {
+        axis.name: usual.axes[axis.name]
+        for part in PART_NAMES
+        if part not in FINGER_PARTS
+        for axis in AXES_OF[part]
+    }
+    built = avatar_model(replace(usual, axes=axes, humanoid=HASH), STATURE_M, figure=figure())
+    assert not set(built.body.parts) & set(FINGER_PARTS)
+
+
+def test_unusual_lengths_count_as_the_nearest_persons() -> None:
+    """Arms of half the length: joints stay, masses are a person's, and a note says so."""
+
+    def shortened(document: dict[str, Any]) -> None:
+        for node in document["nodes"]:
+            if node.get("name") in {"LeftHand", "RightHand"}:
+                node["matrix"][12:15] = [0.55 * one for one in node["matrix"][12:15]]
+
+    own = figure_of(read_humanoid(humanoid_file(Model(edit=shortened))).humanoid)
+    assert any("forearm" in note and "unusual" in note for note in own.notes)
+    usual = segment_lengths(own.stature_m)["forearm"]
+    assert own.segments_m["forearm"] == pytest.approx(0.7 * usual, rel=1e-3)
+    body = build_body(STATURE_M, figure=own)
+    apart = dist(body.places_m()["LeftHand"], body.places_m()["LeftLowerArm"])
+    assert apart == pytest.approx(0.55 * 0.93 * SCALE * segment_lengths(1.7)["forearm"], rel=1e-3)
+
+
+def test_a_model_and_measured_lengths_exclude_each_other() -> None:
+    """A body has one set of lengths."""
+    with pytest.raises(BodyError, match="either a model or measured lengths"):
+        build_body(STATURE_M, figure=figure(), segments_m={"thigh": 0.43})
+
+
+def test_the_model_a_configuration_names_must_be_there() -> None:
+    """And none is taken that it does not name."""
+    named = replace(whole_body(), humanoid=HASH)
+    with pytest.raises(BodyError, match=HASH):
+        avatar_model(named, STATURE_M)
+    with pytest.raises(BodyError, match="names no model"):
+        avatar_model(whole_body(), STATURE_M, figure=figure())

@@ -1,0 +1,102 @@
+"""How far the axes turn, and which layers of the body collide."""
+
+from math import degrees, pi
+
+import pytest
+
+from app.science.avatar.layers import COLLIDING, LAYER_OF, LAYERS, collide, collision_bits
+from app.science.avatar.limits import ANATOMIC, ESTIMATE, FREE, limits_of
+from app.science.avatar.parts import AXIS_NAMES, PART_NAMES, mirrored_name
+
+
+@pytest.mark.parametrize("limits", [ANATOMIC, FREE])
+def test_every_axis_has_limits_around_the_t_pose(limits: dict[str, object]) -> None:
+    """Low lies below high, or both are zero: locked; the T-pose is always within."""
+    assert tuple(limits) == AXIS_NAMES
+    for name in AXIS_NAMES:
+        bounds = limits_of("free" if limits is FREE else "anatomic")[name]
+        assert -pi <= bounds.low_rad <= 0.0 <= bounds.high_rad <= pi, name
+        assert bounds.low_rad < bounds.high_rad or bounds.low_rad == bounds.high_rad == 0.0, name
+        assert bounds.source, name
+
+
+def test_both_sides_turn_equally_far() -> None:
+    """Directions are mirrored already, so the angles are the same."""
+    for name in AXIS_NAMES:
+        assert ANATOMIC[name] == ANATOMIC[mirrored_name(name)]
+
+
+@pytest.mark.parametrize(
+    ("axis", "low_deg", "high_deg"),
+    [
+        ("LeftLowerArmY", 0.0, 150.0),  # AAOS: elbow flexion
+        ("RightLowerArmX", -80.0, 80.0),  # AAOS: supination, pronation
+        ("LeftHandZ", -70.0, 80.0),  # AAOS: wrist extension, flexion
+        ("LeftHandY", -30.0, 20.0),  # AAOS: ulnar and radial deviation
+        ("LeftUpperLegX", -15.0, 125.0),  # Merck: hyperextension, flexion
+        ("RightLowerLegX", 0.0, 130.0),  # Merck: knee flexion
+        ("LeftFootX", -50.0, 20.0),  # Merck: plantar flexion, dorsiflexion
+        ("LeftFootZ", -25.0, 35.0),  # Merck: eversion, inversion
+    ],
+)
+def test_published_ranges(axis: str, low_deg: float, high_deg: float) -> None:
+    """Values of the handbooks, and none of them called an estimate."""
+    bounds = ANATOMIC[axis]
+    assert (degrees(bounds.low_rad), degrees(bounds.high_rad)) == pytest.approx((low_deg, high_deg))
+    assert not bounds.estimated
+
+
+def test_the_neck_turns_as_far_as_published_in_all() -> None:
+    """Neck and head together bend 45 degrees forward, back and to each side."""
+    for letter in "XZ":
+        both = sum(ANATOMIC[f"{part}{letter}"].high_rad for part in ("Neck", "Head"))
+        assert degrees(both) == pytest.approx(45.0)
+
+
+def test_only_the_elbows_third_axis_tells_the_presets_apart() -> None:
+    """`anatomic` locks it, `free` lets it turn all the way round as the thesis did."""
+    differing = {name for name in AXIS_NAMES if ANATOMIC[name] != FREE[name]}
+    assert differing == {"LeftLowerArmZ", "RightLowerArmZ"}
+    assert (FREE["LeftLowerArmZ"].low_rad, FREE["LeftLowerArmZ"].high_rad) == (-pi, pi)
+    assert ANATOMIC["LeftLowerArmZ"].low_rad == ANATOMIC["LeftLowerArmZ"].high_rad == 0.0
+
+
+def test_estimates_say_so() -> None:
+    """The spine's shares and the wrist's turn are ours, and marked."""
+    for axis in ("SpineX", "HeadY", "LeftHandX", "LeftFootY"):
+        assert ANATOMIC[axis].source.startswith(ESTIMATE)
+
+
+def test_every_part_has_a_layer() -> None:
+    """Fingers belong to the hand, toes to the foot, head and neck to the torso."""
+    assert tuple(LAYER_OF) == PART_NAMES
+    assert set(LAYER_OF.values()) == set(LAYERS)
+    assert LAYER_OF["LeftRingDistal"] == "left_hand"
+    assert LAYER_OF["RightToes"] == "right_foot"
+    assert LAYER_OF["Head"] == "torso"
+
+
+def test_a_hand_touches_arms_and_upper_body_and_an_arm_does_not() -> None:
+    """Karas 2020, section 4.2.1."""
+    assert collide("LeftHand", "Chest")
+    assert collide("LeftHand", "LeftUpperArm")
+    assert collide("LeftIndexDistal", "RightLowerArm")
+    assert collide("LeftHand", "RightShoulder")
+    assert not collide("LeftLowerArm", "Chest")
+    assert not collide("LeftUpperArm", "LeftShoulder")
+
+
+def test_no_layer_collides_with_itself() -> None:
+    """Fingers of one hand, and neighbours of the trunk, pass through each other."""
+    assert all(len(pair) == 2 for pair in COLLIDING)
+
+
+@pytest.mark.parametrize("self_collision", [True, False])
+def test_bits_say_what_the_layers_say(*, self_collision: bool) -> None:
+    """Two parts' masks meet exactly where their layers collide, and always meet the scene's."""
+    bits = {part: collision_bits(part, self_collision=self_collision) for part in PART_NAMES}
+    for part, a in bits.items():
+        assert a.contype & 1
+        for other, b in bits.items():
+            meet = bool(a.contype & b.conaffinity or b.contype & a.conaffinity)
+            assert meet == (self_collision and collide(part, other)), (part, other)

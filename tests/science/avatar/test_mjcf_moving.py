@@ -1,0 +1,177 @@
+"""The avatar's model in motion: it stands, follows, touches and never explodes."""
+
+from dataclasses import replace
+from math import radians
+
+import mujoco
+import numpy as np
+import pytest
+
+from app.science.avatar.body import build_body
+from app.science.avatar.gains import default_settings
+from app.science.avatar.masses import body_masses
+from app.science.avatar.mjcf import build_mjcf, driven_axes
+from app.science.avatar.model_options import TIMESTEP_S, ModelOptions
+from app.science.avatar.parts import FINGER_PARTS, PART_NAMES
+from app.science.avatar.scene import Scene, SceneBox
+from tests.science.avatar.bodies import (
+    CARRIED,
+    EMPTY,
+    NO_FINGERS,
+    WELDED,
+    loaded,
+    mjcf_of,
+    settings_of,
+    warnings_of,
+)
+
+
+@pytest.mark.parametrize("hips", ["carried", "welded"])
+@pytest.mark.parametrize("floor", [True, False])
+def test_it_stands_still(hips: str, *, floor: bool) -> None:
+    """Five seconds at zero targets: no warning, no drift, and no joint bent by 1.5 degrees."""
+    options = WELDED if hips == "welded" else CARRIED
+    body = build_body(1.75)
+    model, data = loaded(mjcf_of(body, scene=Scene(floor=floor), options=options))
+    mujoco.mj_step(model, data, nstep=1500)
+    before = data.qpos.copy()
+    mujoco.mj_step(model, data, nstep=1000)
+    assert data.time == pytest.approx(2500 * TIMESTEP_S)
+    assert warnings_of(data) == 0
+    assert np.abs(data.qpos - before).max() < 1e-5
+    assert np.degrees(np.abs(data.qpos[-len(driven_axes(body, settings_of(body))) :]).max()) < 1.5
+    assert np.abs(data.body("Hips").xpos - (0.0, 0.545 * 1.75, 0.0)).max() < 1e-3
+
+
+def test_a_target_is_followed_and_clamped_to_the_limits() -> None:
+    """An elbow asked to bend by 200 degrees bends by 150."""
+    body = build_body(1.75)
+    model, data = loaded(mjcf_of(body, options=ModelOptions(gravity=False)))
+    motor = model.actuator("LeftLowerArmY").id
+    data.ctrl[2 * motor] = radians(200.0)
+    mujoco.mj_step(model, data, nstep=1000)
+    assert np.degrees(data.joint("LeftLowerArmY").qpos[0]) == pytest.approx(150.0, abs=0.3)
+
+
+def test_added_latency_can_be_changed_while_the_model_runs() -> None:
+    """A motor with a delay of 100 ms starts 100 ms later, to a step or two; up to one second."""
+    body = build_body(1.75, parts=NO_FINGERS)
+    model, data = loaded(mjcf_of(body, options=ModelOptions(gravity=False)))
+    motor = model.actuator("LeftLowerArmY").id
+    model.actuator_delay[motor] = 0.1
+    data.ctrl[2 * motor] = radians(30.0)
+    started: list[float] = []
+    while data.time < 0.2:
+        mujoco.mj_step(model, data)
+        if abs(data.joint("LeftLowerArmY").qvel[0]) > 1e-3:
+            started.append(float(data.time))
+    assert started[0] == pytest.approx(0.1, abs=3 * TIMESTEP_S)
+    assert model.actuator_history[motor, 0] * TIMESTEP_S >= 1.0
+
+
+@pytest.mark.parametrize("hips", ["carried", "welded"])
+def test_a_hand_at_two_metres_a_second_stops_at_a_wall(hips: str) -> None:
+    """The wall is entered by at most 5 mm and never passed."""
+    wall = SceneBox("wall", (0.0, 1.43, -0.5), (1.5, 0.6, 0.005))
+    options = WELDED if hips == "welded" else CARRIED
+    model, data = loaded(mjcf_of(build_body(1.75), scene=Scene((wall,)), options=options))
+    motor, geom = model.actuator("LeftUpperArmY").id, model.geom("wall").id
+    deepest, fastest = 0.0, 0.0
+    for step in range(700):
+        angle = min(step * TIMESTEP_S * 3.5, 1.0)
+        data.ctrl[2 * motor : 2 * motor + 2] = angle, 3.5 if angle < 1.0 else 0.0
+        hand = np.array(data.body("LeftHand").xpos)
+        mujoco.mj_step(model, data)
+        speed = float(np.linalg.norm(data.body("LeftHand").xpos - hand)) / TIMESTEP_S
+        touching = [c for c in data.contact if geom in (c.geom1, c.geom2)]
+        fastest = max(fastest, speed if not touching else 0.0)
+        deepest = min([deepest, *(c.dist for c in touching)])
+    assert fastest > 1.8
+    assert -0.005 <= deepest < -0.0005
+    assert data.body("LeftMiddleDistal").xpos[2] > -0.5
+    assert warnings_of(data) == 0
+
+
+def test_jumping_targets_never_explode() -> None:
+    """A hundred jumps of all targets over their whole range: no warning, no reset of the clock."""
+    model, data = loaded(mjcf_of(build_body(1.75), scene=Scene()))
+    rng = np.random.default_rng(1)
+    for _ in range(100):
+        data.ctrl[0::2] = rng.uniform(model.jnt_range[:, 0], model.jnt_range[:, 1])
+        mujoco.mj_step(model, data, nstep=20)
+    assert warnings_of(data) == 0
+    assert data.time == pytest.approx(2000 * TIMESTEP_S)
+    assert np.isfinite(data.qpos).all()
+
+
+@pytest.mark.parametrize("hips", ["carried", "welded"])
+@pytest.mark.parametrize(("stature_m", "mass_kg"), [(1.5, 45.0), (1.75, 72.0), (2.0, 120.0)])
+def test_limbs_come_to_rest_after_a_jump(hips: str, stature_m: float, mass_kg: float) -> None:
+    """Two seconds after a jump of all targets nothing trembles, whatever the body."""
+    body = build_body(stature_m, parts=NO_FINGERS)
+    masses = body_masses(body, mass_kg)
+    options = ModelOptions(hips="welded" if hips == "welded" else "carried", self_collision=False)
+    settings = default_settings(body, masses)
+    model, data = loaded(build_mjcf(body, masses, settings, scene=EMPTY, options=options))
+    rng = np.random.default_rng(5)
+    ranges = model.jnt_range[-model.nactuator :]
+    data.ctrl[0::2] = rng.uniform(ranges[:, 0], ranges[:, 1])
+    mujoco.mj_step(model, data, nstep=1000)
+    assert np.abs(data.qvel).max() < 0.02
+    assert warnings_of(data) == 0
+
+
+def test_a_hand_touches_the_chest_and_the_arm_passes_it() -> None:
+    """With crossed arms there are contacts of hands, none of an arm with the torso."""
+    model, data = loaded(mjcf_of(build_body(1.75), options=ModelOptions(gravity=False)))
+    targets = {"LeftUpperArmY": 130.0, "LeftLowerArmY": 100.0, "LeftUpperArmZ": -25.0}
+    pairs: set[frozenset[str]] = set()
+    for name, angle in targets.items():
+        data.ctrl[2 * model.actuator(name).id] = radians(angle)
+    for _ in range(750):
+        mujoco.mj_step(model, data)
+        for contact in data.contact:
+            geoms = (model.geom(contact.geom1), model.geom(contact.geom2))
+            pairs.add(frozenset(str(model.body(g.bodyid[0]).name) for g in geoms))
+    assert pairs
+    assert all(any("Left" in n and "Arm" not in n for n in pair) for pair in pairs)
+
+
+def test_without_self_collision_only_the_scene_is_touched() -> None:
+    """The switch leaves the feet on the floor and nothing else."""
+    body = build_body(1.75)
+    options = ModelOptions(self_collision=False, gravity=False)
+    model, data = loaded(mjcf_of(body, scene=Scene(), options=options))
+    data.ctrl[2 * model.actuator("LeftUpperArmY").id] = radians(130.0)
+    data.ctrl[2 * model.actuator("LeftLowerArmY").id] = radians(150.0)
+    mujoco.mj_step(model, data, nstep=500)
+    floor = model.geom("floor").id
+    assert all(floor in (contact.geom1, contact.geom2) for contact in data.contact)
+
+
+@pytest.mark.parametrize(
+    "absent",
+    [
+        [part for part in FINGER_PARTS if "Little" in part],
+        ["Chest", "UpperChest", "Neck", "LeftShoulder", "RightShoulder", "LeftToes", "RightToes"],
+        ["LeftIndexDistal", "RightThumbIntermediate"],
+    ],
+)
+def test_a_model_that_lacks_parts_stands_too(absent: list[str]) -> None:
+    """A hand of four fingers, a rig of Unity's least bones, and a finger of two segments."""
+    body = build_body(1.75, parts=[part for part in PART_NAMES if part not in absent])
+    model, data = loaded(mjcf_of(body, scene=Scene()))
+    mujoco.mj_step(model, data, nstep=500)
+    assert mujoco.mj_getTotalmass(model) == pytest.approx(72.0, abs=1e-9)
+    assert np.degrees(np.abs(data.qpos).max()) < 1.5
+    assert warnings_of(data) == 0
+
+
+def test_a_motor_without_torque_lets_the_limb_hang() -> None:
+    """A greatest torque of zero is no torque, not an unbounded one."""
+    body = build_body(1.75, parts=NO_FINGERS)
+    settings = settings_of(body)
+    settings["LeftUpperArmZ"] = replace(settings["LeftUpperArmZ"], max_torque_nm=0.0)
+    model, data = loaded(mjcf_of(body, settings=settings))
+    mujoco.mj_step(model, data, nstep=200)
+    assert np.degrees(data.joint("LeftUpperArmZ").qpos[0]) < -30.0

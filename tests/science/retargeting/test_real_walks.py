@@ -1,0 +1,122 @@
+"""CMU's walks on avatars: steps, lifts and slide of people, not of made movements."""
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.adapters.captures.files import read_capture_file
+from app.science.fitting import fit_skeleton
+from app.science.retargeting.gait import walk_figures
+from app.science.retargeting.joint_map import JointMap, propose_joint_map
+from app.science.retargeting.leg_angles import leg_angles
+from app.science.retargeting.legs import legs_of
+from app.science.retargeting.pipeline import Retargeted, retarget_motion
+from app.science.retargeting.reference_avatars import (
+    PAPER_STATURES_M,
+    REFERENCE_JOINT_MAP,
+    reference_avatar,
+)
+from app.science.retargeting.verification import verify
+from app.science.rig import BodyMotion, MarkerMotion, RigMotion
+
+_WALKS = ("02_01", "06_01", "12_02")
+
+
+@pytest.fixture(params=_WALKS)
+def walk(request: pytest.FixtureRequest, shared_data: Path) -> tuple[RigMotion, JointMap]:
+    """One of CMU's straight walks with the joint map its names propose."""
+    motion = read_capture_file(shared_data / f"motion/cmu_bvh/{request.param}.bvh").motion
+    assert isinstance(motion, RigMotion)
+    return motion, propose_joint_map(motion.rig).joint_map
+
+
+def _onto(
+    walk: tuple[RigMotion, JointMap],
+    stature_m: float,
+    share: float | None = None,
+    *,
+    lock: bool = False,
+) -> Retargeted:
+    avatar = reference_avatar(stature_m, thigh_share=share)
+    return retarget_motion(*walk, avatar, REFERENCE_JOINT_MAP, lock=lock)
+
+
+def _largest_jerk_m_s(motion: RigMotion) -> float:
+    change = np.diff(motion.world()[0], n=2, axis=0)
+    return float(np.linalg.norm(change, axis=-1).max() * motion.rate_hz)
+
+
+def test_a_persons_steps_are_a_persons(walk: tuple[RigMotion, JointMap]) -> None:
+    """Four whole steps or more, of 0.9 to 1.5 m from contact to contact, 5 to 13 cm high.
+
+    Strides of adults at 0.8 to 1.4 m/s are that long; feet alternate.
+    """
+    walks = _onto(walk, 1.65).walks
+    assert walks is not None
+    steps = walks.source.steps
+    assert len(steps) >= 4
+    assert all(0.9 < step.length_m < 1.5 and 0.05 < step.height_m < 0.13 for step in steps)
+    assert all(a.side != b.side for a, b in pairwise(steps))
+
+
+def test_one_walk_has_the_same_steps_in_every_format(shared_data: Path) -> None:
+    """AMC (solved by CMU) and C3D (fitted here) agree within 1 cm a step.
+
+    The BVH of the same walk was made by somebody unknown, whose root is 1.06312 times as far.
+    """
+    folder = shared_data / "motion"
+    amc = _steps_m(read_capture_file(folder / "cmu_asfamc/02_01.amc").motion)
+    c3d = _steps_m(read_capture_file(folder / "cmu_c3d/02_01.c3d").motion)
+    bvh = _steps_m(read_capture_file(folder / "cmu_bvh/02_01.bvh").motion)
+    assert len(amc) == len(c3d) == len(bvh) == 4
+    assert c3d == pytest.approx(amc, abs=0.01)
+    assert sum(bvh) / sum(amc) == pytest.approx(1.06312, abs=0.01)
+
+
+def _steps_m(motion: RigMotion | MarkerMotion | BodyMotion) -> list[float]:
+    if not isinstance(motion, RigMotion):
+        motion = fit_skeleton(motion).motion
+    joint_map = propose_joint_map(motion.rig).joint_map
+    return [step.length_m for step in walk_figures(motion, legs_of(motion.rig, joint_map)).steps]
+
+
+def test_knees_bend_as_knees_of_walkers_do(walk: tuple[RigMotion, JointMap]) -> None:
+    """Between 50 and 85 degrees at most in the swing, and hardly ever backwards."""
+    for leg in leg_angles(*walk):
+        assert 50.0 < np.degrees(leg.knee_rad.max()) < 85.0
+        assert np.degrees(leg.knee_rad.min()) > -2.0
+
+
+def test_lifts_agree_on_the_papers_avatars(walk: tuple[RigMotion, JointMap]) -> None:
+    """All three lift each foot as often as the person, within 0.1 s of each other."""
+    avatars = [
+        (f"{stature_m}", _onto(walk, stature_m).motion, REFERENCE_JOINT_MAP)
+        for stature_m in PAPER_STATURES_M
+    ]
+    figures = verify(*walk, avatars)
+    assert figures.lifts_agree
+    assert figures.largest_timing_difference_s is not None
+    assert figures.largest_timing_difference_s < 0.1
+
+
+@pytest.mark.parametrize("share", [None, 0.43, 0.57])
+def test_holding_the_feet_takes_the_slide_away(
+    walk: tuple[RigMotion, JointMap], share: float | None
+) -> None:
+    """From 0.09 to 0.22 m/s before to less than 0.005 after, hips at most 4 % of a leg lower.
+
+    No joint's velocity changes from frame to frame by more than twice what it does in the capture.
+    """
+    held = _onto(walk, 1.65, share, lock=True)
+    assert held.walks is not None
+    assert held.walks.locked is not None
+    assert held.walks.slide_before_m_s is not None
+    assert held.walks.slide_m_s is not None
+    assert 0.08 < held.walks.slide_before_m_s < 0.25
+    assert held.walks.slide_m_s < 0.005
+    assert held.walks.locked.lowered_m <= 0.04 * held.walks.avatar.leg_length_m + 1e-12
+    assert held.walks.locked.out_of_reach < 0.02 * held.motion.frame_count
+    free = _onto(walk, 1.65, share)
+    assert _largest_jerk_m_s(held.motion) < 2.0 * _largest_jerk_m_s(free.motion)

@@ -1,0 +1,123 @@
+"""The dependency blending space: scales, blends, neighbours, weights."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from app.science.walking.blending import blending_space
+from app.science.walking.densifying import drawn_blends, drawn_weights
+from app.science.walking.dependencies import dependency_vectors, scaling_of
+from app.science.walking.model import WalkingError
+from app.science.walking.neighbours import LEAF, neighbours, tree_of
+from tests.science.walking.spaces import GRID, NAMES, dependency_rows, made_up_space
+
+
+def test_dependencies_count_by_their_own_spread() -> None:
+    """z-scores have mean 0 and sd 1; what is the same for all walks weighs nothing."""
+    rows = np.column_stack([[1.0, 2.0, 3.0], [50.0, 70.0, 90.0], [1.8, 1.8, 1.8]])
+    scaling = scaling_of(("length_m", "load_kg", "stature_m"), rows)
+    z = scaling.z(rows)
+    assert z[:, :2].mean(axis=0) == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert z[:, :2].std(axis=0) == pytest.approx([1.0, 1.0])
+    assert (z[:, 2] == 0.0).all()
+    asked = {"length_m": 2.0, "load_kg": 70.0, "stature_m": 1.6, "age": 30.0}
+    assert scaling.z(scaling.vector(asked)) == pytest.approx([0.0, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"), [({"length_m": 1.0}, "stature_m is missing"),
+                        ({"length_m": 1.0, "stature_m": np.nan}, "finite")],
+)  # fmt: skip
+def test_a_question_without_a_dependency_is_refused(asked: Mapping[str, float], told: str) -> None:
+    """The message names what is missing."""
+    scaling = scaling_of(NAMES, dependency_rows(np.random.default_rng(1)))
+    with pytest.raises(WalkingError, match=told):
+        scaling.vector(asked)
+
+
+def test_a_walk_without_a_dependency_is_named() -> None:
+    """Fitting says which recording lacks the stature."""
+    walks = [{"length_m": 1.0, "stature_m": 1.7}, {"length_m": 2.0}]
+    with pytest.raises(WalkingError, match=r"walk from b\.csv has no stature_m"):
+        dependency_vectors(NAMES, walks, ["a.csv", "b.csv"])
+
+
+def test_weights_of_blends_are_those_of_kovar_and_gleicher() -> None:
+    """Each from -.1 to 1.1, a blend's sum to 1, and both sides of 0 and 1 occur."""
+    weights = drawn_weights(4000, 4, np.random.default_rng(1))
+    assert weights.sum(axis=1) == pytest.approx(np.ones(4000))
+    assert weights.min() >= -0.1
+    assert weights.max() <= 1.1
+    assert weights.min() < -0.09
+    assert weights.max() > 1.0
+
+
+def test_blends_have_the_dependencies_and_maps_of_their_weights() -> None:
+    """A blend's place and map come from the same weights; maps stay within [0, 1]."""
+    rng = np.random.default_rng(3)
+    rows = dependency_rows(rng, 40)
+    maps = rng.random((40, 25)).astype(np.float32)
+    blends = drawn_blends(scaling_of(NAMES, rows).z(rows), 60, rng)
+    matrix = blends.as_matrix(40)
+    assert blends.of_vectors(rows) == pytest.approx(matrix @ rows)
+    assert blends.of_maps(maps) == pytest.approx(np.clip(matrix @ maps, 0.0, 1.0), abs=1e-6)
+
+
+def test_blends_never_reach_people_who_are_left_out() -> None:
+    """A fold is densified among its own walks: every entry is one of them, or a blend of them."""
+    rng = np.random.default_rng(4)
+    rows = dependency_rows(rng, 60)
+    person = np.arange(60) % 6
+    own = np.flatnonzero(person != 5)
+    # Each walk marks one node: a map shows which walks are in it.
+    marks = np.zeros((60, GRID.size), dtype=np.float32)
+    marks[np.arange(60), np.arange(60)] = 1.0
+    scaling = scaling_of(NAMES, rows[own])
+    space = blending_space(GRID, scaling, rows[own], marks[own], rng=rng, entries=500, k=50)
+    assert len(space.values) == 500
+    assert (space.values[:, person.nonzero()[0]] > 0.0).any()
+    assert not space.values[:, np.flatnonzero(person == 5)].any()
+
+
+def test_neighbours_are_the_nearest_and_weigh_by_distance() -> None:
+    """As by sorting all distances: w = 1 - d / d_k, and the farthest weighs nothing."""
+    rng = np.random.default_rng(5)
+    points = np.round(rng.standard_normal((50 * LEAF, 3)), 1)
+    tree = tree_of(points)
+    for z in 1.5 * rng.standard_normal((50, 3)):
+        indices, weights = neighbours(tree, z, 37)
+        apart = np.linalg.norm(points - z, axis=1)
+        farthest = np.sort(apart)[36]
+        expected = 1.0 - apart[indices] / farthest
+        assert len(set(indices.tolist())) == 37
+        assert apart[indices].max() == pytest.approx(farthest)
+        assert weights == pytest.approx(expected / expected.sum())
+
+
+def test_equal_walks_weigh_the_same() -> None:
+    """Where all neighbours are as far, or all are the question itself, none is preferred."""
+    ring = np.array([[np.cos(angle), np.sin(angle)] for angle in np.linspace(0.0, 6.0, 8)])
+    for points in (np.ones((8, 2)), 1.0 + ring):
+        _, weights = neighbours(tree_of(points), np.ones(2), 8)
+        assert weights.sum() == pytest.approx(1.0)
+    _, weights = neighbours(tree_of(np.ones((8, 2))), np.ones(2), 8)
+    assert weights == pytest.approx(np.full(8, 1 / 8))
+
+
+def test_an_answer_traced_to_its_walks_is_the_blended_map() -> None:
+    """Blends traced to their parents give the map of the answer, but for their clipping."""
+    space = made_up_space()
+    walks = space.values[: space.walks].astype(np.float64)
+    for z in space.z[5:60:11]:
+        indices, weights = space.neighbours(z)
+        blended = weights @ space.values[indices]
+        assert space.origins(z).sum() == pytest.approx(1.0)
+        assert np.abs(space.origins(z) @ walks - blended).max() < 0.02
+
+
+@pytest.mark.parametrize("k", [0, 401])
+def test_as_many_neighbours_as_there_are(k: int) -> None:
+    """More, or none, cannot be taken."""
+    with pytest.raises(WalkingError, match="1 to 400"):
+        neighbours(made_up_space().tree, np.zeros(2), k)

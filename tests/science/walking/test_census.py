@@ -1,0 +1,32 @@
+"""The census of path lengths."""
+
+import numpy as np
+import pytest
+
+from app.science.walking.census import census
+from app.science.walking.model import WalkingError
+
+
+def test_lengths_are_counted_in_their_intervals() -> None:
+    """A length on a bound belongs to the interval above; shares add up to one."""
+    counted = census([0.2, 0.5, 0.7, 1.4, 3.0], width_m=0.5)
+    assert counted.counts == (1, 2, 1, 0, 0, 0, 1)
+    assert counted.edges_m[:3] == (0.0, 0.5, 1.0)
+    assert counted.share_up_to[1] == pytest.approx(0.6)
+    assert counted.share_up_to[-1] == 1.0
+    assert counted.quartiles_m[1] == pytest.approx(0.7)
+    assert counted.total_m == pytest.approx(5.8)
+
+
+def test_the_cutoff_is_what_five_percent_exceed() -> None:
+    """Of a hundred lengths the longest five are beyond it."""
+    lengths = np.arange(1, 101) / 10.0
+    counted = census(lengths.tolist())
+    assert int((lengths > counted.cutoff_m).sum()) == 5
+
+
+@pytest.mark.parametrize("lengths", [[], [1.0, float("nan")], [0.0], [1e9]])
+def test_what_cannot_be_counted_is_refused(lengths: list[float]) -> None:
+    """No lengths, lengths that are none, and a length that would need millions of intervals."""
+    with pytest.raises(WalkingError):
+        census(lengths)

@@ -1,0 +1,96 @@
+"""Scenes: outlines, clearance, and what is refused."""
+
+import numpy as np
+import pytest
+
+from app.science.walking.laboratory import POLE_DEG, pole_scene, straight_scene
+from app.science.walking.model import WalkingError
+from app.science.walking.scene import Obstacle, Scene, SceneError, ScenePath, box
+from app.science.walking.shapes import area_m2, contains, disc_corners, distance_m, widened
+
+BOUNDS = (-2.0, -2.0, 2.0, 2.0)
+TABLE = box("table", (0.0, 0.0), (1.0, 1.0))
+
+
+def test_a_widened_outline_keeps_the_clearance_everywhere() -> None:
+    """Never less than the clearance, at most 2 % more, at corners too."""
+    outline = widened(TABLE.corners_m, 0.2)
+    away = [distance_m(TABLE.corners_m, (float(x), float(y))) for x, y in outline]
+    assert min(away) >= 0.2 - 1e-9
+    assert max(away) <= 0.2 * 1.02
+    assert area_m2(outline) == pytest.approx(1.0 + 4 * 0.2 + np.pi * 0.04, rel=0.01)
+
+
+def test_a_disc_is_never_smaller_than_it_is() -> None:
+    """Every point of the circle lies within its polygon."""
+    angles = np.linspace(0.0, 2.0 * np.pi, 100)
+    circle = 0.999999 * np.stack([np.cos(angles), np.sin(angles)], axis=-1)
+    assert contains(disc_corners((0.0, 0.0), 1.0), circle).all()
+
+
+def test_who_stands_near_an_obstacle_keeps_that_distance() -> None:
+    """A start .1 m off a rack is possible although the clearance is .2 m; others keep theirs."""
+    scene = Scene("near", BOUNDS, (TABLE, box("rack", (1.7, 1.7), (0.2, 0.2))))
+    assert scene.crowds((0.0, 0.6))
+    outlines = scene.widened_obstacles((0.0, 0.6), (0.0, 1.5))
+    assert not contains(outlines[0], np.array([0.0, 0.6]))
+    assert outlines[1] == pytest.approx(widened(scene.obstacles[1].corners_m, 0.2))
+
+
+@pytest.mark.parametrize(
+    ("corners", "said"),
+    [
+        ([[0, 0], [0, 1], [1, 1]], "clockwise"),
+        ([[0, 0], [1, 0], [0.1, 0.1], [0, 1]], "not convex"),
+        ([[0, 0], [1, 0], [2, 0]], "no area"),
+        ([[0, 0], [1, 0]], "three corners"),
+        ([[0, 0], [1, 0], [1, 0], [0, 1]], "same corner twice"),
+        ([[0, 0], [1, 0], [0, float("nan")]], "not finite"),
+        ([[0, 0], [2, 2], [0, 2], [2, 0], [1, 3]], "not convex"),
+    ],
+)
+def test_an_outline_that_is_none_is_refused(corners: list[list[float]], said: str) -> None:
+    """By name, with what is wrong."""
+    with pytest.raises(SceneError, match=f"'thing'.*{said}"):
+        Obstacle("thing", np.array(corners, dtype=np.float64))
+
+
+@pytest.mark.parametrize(
+    ("place", "said"),
+    [
+        ((0.2, 0.0), "inside obstacle 'table'"),
+        ((9.0, 0.0), "outside the scene's bounds"),
+        ((float("nan"), 0.0), "finite"),
+    ],
+)
+def test_a_place_where_nobody_can_stand_is_refused(place: tuple[float, float], said: str) -> None:
+    """By name, with where it is."""
+    with pytest.raises(SceneError, match=f"'goal'.*{said}"):
+        Scene("bad", BOUNDS, (TABLE,), {"goal": place})
+
+
+def test_bounds_paths_and_clearance_are_checked() -> None:
+    """Bounds the wrong way round, a path to nowhere, a negative clearance."""
+    with pytest.raises(SceneError, match="left < right"):
+        Scene("bad", (2.0, 0.0, -2.0, 1.0))
+    with pytest.raises(SceneError, match="'goal'; places are start"):
+        Scene("bad", BOUNDS, (), {"start": (0, 0)}, (ScenePath("there", "start", "goal"),))
+    with pytest.raises(SceneError, match="clearance"):
+        Scene("bad", BOUNDS, clearance_m=-0.1)
+
+
+@pytest.mark.parametrize("turn", POLE_DEG)
+def test_the_poles_scenes_have_places_for_start_and_goal(turn: float) -> None:
+    """Both are free at the clearance, and half the distance from the pole along the way."""
+    scene = pole_scene(turn, 3.0)
+    for place in scene.places.values():
+        assert not scene.crowds(place)
+        assert np.hypot(*place) == pytest.approx(np.hypot(1.5, 0.3), abs=1e-9)
+
+
+def test_a_laboratory_that_cannot_be_is_refused() -> None:
+    """A walk of no length, a turn beyond half."""
+    with pytest.raises(WalkingError):
+        straight_scene(0.0)
+    with pytest.raises(WalkingError):
+        pole_scene(270.0, 3.0)
