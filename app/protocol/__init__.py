@@ -15,6 +15,7 @@ from app.protocol.loading import (
 )
 from app.protocol.orders import LedgerRow, ledger_block, sequences
 from app.protocol.plan import Step, StepKind, compile_plan
+from app.protocol.preregistration import ExclusionRule, Preregistration, PrimaryTest
 from app.protocol.procedure import Block, ConsentStep, Procedure, SetupStep, TaskPhase
 from app.protocol.safety import Safety, StopRule
 from app.protocol.study import Blinding, LatencySettings, StudyProtocol
@@ -30,6 +31,7 @@ __all__ = [
     "ConfigProblem",
     "ConsentStep",
     "Cues",
+    "ExclusionRule",
     "FootTask",
     "HandTask",
     "LatencySettings",
@@ -39,6 +41,8 @@ __all__ = [
     "Orders",
     "Palette",
     "PlanError",
+    "Preregistration",
+    "PrimaryTest",
     "Procedure",
     "Provenance",
     "Safety",

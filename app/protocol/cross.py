@@ -8,8 +8,11 @@ problems of a file at once.
 import math
 from collections.abc import Iterator, Mapping
 
+from app.protocol.avatar_checks import avatar_problems
 from app.protocol.common import TEXT_MARK
 from app.protocol.conditions import MAX_PERMUTED
+from app.protocol.pictures import picture_problems
+from app.protocol.preregistration_checks import preregistration_problems
 from app.protocol.safety_checks import practice_problems, safety_problems
 from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
@@ -20,9 +23,12 @@ from app.science.instruments.texts import text_problems
 
 
 def cross_problems(
-    tree: Plain, schema: Schema, instruments: Mapping[str, Instrument]
+    tree: Plain,
+    schema: Schema,
+    instruments: Mapping[str, Instrument],
+    avatars: Mapping[str, int] | None = None,
 ) -> Iterator[DefinitionProblem]:
-    """Every problem that lies between two places of a study file."""
+    """Every problem that lies between two places of a study file, or between it and the lab."""
     if not isinstance(tree, dict):
         return
     languages = [one for one in _list(tree.get("languages")) if isinstance(one, str)]
@@ -34,6 +40,8 @@ def cross_problems(
     yield from _sequences(tree)
     yield from safety_problems(tree, instruments)
     yield from practice_problems(tree)
+    yield from avatar_problems(tree, avatars)
+    yield from preregistration_problems(tree, instruments)
 
 
 def _texts(tree: Plain, schema: Schema, languages: list[str]) -> Iterator[DefinitionProblem]:
@@ -42,6 +50,7 @@ def _texts(tree: Plain, schema: Schema, languages: list[str]) -> Iterator[Defini
             wordings = {key: words for key, words in text.items() if isinstance(words, str)}
             spoken = [one for one in languages if one not in text or one in wordings]
             yield from text_problems(path, wordings, spoken)
+            yield from picture_problems(path, wordings)
 
 
 def _screens(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:

@@ -9,7 +9,7 @@ import copy
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Generic, TypeVar, cast
 
 from pydantic import TypeAdapter, ValidationError
@@ -44,20 +44,42 @@ class LoadedInstrument:
     canonical_json: str
 
 
-def load_study(text: str, *, instruments: Mapping[str, Instrument]) -> LoadedStudy:
-    """Read a study file (YAML). `instruments`: those it may refer to, by key.
+def load_study(
+    text: str,
+    *,
+    instruments: Mapping[str, Instrument],
+    avatars: Mapping[str, int] | None = None,
+) -> LoadedStudy:
+    """Read a study file (YAML).
 
-    Raises ConfigError with every problem of the file.
+    Args:
+        text: of the file.
+        instruments: those it may refer to, by key.
+        avatars: those it may refer to: key -> number of the newest version. None does not check.
+
+    Raises:
+        ConfigError: with every problem of the file.
     """
-    source = read_source(text)
-    found = [locate(one, source) for one in cross_problems(source.tree, _STUDY.schema, instruments)]
+    source = study_source(text)
+    between = cross_problems(source.tree, _STUDY.schema, instruments, avatars)
+    found = [locate(one, source) for one in between]
     protocol = _validated(_STUDY, source, found)
     canonical = canonical_json(_STUDY.adapter.dump_python(protocol, mode="json"))
     return LoadedStudy(protocol, sha256_of(canonical), canonical)
 
 
+@lru_cache(maxsize=16)
+def study_source(text: str) -> Source:
+    """The same file is read when it is checked, when it is saved and at every start."""
+    return read_source(text)
+
+
+@lru_cache(maxsize=64)
 def load_instrument(text: str) -> LoadedInstrument:
-    """Read an instrument file (YAML). Raises ConfigError with every problem of the file."""
+    """Read an instrument file (YAML). Raises ConfigError with every problem of the file.
+
+    Kept by its text: a study asks for each of its instruments whenever it is read.
+    """
     instrument = _validated(_INSTRUMENT, read_source(text), [])
     canonical = canonical_json(instrument_as_json(instrument))
     return LoadedInstrument(instrument, sha256_of(canonical), canonical)

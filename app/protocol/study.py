@@ -8,6 +8,7 @@ from app.protocol.appearance import Appearance
 from app.protocol.canonical import canonical_json, sha256_of
 from app.protocol.common import Key, Provenance, Strict, Text, refusal
 from app.protocol.conditions import Condition, Conditions, Orders
+from app.protocol.preregistration import Preregistration
 from app.protocol.procedure import FormStep, Procedure
 from app.protocol.safety import Safety
 from app.protocol.tasks import Tasks
@@ -62,8 +63,23 @@ class LatencySettings(Strict):
     bypass_at_zero: bool
 
 
+class AvatarChoice(Strict):
+    """Which version of which avatar's configuration the sessions use."""
+
+    key: Annotated[
+        str,
+        StringConstraints(pattern=r"^[a-z][a-z0-9_-]{0,79}$"),
+        Field(description="the key of an avatar"),
+    ]
+    version: Annotated[int, Field(ge=1, le=1_000_000, description="number of its version")]
+
+
 class StudyProtocol(Strict):
-    """A study: conditions, orders, procedure, task places, appearance and texts."""
+    """A study: conditions, orders, procedure, task places, appearance and texts.
+
+    `avatar`: the remote avatar repeats the participant's movement (`delayed_copy`), or follows it
+    by forces and collides (`physics`), as `avatar_configuration` says.
+    """
 
     key: Annotated[
         str,
@@ -74,7 +90,7 @@ class StudyProtocol(Strict):
     description: Text
     provenance: Provenance
     languages: Annotated[tuple[Language, ...], Field(min_length=1), AfterValidator(_languages)]
-    avatar: Literal["delayed_copy"]
+    avatar: Literal["delayed_copy", "physics"]
     conditions: Conditions
     orders: Orders
     procedure: Procedure
@@ -86,6 +102,12 @@ class StudyProtocol(Strict):
     texts: dict[Key, Text]
     # Left out of the content where there is none, so that the hash of other studies stays.
     safety: Annotated[Safety | None, Field(exclude_if=lambda value: value is None)] = None
+    avatar_configuration: Annotated[
+        AvatarChoice | None, Field(exclude_if=lambda value: value is None)
+    ] = None
+    preregistration: Annotated[
+        Preregistration | None, Field(exclude_if=lambda value: value is None)
+    ] = None
 
     def condition(self, key: str) -> Condition:
         """The condition with that key; KeyError if there is none."""

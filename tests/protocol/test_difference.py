@@ -12,7 +12,7 @@ def found(before: Plain, after: Plain) -> list[Difference]:
 def test_a_step_put_in_front_is_one_step_more() -> None:
     """The steps behind it are not called changed."""
     old: Plain = [{"step": "consent", "text": "a"}, {"step": "debrief", "text": "b"}]
-    new: Plain = [{"step": "form", "instrument": "ssq"}, *old]  # type: ignore[misc]
+    new: Plain = [{"step": "form", "instrument": "ssq"}, *old]  # type: ignore[misc]  # a list of JSON
     (one,) = found({"before": old}, {"before": new})
     assert (one.path, one.kind) == (("before", 0), "added")
 

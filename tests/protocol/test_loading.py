@@ -86,9 +86,9 @@ def test_what_is_stored_comes_back() -> None:
 def test_a_study_cannot_be_changed() -> None:
     """Protocols and instruments are frozen values."""
     with pytest.raises(ValidationError):
-        study().key = "other"  # type: ignore[misc]
+        study().key = "other"  # type: ignore[misc]  # frozen, that is the point
     with pytest.raises(dataclasses.FrozenInstanceError):
-        load_instrument(KARAS).instrument.version = 2  # type: ignore[misc]
+        load_instrument(KARAS).instrument.version = 2  # type: ignore[misc]  # frozen, that is the point
 
 
 def test_six_levels_make_720_rows_and_seven_are_too_many() -> None:

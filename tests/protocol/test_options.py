@@ -11,7 +11,7 @@ from tests.protocol.options import with_options
 ORDER = ("latency_0", "latency_125", "latency_350")
 PROTOCOL = loaded(with_options()).protocol
 RULE = "score: sickness_score, stop_at: 15, warn_at: 10"
-SHIPPED = "61849165b02e169d88c0b006dcddd3ae8ad396995254a142e109fa3cd2817097"
+SHIPPED = "b62b8ecfa6a59a5feb957632fbfa65517f9d9542630c98bad2c496b2d90255a8"
 
 
 def test_the_hash_of_a_study_without_options_stays() -> None:

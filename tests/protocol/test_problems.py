@@ -91,7 +91,7 @@ from tests.protocol.helpers import edited, problems
         ),
         (("default: standard", "default: dark"), "appearance.default", "not there", "palette"),
         (('"#8a8f98"', "red"), "appearance.palettes[0].colours.panel", "'red'", "#rrggbb"),
-        (("avatar: delayed_copy", "avatar: physics"), "avatar", "'physics'", "delayed_copy"),
+        (("avatar: delayed_copy", "avatar: puppet"), "avatar", "'puppet'", "delayed_copy"),
         (("key: reembodiment-latency", "key: Re embody"), "key", "'Re embody'", "lower-case"),
         (("languages: [en, de]", "languages: [en, en]"), "languages", "twice", "once"),
     ],

@@ -1,7 +1,15 @@
 """BVH motion capture (Biovision Hierarchy): read, write, and place its joints in the world."""
 
 from app.adapters.bvh.clip import BvhClip, BvhError, BvhLimits
-from app.adapters.bvh.reader import parse_bvh, read_bvh
+from app.adapters.bvh.reader import parse_bvh, parse_bvh_lines, read_bvh
 from app.adapters.bvh.writer import format_bvh
 
-__all__ = ["BvhClip", "BvhError", "BvhLimits", "format_bvh", "parse_bvh", "read_bvh"]
+__all__ = [
+    "BvhClip",
+    "BvhError",
+    "BvhLimits",
+    "format_bvh",
+    "parse_bvh",
+    "parse_bvh_lines",
+    "read_bvh",
+]

@@ -20,15 +20,14 @@ class Hierarchy:
     offsets: list[tuple[float, float, float]] = field(default_factory=list)
     channels: list[tuple[str, ...]] = field(default_factory=list)
     end_sites: list[tuple[int, tuple[float, float, float]]] = field(default_factory=list)
-    motion_line: int = 0
 
 
 class _Words:
     """The words of a text with the line each stands on."""
 
-    def __init__(self, lines: list[str]) -> None:
+    def __init__(self, lines: Iterator[tuple[int, str]]) -> None:
         self._words: Iterator[tuple[str, int]] = (
-            (word, number) for number, line in enumerate(lines, 1) for word in line.split()
+            (word, number) for number, line in lines for word in line.split()
         )
         self.line = 0
         self._kept: str | None = None
@@ -77,8 +76,8 @@ def read_number(word: str, line: int, wanted: str) -> float:
     return value
 
 
-def read_hierarchy(lines: list[str], limits: BvhLimits) -> Hierarchy:
-    """Read up to and including the word MOTION.
+def read_hierarchy(lines: Iterator[tuple[int, str]], limits: BvhLimits) -> Hierarchy:
+    """Read numbered lines up to and including the one with the word MOTION.
 
     Raises:
         BvhError: with the line, where the grammar or a limit is broken.
@@ -92,7 +91,6 @@ def read_hierarchy(lines: list[str], limits: BvhLimits) -> Hierarchy:
         raise BvhError(words.line, "a second ROOT: one skeleton per file can be read, split it.")
     if word.upper() != "MOTION":
         raise BvhError(words.line, f"expected 'MOTION', got {word!r}.")
-    tree.motion_line = words.line
     return tree
 
 

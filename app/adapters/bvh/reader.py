@@ -6,6 +6,10 @@ may differ from joint to joint.
 """
 
 import math
+from array import array
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -46,14 +50,22 @@ def parse_bvh(text: str, *, metres_per_unit: float, limits: BvhLimits = _DEFAULT
             non-finite numbers, a row with too few or many values, and a number of rows other than
             the declared one.
     """
-    if not (math.isfinite(metres_per_unit) and metres_per_unit > 0.0):
-        raise BvhError(0, f"metres_per_unit is {metres_per_unit}, it must be above zero.")
     if len(text) > limits.characters:
         raise BvhError(0, f"the text is longer than {limits.characters} characters.")
     lines = text.removeprefix("\ufeff").splitlines()
-    tree = read_hierarchy(lines, limits)
-    first_row, frame_count, frame_time_s = _read_motion_head(lines, tree.motion_line)
-    values = _read_rows(lines, first_row, frame_count, tree, limits)
+    return parse_bvh_lines(lines, metres_per_unit=metres_per_unit, limits=limits)
+
+
+def parse_bvh_lines(
+    lines: Iterable[str], *, metres_per_unit: float, limits: BvhLimits = _DEFAULT_LIMITS
+) -> BvhClip:
+    """Read a BVH text line by line, so that a long one need not be held; see `parse_bvh`."""
+    if not (math.isfinite(metres_per_unit) and metres_per_unit > 0.0):
+        raise BvhError(0, f"metres_per_unit is {metres_per_unit}, it must be above zero.")
+    numbered = enumerate(lines, 1)
+    tree = read_hierarchy(numbered, limits)
+    declared, frame_time_s = _read_motion_head(numbered)
+    values = _read_rows(numbered, declared, tree, limits)
     translations, rotations = _to_poses(tree, values, metres_per_unit)
     return BvhClip(
         names=tuple(tree.names),
@@ -70,20 +82,28 @@ def parse_bvh(text: str, *, metres_per_unit: float, limits: BvhLimits = _DEFAULT
     )
 
 
-def _read_motion_head(lines: list[str], motion_line: int) -> tuple[int, int, float]:
-    """Return the line number of the first row, the declared frames and the frame time."""
-    filled = [n for n in range(motion_line, len(lines)) if lines[n].strip()][:2]
+@dataclass(frozen=True)
+class _Declared:
+    """The number of frames a file says it has, and the line on which it says so."""
+
+    frames: int
+    line: int
+
+
+def _read_motion_head(lines: Iterator[tuple[int, str]]) -> tuple[_Declared, float]:
+    """Return the declared number of frames and the frame time."""
+    filled = list(islice(((number, line) for number, line in lines if line.strip()), 2))
     if len(filled) < 2:
-        raise BvhError(len(lines), "the text ends before 'Frames:' and 'Frame Time:'.")
-    frames_line, time_line = filled
-    frames = _after(lines[frames_line], "frames:", frames_line + 1)
-    if not frames.isdecimal() or int(frames) == 0:
-        raise BvhError(frames_line + 1, f"{frames!r} frames: a whole number above zero is valid.")
-    word = _after(lines[time_line], "frame time:", time_line + 1)
-    frame_time_s = read_number(word, time_line + 1, "the frame time in seconds")
+        raise BvhError(0, "the text ends before 'Frames:' and 'Frame Time:'.")
+    (frames_line, frames_text), (time_line, time_text) = filled
+    frames = _after(frames_text, "frames:", frames_line)
+    if not (frames.isascii() and frames.isdecimal() and 0 < len(frames) < 16) or int(frames) == 0:
+        raise BvhError(frames_line, f"{frames[:40]!r} frames: a whole number above zero is valid.")
+    word = _after(time_text, "frame time:", time_line)
+    frame_time_s = read_number(word, time_line, "the frame time in seconds")
     if frame_time_s <= 0.0:
-        raise BvhError(time_line + 1, f"frame time {word}: it must be above zero seconds.")
-    return time_line + 2, int(frames), frame_time_s
+        raise BvhError(time_line, f"frame time {word}: it must be above zero seconds.")
+    return _Declared(int(frames), frames_line), frame_time_s
 
 
 def _after(line: str, label: str, number: int) -> str:
@@ -94,39 +114,42 @@ def _after(line: str, label: str, number: int) -> str:
 
 
 def _read_rows(
-    lines: list[str], first_row: int, declared: int, tree: Hierarchy, limits: BvhLimits
+    lines: Iterator[tuple[int, str]], declared: _Declared, tree: Hierarchy, limits: BvhLimits
 ) -> FloatArray:
     width = sum(len(channels) for channels in tree.channels)
     if width == 0:
-        raise BvhError(tree.motion_line, "no joint has a channel, so there is no motion to read.")
-    if declared * width > limits.values:
-        raise BvhError(first_row - 2, f"{declared} frames of {width} values are too many.")
-    rows, numbers = [], []
-    for number, line in enumerate(lines[first_row - 1 :], first_row):
+        raise BvhError(declared.line, "no joint has a channel, so there is no motion to read.")
+    # A pose takes seven numbers a joint, however few channels the file gives it.
+    needed = declared.frames * max(width, 7 * len(tree.names))
+    if needed > limits.values:
+        problem = f"{declared.frames} frames of {len(tree.names)} joints are too many."
+        raise BvhError(declared.line, problem)
+    values, number, found = array("d"), 0, 0
+    for number, line in lines:
         words = line.split()
         if not words:
             continue
         if len(words) != width:
             raise BvhError(number, f"{len(words)} values in this row, the channels need {width}.")
-        rows.append(words)
-        numbers.append(number)
-    if len(rows) != declared:
-        raise BvhError(
-            len(lines), f"{len(rows)} rows of motion, but 'Frames:' declares {declared}."
-        )
-    return _to_numbers(rows, numbers)
+        if found == declared.frames:
+            raise BvhError(
+                number, f"a row more than the number that 'Frames:' declares {declared.frames}."
+            )
+        values.extend(_numbers(words, number))
+        found += 1
+    if found != declared.frames:
+        raise BvhError(number, f"{found} rows of motion, but 'Frames:' declares {declared.frames}.")
+    return np.frombuffer(values, dtype=np.float64).reshape(found, width)
 
 
-def _to_numbers(rows: list[list[str]], numbers: list[int]) -> FloatArray:
+def _numbers(words: list[str], number: int) -> list[float]:
     try:
-        values = np.array(rows, dtype=np.float64)
+        values = list(map(float, words))
     except ValueError:
-        values = np.full((1, 1), np.nan)
-    if not np.isfinite(values).all():
-        # Only now is it worth going word by word, to say where.
-        for number, words in zip(numbers, rows, strict=True):
-            for word in words:
-                read_number(word, number, "a motion value")
+        values = [math.nan]
+    if not math.isfinite(sum(values)):
+        # Only now is it worth going word by word, to say which.
+        values = [read_number(word, number, "a motion value") for word in words]
     return values
 
 

@@ -128,5 +128,5 @@ def _reads_back(text: str, wanted: Plain, word: str | None = None) -> bool:
 
 def _is_special(word: str) -> bool:
     """Whether readers of YAML 1.1 take the bare word for something else, such as no for false."""
-    tag: str = _RESOLVER.resolve(yaml.ScalarNode, word, (True, False))  # type: ignore[no-untyped-call]
+    tag: str = _RESOLVER.resolve(yaml.ScalarNode, word, (True, False))  # type: ignore[no-untyped-call]  # PyYAML
     return tag != "tag:yaml.org,2002:str"

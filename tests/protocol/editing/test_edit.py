@@ -66,7 +66,7 @@ def changes(draw: st.DrawFn) -> tuple[str, Change]:
     action = draw(st.sampled_from(["set", "remove", "insert", "move"]))
     siblings = sum(1 for one in paths(tree) if one[:-1] == path[:-1])
     to = draw(st.integers(0, siblings - 1))
-    return text, Change(path, action, draw(values), to)  # type: ignore[arg-type]
+    return text, Change(path, action, draw(values), to)  # type: ignore[arg-type]  # drawn
 
 
 @settings(max_examples=100, deadline=None)
@@ -80,7 +80,7 @@ def test_a_change_does_just_what_it_says(case: tuple[str, Change]) -> None:
         after = edit_text(text, [change])
     except ConfigError as error:
         # Only what no file may hold at all: control characters and too much depth.
-        assert all(problem.remedy for problem in error.problems)  # noqa: PT017
+        assert all(problem.remedy for problem in error.problems)  # noqa: PT017 - either way is fine
         return
     assert same(read_source(after).tree, wanted)
 
@@ -101,7 +101,7 @@ def test_a_change_of_one_word_touches_one_line(data: st.DataObject) -> None:
 
 def _at(tree: Plain, path: Path) -> Plain:
     for part in path:
-        tree = tree[part]  # type: ignore[index]
+        tree = tree[part]  # type: ignore[index]  # checked by the path
     return tree
 
 

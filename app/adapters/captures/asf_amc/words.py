@@ -1,0 +1,60 @@
+"""Lines of words, as both Acclaim files consist of."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from app.adapters.captures.capture import CaptureError
+from app.adapters.captures.text import text_lines
+
+_LARGEST = 1e9
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line that is neither empty nor a comment."""
+
+    number: int
+    words: list[str]
+
+
+class Lines:
+    """The lines of a text, with one given back where a section ends."""
+
+    def __init__(self, data: bytes) -> None:
+        self._lines = (
+            Line(number, words)
+            for number, text in enumerate(text_lines(data), 1)
+            if (words := text.split()) and not words[0].startswith("#")
+        )
+        self._kept: Line | None = None
+
+    def next(self) -> Line | None:
+        """The next line, None at the end."""
+        line, self._kept = self._kept or next(self._lines, None), None
+        return line
+
+    def section(self) -> Iterator[Line]:
+        """The lines up to the next one that begins with a colon."""
+        while (line := self.next()) is not None:
+            if line.words[0].startswith(":"):
+                self._kept = line
+                return
+            yield line
+
+
+def number(line: Line, place: int, wanted: str) -> float:
+    """Read the word at a place as a finite number of a sane size."""
+    word = line.words[place] if len(line.words) > place else ""
+    try:
+        value = float(word)
+    except ValueError:
+        raise CaptureError(f"expected {wanted}, got {word[:40]!r}.", line=line.number) from None
+    if not math.isfinite(value) or abs(value) > _LARGEST:
+        raise CaptureError(f"{wanted} is {word[:40]}: that is out of range.", line=line.number)
+    return value
+
+
+def numbers(line: Line, first: int, count: int) -> list[float]:
+    """Read `count` numbers from the place `first` on."""
+    return [number(line, place, "a number") for place in range(first, first + count)]

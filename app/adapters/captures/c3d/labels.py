@@ -1,0 +1,80 @@
+"""Names of the points of a C3D file.
+
+Labels of the older systems hold four characters, so "RKNE" may stand there for two markers whose
+descriptions tell them apart. Vicon puts `Subject:` before each label, and lists what it computed
+(angles, forces) among the points; a list of its own says which these are.
+"""
+
+from collections import Counter
+
+from app.adapters.captures.c3d.parameters import Parameters
+
+_COMPUTED = ("ANGLES", "FORCES", "MOMENTS", "POWERS", "SCALARS", "REACTIONS", "MODELED_MARKERS")
+
+
+def names_and_places(
+    parameters: Parameters, points: int
+) -> tuple[tuple[str, ...], list[int], tuple[str, ...]]:
+    """Return names, the number of the point each belongs to, and notes on what was done."""
+    labels = parameters.texts("POINT", "LABELS")[:points]
+    notes: list[str] = []
+    if len(labels) < points:
+        notes.append(f"{points - len(labels)} points have no label and are called Marker N.")
+        labels += [""] * (points - len(labels))
+    computed = {
+        label for kind in _COMPUTED[:5] for label in parameters.texts("POINT", kind) if label
+    }
+    kept = [place for place, label in enumerate(labels) if label not in computed]
+    if len(kept) < points:
+        notes.append(
+            f"{points - len(kept)} points that the file lists as computed (angles, forces) are"
+            " left out."
+        )
+    names = [labels[place] for place in kept]
+    if _repeat(names):
+        described = parameters.texts("POINT", "DESCRIPTIONS")[:points]
+        told = [described[place] if place < len(described) else "" for place in kept]
+        if all(told) and not _repeat(told):
+            names = told
+            notes.append("Labels repeat, so the markers are named by their descriptions.")
+    names, prefixed = _without_prefix(names)
+    if prefixed:
+        notes.append(prefixed)
+    return (
+        _unlike([n or f"Marker {p + 1}" for n, p in zip(names, kept, strict=True)]),
+        kept,
+        (*notes,),
+    )
+
+
+def _without_prefix(names: list[str]) -> tuple[list[str], str]:
+    subjects = {name.split(":", 1)[0] for name in names if ":" in name}
+    bare = [name.split(":", 1)[-1] for name in names]
+    if not subjects:
+        return names, ""
+    if len(subjects) > 1 and _repeat(bare):
+        told = ", ".join(sorted(subjects)[:5])
+        return names, f"The file holds several subjects ({told}), so markers keep their prefixes."
+    return bare, ""
+
+
+def _repeat(names: list[str]) -> bool:
+    named = [name for name in names if name]
+    return len(set(named)) < len(named)
+
+
+def _unlike(names: list[str]) -> tuple[str, ...]:
+    """Number what is still called alike: "RKNE", "RKNE (2)"."""
+    counts: Counter[str] = Counter()
+    used = set(names)
+    out: list[str] = []
+    for name in names:
+        counts[name] += 1
+        own = name
+        while counts[name] > 1 and (own in used or own in out):
+            own = f"{name} ({counts[name]})"
+            if own not in used:
+                break
+            counts[name] += 1
+        out.append(own)
+    return tuple(out)

@@ -1,0 +1,141 @@
+"""The parameter section of a C3D file: named values in named groups.
+
+Source: C3D file format user guide, www.c3d.org. Each record is: length of the name (negative when
+locked), group id (negative when the record is the group itself), name, offset to the next record,
+then for parameters the type, the dimensions, the values and a description.
+"""
+
+import math
+import struct
+from dataclasses import dataclass
+
+from app.adapters.captures.c3d.processors import Processor, processor_of
+from app.adapters.captures.capture import CaptureError
+
+BLOCK = 512
+_MOST_RECORDS = 20_000
+_SIZES = {-1: 1, 1: 1, 2: 2, 4: 4}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter: type -1 text, 1 byte, 2 integer, 4 real; sizes, first one fastest; bytes."""
+
+    type: int
+    sizes: tuple[int, ...]
+    data: bytes
+    processor: Processor
+
+    def numbers(self) -> list[float]:
+        """All values in order; none for a text."""
+        if self.type == 4:
+            return [float(value) for value in self.processor.reals(self.data)]
+        if self.type == 2:
+            return [float(value) for value in self.processor.integers(self.data)]
+        return [float(value) for value in self.data] if self.type == 1 else []
+
+    def texts(self) -> list[str]:
+        """The texts without the blanks that fill them up; none for numbers."""
+        if self.type != -1:
+            return []
+        width = self.sizes[0] if self.sizes else len(self.data)
+        if width == 0:
+            return []
+        return [_text(self.data[at : at + width]) for at in range(0, len(self.data), width)]
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """The values of a file by (group, name), both in capitals."""
+
+    processor: Processor
+    values: dict[tuple[str, str], Parameter]
+
+    def number(self, group: str, name: str) -> float | None:
+        """The first value, None where there is none or it is no number."""
+        numbers = self.numbers(group, name)
+        return numbers[0] if numbers and math.isfinite(numbers[0]) else None
+
+    def numbers(self, group: str, name: str) -> list[float]:
+        """All values, none where the parameter is absent."""
+        found = self.values.get((group, name))
+        return found.numbers() if found else []
+
+    def text(self, group: str, name: str) -> str | None:
+        """The first text, None where there is none."""
+        texts = self.texts(group, name)
+        return texts[0] if texts else None
+
+    def texts(self, group: str, name: str) -> list[str]:
+        """All texts, also those continued in NAME2, NAME3, ... past the 255 of one list."""
+        texts: list[str] = []
+        for number in range(1, 100):
+            found = self.values.get((group, name if number == 1 else f"{name}{number}"))
+            if found is None:
+                break
+            texts += found.texts()
+        return texts
+
+
+def read_parameters(data: bytes) -> Parameters:
+    """Read the section that the header's first byte points at.
+
+    Raises:
+        CaptureError: it lies outside the file, or a record reaches past its end.
+    """
+    start = (data[0] - 1) * BLOCK
+    if start < BLOCK or start + 4 > len(data):
+        raise CaptureError(
+            f"the header places the parameters at byte {start} of {len(data)}: the file is"
+            " damaged or cut off."
+        )
+    processor = processor_of(data[start + 3])
+    groups: dict[int, str] = {}
+    found: list[tuple[int, str, Parameter]] = []
+    at = start + 4
+    for _ in range(_MOST_RECORDS):
+        length, identity = struct.unpack_from("bb", _need(data, at, 2))
+        name_end = at + 2 + abs(length)
+        if length == 0 or identity == 0:
+            break
+        name = _text(_need(data, at + 2, abs(length))).upper()
+        offset = struct.unpack(f"{processor.order}H", _need(data, name_end, 2))[0]
+        if identity < 0:
+            groups[-identity] = name
+        else:
+            found.append((identity, name, _value(data, name_end + 2, processor)))
+        if offset == 0:
+            break
+        at = name_end + offset
+        if offset < 2:
+            raise CaptureError(f"parameter {name!r} points back into itself: the file is damaged.")
+    else:
+        raise CaptureError(f"more than {_MOST_RECORDS} parameters: the file is damaged.")
+    return Parameters(processor, {(groups.get(g, ""), name): value for g, name, value in found})
+
+
+def _value(data: bytes, at: int, processor: Processor) -> Parameter:
+    kind, count = struct.unpack("bB", _need(data, at, 2))
+    if kind not in _SIZES or count > 7:
+        raise CaptureError(f"the parameter at byte {at} has type {kind} and {count} dimensions.")
+    sizes = tuple(_need(data, at + 2, count))
+    return Parameter(
+        kind, sizes, _need(data, at + 2 + count, math.prod(sizes) * _SIZES[kind]), processor
+    )
+
+
+def _need(data: bytes, at: int, size: int) -> bytes:
+    if at + size > len(data):
+        raise CaptureError(
+            f"the parameters reach to byte {at + size}, but the file ends at {len(data)}: it is"
+            " damaged or cut off."
+        )
+    return data[at : at + size]
+
+
+def _text(data: bytes) -> str:
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    return text.strip("\x00 \t\r\n")

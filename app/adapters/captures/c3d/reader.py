@@ -1,0 +1,81 @@
+"""From the bytes of a C3D file to markers.
+
+We read the few parts we need ourselves: every size is held against the file's length before any
+memory is asked for, which the compiled readers do not promise for a file from a stranger.
+"""
+
+import numpy as np
+
+from app.adapters.captures.c3d.labels import names_and_places
+from app.adapters.captures.c3d.parameters import BLOCK, read_parameters
+from app.adapters.captures.c3d.points import layout, read_points
+from app.adapters.captures.capture import (
+    Capture,
+    CaptureError,
+    Convention,
+    Conventions,
+    Limits,
+    Reading,
+)
+from app.adapters.captures.lengths import checked_rate, unit_of_markers
+from app.adapters.captures.upright import upright
+from app.science.rig import MarkerMotion
+
+_MAGIC = 0x50
+
+
+def read_c3d(data: bytes, *, name: str, reading: Reading, limits: Limits) -> Capture:
+    """Read the markers of a C3D file; analogue channels and events are left out.
+
+    Args:
+        data: the file; `name` is its name, for messages.
+        name: see `data`.
+        reading: a unit or upward axis that goes before what the file says.
+        limits: how much the file may ask for.
+
+    Raises:
+        CaptureError: the file is no C3D, damaged, cut off, or holds no marker that was ever seen.
+    """
+    _check_begin(data, name, limits)
+    parameters = read_parameters(data)
+    where = layout(data, parameters, limits)
+    names, kept, notes = names_and_places(parameters, where.points)
+    metres, length = unit_of_markers(parameters.text("POINT", "UNITS"), reading.metres_per_unit)
+    with np.errstate(over="ignore"):
+        places = read_points(data, where, kept) * metres
+    seen = np.all(np.isfinite(places), axis=-1)
+    if not seen.any():
+        raise CaptureError(f"none of the {len(kept)} markers of {name} is seen in any frame.")
+    positions, axes, guesses = upright(
+        places, declared=parameters.text("POINT", "Y_SCREEN"), chosen=reading.up, usual="z"
+    )
+    rate = checked_rate(where.rate_hz)
+    return Capture(
+        format="c3d",
+        motion=MarkerMotion(names, rate, positions),
+        conventions=Conventions(
+            length=length,
+            axes=axes,
+            rotations=Convention("none", "format"),
+            rate=Convention(f"{rate:g} Hz", "file"),
+        ),
+        notes=(*notes, *where.notes, *guesses, *gaps_note(seen)),
+    )
+
+
+def gaps_note(seen: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> tuple[str, ...]:
+    """Say how much of the markers, (N, M) seen or not, is missing."""
+    missing = 1.0 - float(seen.mean())
+    if missing == 0.0:
+        return ()
+    return (f"{100 * missing:.2g} % of the marker positions were not seen.",)
+
+
+def _check_begin(data: bytes, name: str, limits: Limits) -> None:
+    if len(data) > limits.bytes:
+        raise CaptureError(f"{name} has {len(data)} bytes: up to {limits.bytes} are read.")
+    if len(data) < 2 * BLOCK or data[1] != _MAGIC:
+        raise CaptureError(
+            f"{name} is no C3D file: one begins with a header of {BLOCK} bytes whose second byte"
+            " is 80, followed by a parameter section."
+        )

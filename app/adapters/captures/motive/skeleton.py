@@ -1,0 +1,95 @@
+"""A Motive skeleton's bones as a rig: offsets from how bones lie to each other as they move.
+
+In Motive's T-pose every bone's axes are the world's, so the rest rotations are identities and the
+offset of a bone, in its parent's frame, is its offset in the T-pose. The solver lets bones stretch
+a little; the median over the take is the bone.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from app.adapters.captures.capture import CaptureError
+from app.adapters.captures.gaps import fill_places, fill_rotations, unseen
+from app.science.rig import Rig, RigMotion, place, to_local
+from app.science.rotations import FloatArray, conjugate, identity, rotate
+
+_NOTICEABLE_M = 1e-3
+
+
+def skeleton_motion(
+    names: Sequence[str],
+    parents: Sequence[int],
+    places_m: FloatArray,
+    rotations: FloatArray,
+    rate_hz: float,
+    *,
+    local: bool,
+) -> tuple[RigMotion, list[str]]:
+    """Make a rig of bones (N, J), parents first, seen from the world or each from its parent.
+
+    Returns:
+        The movement, and notes on gaps and on bones that stretch.
+
+    Raises:
+        CaptureError: a bone is never seen.
+    """
+    seen = ~unseen(places_m, rotations)
+    _check_seen(names, seen)
+    filled_places, filled_turns = np.empty_like(places_m), np.empty_like(rotations)
+    for joint in range(len(names)):
+        filled_places[:, joint] = fill_places(places_m[:, joint], seen[:, joint])
+        filled_turns[:, joint] = fill_rotations(rotations[:, joint], seen[:, joint])
+    relative = filled_places if local else _relative(parents, filled_places, filled_turns)
+    offsets = np.zeros((len(names), 3))
+    for joint in range(1, len(names)):
+        offsets[joint] = np.median(relative[seen[:, joint], joint], axis=0)
+    rig = Rig(tuple(names), tuple(parents), offsets, identity(len(names)))
+    motion = RigMotion(
+        rig=rig,
+        rate_hz=rate_hz,
+        root_positions_m=filled_places[:, 0],
+        rotations=filled_turns if local else to_local(rig, filled_turns),
+        observed=seen,
+    )
+    return motion, [*_gap_notes(seen), *_stretch_notes(motion, places_m, seen, local=local)]
+
+
+def _check_seen(names: Sequence[str], seen: npt.NDArray[np.bool_]) -> None:
+    never = np.flatnonzero(np.logical_not(seen.sum(axis=0)))
+    if never.size:
+        raise CaptureError(f"bone {names[never[0]]} has no place and rotation in any frame.")
+
+
+def _relative(parents: Sequence[int], places: FloatArray, world: FloatArray) -> FloatArray:
+    relative = places.copy()
+    above = list(parents[1:])
+    relative[:, 1:] = rotate(conjugate(world[:, above]), places[:, 1:] - places[:, above])
+    return relative
+
+
+def _gap_notes(seen: npt.NDArray[np.bool_]) -> list[str]:
+    broken = int((~seen).any(axis=1).sum())
+    if not broken:
+        return []
+    return [f"{broken} of {len(seen)} frames lack bones; these were carried over the gap."]
+
+
+def _stretch_notes(
+    motion: RigMotion, places_m: FloatArray, seen: npt.NDArray[np.bool_], *, local: bool
+) -> list[str]:
+    if local:
+        apart = np.linalg.norm(places_m - motion.rig.offsets_m, axis=-1)
+        apart[:, 0] = 0.0
+    else:
+        told, _ = place(motion.rig, motion.root_positions_m, motion.rotations)
+        apart = np.linalg.norm(places_m - told, axis=-1)
+    apart = np.where(seen, apart, 0.0)
+    worst = float(apart.max())
+    if worst < _NOTICEABLE_M:
+        return []
+    name = motion.rig.names[int(np.unravel_index(np.argmax(apart), apart.shape)[1])]
+    return [
+        f"Bones stretch in the file: with bones of one length {name} is off by up to {worst:.3f} m."
+    ]

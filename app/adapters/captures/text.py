@@ -1,0 +1,63 @@
+"""A text file's lines, one at a time, whatever its encoding and line ends.
+
+A file of a hundred megabytes is never held as text: only the line that is being read is.
+"""
+
+import codecs
+import io
+from collections.abc import Iterator
+from itertools import islice
+
+from app.adapters.captures.capture import CaptureError
+
+LONGEST_LINE = 2_000_000
+"""Characters; two thousand bodies with eight columns each need a fifth of it."""
+_BLOCK = 1 << 20
+
+
+def encoding_of(data: bytes) -> str:
+    """Return the encoding to read by: UTF-8 or UTF-16 by their marks, else UTF-8, else Latin-1.
+
+    Latin-1 reads any bytes and keeps different names different. Older exporters write the local
+    code page, in which only words such as AM and PM leave ASCII.
+    """
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        for start in range(0, len(data), _BLOCK):
+            decoder.decode(data[start : start + _BLOCK])
+        decoder.decode(b"", final=True)
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8-sig"
+
+
+def text_lines(data: bytes, *, keep_ends: bool = False) -> Iterator[str]:
+    """Yield the lines of a text file, without their ends unless these are asked for.
+
+    Raises:
+        CaptureError: a line is so long that the file is no table or text of a capture, or the
+            bytes are no text.
+    """
+    encoding = encoding_of(data)
+    stream = io.TextIOWrapper(io.BytesIO(data), encoding=encoding, newline=None)
+    number = 0
+    try:
+        while line := stream.readline(LONGEST_LINE + 1):
+            number += 1
+            if len(line) > LONGEST_LINE:
+                raise CaptureError(
+                    f"the line is longer than {LONGEST_LINE} characters.", line=number
+                )
+            yield line if keep_ends else line.rstrip("\n")
+    except UnicodeDecodeError:
+        raise CaptureError("the text breaks off within a character.", line=number + 1) from None
+
+
+def first_lines(data: bytes, count: int) -> list[str]:
+    """Return the first lines, as a look at what a file is; never raises, may be cut short."""
+    start = data[: 64 * 1024]
+    encoding = "utf-16" if encoding_of(start[:2]) == "utf-16" else "utf-8-sig"
+    text = start.decode(encoding, errors="replace")
+    return list(islice(text.splitlines(), count))

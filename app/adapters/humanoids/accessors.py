@@ -1,0 +1,137 @@
+"""Tables of numbers out of a file's buffers; every size is held against what is there.
+
+Source: Khronos, glTF 2.0 specification, sections 3.6.2 (accessors) and 3.11 (normalised integers).
+"""
+
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from app.adapters.humanoids.container import embedded
+from app.adapters.humanoids.document import Accessor, Document
+from app.adapters.humanoids.errors import HumanoidFileError
+from app.science.rotations import FloatArray
+
+_TYPES: Final[dict[int, np.dtype[Any]]] = {
+    5120: np.dtype("<i1"), 5121: np.dtype("<u1"), 5122: np.dtype("<i2"), 5123: np.dtype("<u2"),
+    5125: np.dtype("<u4"), 5126: np.dtype("<f4"),
+}  # fmt: skip
+_WIDTHS: Final = {"SCALAR": 1, "VEC3": 3, "VEC4": 4, "MAT4": 16}
+_FLOAT = 5126
+IndexArray = npt.NDArray[np.int64]
+
+
+class Tables:
+    """The accessors of one file.
+
+    Args:
+        document: the file's JSON.
+        binary: the chunk of a GLB.
+        most_values: numbers that may be read altogether.
+    """
+
+    def __init__(self, document: Document, binary: bytes | None, most_values: int) -> None:
+        self._document, self._binary, self._left = document, binary, most_values
+        self._buffers: dict[int, bytes] = {}
+
+    def floats(self, number: int, kind: str) -> FloatArray:
+        """(N, width) numbers; whole ones count from -1 or 0 to 1 where they are normalised.
+
+        Raises:
+            HumanoidFileError: no such accessor, not of this kind, beyond its buffer, not finite.
+        """
+        accessor, place = self._accessor(number)
+        table = self._table(accessor, kind, place)
+        values = table.astype(np.float64)
+        if accessor.normalized and accessor.componentType != _FLOAT:
+            values = np.maximum(values / float(np.iinfo(table.dtype).max), -1.0)
+        if not np.isfinite(values).all():
+            raise HumanoidFileError("It has numbers that are not finite.", place)
+        return values
+
+    def whole(self, number: int, kind: str) -> IndexArray:
+        """(N, width) whole numbers from zero on; errors as for `floats`."""
+        accessor, place = self._accessor(number)
+        table = self._table(accessor, kind, place)
+        if table.dtype.kind != "u":
+            raise HumanoidFileError(
+                f"Its component type is {accessor.componentType}; valid are whole numbers without"
+                " sign: 5121, 5123, 5125.",
+                place,
+            )
+        return table.astype(np.int64)
+
+    def _accessor(self, number: int) -> tuple[Accessor, str]:
+        place = f"accessors.{number}"
+        if number >= len(self._document.accessors):
+            raise HumanoidFileError(
+                f"There is no such accessor: the file has {len(self._document.accessors)}.", place
+            )
+        return self._document.accessors[number], place
+
+    def _table(self, accessor: Accessor, kind: str, place: str) -> npt.NDArray[Any]:
+        if accessor.type != kind or accessor.componentType not in _TYPES:
+            raise HumanoidFileError(
+                f"It is {accessor.type} of {accessor.componentType}; here {kind} of one of"
+                f" {', '.join(map(str, _TYPES))} is valid.",
+                place,
+            )
+        if accessor.bufferView is None or accessor.sparse is not None:
+            raise HumanoidFileError(
+                "It has no plain data: the mesh is sparse or compressed, which is not read. Export"
+                " the model without compression.",
+                place,
+            )
+        width = _WIDTHS[kind]
+        self._left -= accessor.count * width
+        if self._left < 0:
+            raise HumanoidFileError(
+                "The file has more numbers than are read. Export the model with fewer vertices.",
+                place,
+            )
+        view, stride = self._view(accessor.bufferView, place)
+        dtype = _TYPES[accessor.componentType]
+        size = width * dtype.itemsize
+        stride = size if stride is None else stride
+        end = accessor.byteOffset + (accessor.count - 1) * stride + size
+        if stride < size or end > len(view):
+            raise HumanoidFileError(
+                f"It wants {end} bytes, {stride} for each of {accessor.count}, of the"
+                f" {len(view)} of its buffer view {accessor.bufferView}.",
+                place,
+            )
+        return np.ndarray(
+            (accessor.count, width), dtype, view, accessor.byteOffset, (stride, dtype.itemsize)
+        )
+
+    def _view(self, number: int, place: str) -> tuple[memoryview, int | None]:
+        views = self._document.bufferViews
+        if number >= len(views):
+            raise HumanoidFileError(f"There is no buffer view {number} of {len(views)}.", place)
+        view = views[number]
+        data = self._buffer(view.buffer, f"bufferViews.{number}")
+        end = view.byteOffset + view.byteLength
+        if end > len(data):
+            raise HumanoidFileError(
+                f"It ends at byte {end} of a buffer of {len(data)}.", f"bufferViews.{number}"
+            )
+        return memoryview(data)[view.byteOffset : end], view.byteStride
+
+    def _buffer(self, number: int, place: str) -> bytes:
+        if number in self._buffers:
+            return self._buffers[number]
+        buffers = self._document.buffers
+        if number >= len(buffers):
+            raise HumanoidFileError(f"There is no buffer {number} of {len(buffers)}.", place)
+        buffer, at = buffers[number], f"buffers.{number}"
+        if buffer.uri is not None:
+            data = embedded(buffer.uri, at)
+        elif number == 0 and self._binary is not None:
+            data = self._binary
+        else:
+            raise HumanoidFileError("The buffer is not in the file.", at)
+        if len(data) < buffer.byteLength:
+            raise HumanoidFileError(f"The buffer has {len(data)} of {buffer.byteLength} bytes.", at)
+        self._buffers[number] = data[: buffer.byteLength]
+        return self._buffers[number]

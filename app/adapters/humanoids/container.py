@@ -1,0 +1,95 @@
+"""The two forms of a glTF 2.0 file: JSON text, and the binary GLB with its chunks.
+
+Source: Khronos, glTF 2.0 specification, sections 3.6.1.1 (buffers) and 4 (GLB).
+"""
+
+import base64
+import binascii
+import struct
+from dataclasses import dataclass
+from typing import Final
+
+from app.adapters.humanoids.errors import HumanoidFileError
+
+_MAGIC: Final = b"glTF"
+_JSON, _BIN = 0x4E4F534A, 0x004E4942
+_MOST_JSON_VALUES: Final = 2_000_000
+"""A list of empty lists takes fifty times its bytes in memory; real files have some 50,000."""
+_AS_ONE_FILE = "Export the model as one file: glTF binary (.glb) or VRM."
+_OTHERS = {
+    b"Kaydara FBX": "an FBX file",
+    b"PK\x03\x04": "a ZIP archive",
+    b"<?xml": "an XML file, perhaps COLLADA",
+    b"BLENDER": "a Blender file",
+    b"OFF": "an OFF mesh",
+    b"solid": "an STL mesh",
+}
+
+
+@dataclass(frozen=True)
+class Container:
+    """A file taken apart: its JSON, and the binary chunk of a GLB."""
+
+    text: bytes
+    binary: bytes | None
+
+
+def open_container(data: bytes) -> Container:
+    """Take a file apart; raises HumanoidFileError."""
+    found = _glb(data) if data[:4] == _MAGIC else Container(_plain(data), None)
+    values = sum(found.text.count(mark) for mark in (b",", b"[", b"{"))
+    if values > _MOST_JSON_VALUES:
+        raise HumanoidFileError(
+            f"Its JSON has more than {_MOST_JSON_VALUES} values. Export the model without"
+            " animations."
+        )
+    return found
+
+
+def embedded(uri: str, place: str) -> bytes:
+    """The content of a buffer that is written into the JSON; raises HumanoidFileError."""
+    head, comma, body = uri.partition(",")
+    if not uri.startswith("data:"):
+        raise HumanoidFileError(f"The file needs another one, {uri[:100]!r}. {_AS_ONE_FILE}", place)
+    if not comma or not head.endswith(";base64"):
+        raise HumanoidFileError(f"A buffer in the file must be base64. {_AS_ONE_FILE}", place)
+    try:
+        return base64.b64decode(body, validate=True)
+    except (binascii.Error, ValueError) as error:
+        raise HumanoidFileError(f"The buffer is no base64: {error}.", place) from None
+
+
+def _plain(data: bytes) -> bytes:
+    text = data.removeprefix(b"\xef\xbb\xbf")
+    if text[:100].lstrip()[:1] == b"{":
+        return text
+    for start, kind in _OTHERS.items():
+        if data.startswith(start):
+            raise HumanoidFileError(f"This is {kind}, not glTF or VRM. {_AS_ONE_FILE}")
+    raise HumanoidFileError(
+        f"This is no glTF or VRM: it begins with {data[:8]!r}, valid is 'glTF' or a brace."
+        f" {_AS_ONE_FILE}"
+    )
+
+
+def _glb(data: bytes) -> Container:
+    if len(data) < 20:
+        raise HumanoidFileError(f"The file ends after {len(data)} bytes. Copy it again.")
+    version, length = struct.unpack_from("<II", data, 4)
+    if version != 2:
+        raise HumanoidFileError(f"It is glTF version {version}; valid is 2. {_AS_ONE_FILE}")
+    if length > len(data):
+        raise HumanoidFileError(
+            f"The file ends after {len(data)} of {length} bytes. Copy it again."
+        )
+    chunks: dict[int, bytes] = {}
+    at = 12
+    while at + 8 <= length:
+        size, kind = struct.unpack_from("<II", data, at)
+        if at + 8 + size > length:
+            raise HumanoidFileError("The chunk goes on beyond the end of the file.", f"byte {at}")
+        chunks.setdefault(kind, data[at + 8 : at + 8 + size])
+        at += 8 + size
+    if _JSON not in chunks:
+        raise HumanoidFileError("The file has no JSON chunk, which tells what is in it.")
+    return Container(chunks[_JSON], chunks.get(_BIN))

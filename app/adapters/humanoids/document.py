@@ -1,0 +1,167 @@
+"""What a glTF's JSON says, as far as bones and skin are concerned: typed, and within limits.
+
+Source: Khronos, glTF 2.0 specification, section 5; VRM consortium, VRM 0.0 (`VRM`) and 1.0
+(`VRMC_vrm`), humanoid. Everything else in a file is passed over.
+"""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from app.adapters.humanoids.errors import HumanoidFileError
+
+MOST_NODES = 5_000
+_MOST = 20_000
+_MOST_NUMBER = 2**40
+Index = Annotated[int, Field(ge=0, lt=_MOST_NUMBER)]
+Name = Annotated[str, Field(max_length=1_000)]
+Number = Annotated[float, Field(ge=-1e9, le=1e9)]
+Three = Annotated[list[Number], Field(min_length=3, max_length=3)]
+Four = Annotated[list[Number], Field(min_length=4, max_length=4)]
+Sixteen = Annotated[list[Number], Field(min_length=16, max_length=16)]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+class Node(_Part):
+    """A bone, or where a mesh is."""
+
+    name: Name = ""
+    children: Annotated[list[Index], Field(max_length=MOST_NODES)] = []
+    mesh: Index | None = None
+    skin: Index | None = None
+    matrix: Sixteen | None = None
+    translation: Three = [0.0, 0.0, 0.0]
+    rotation: Four = [0.0, 0.0, 0.0, 1.0]
+    scale: Three = [1.0, 1.0, 1.0]
+
+
+class Buffer(_Part):
+    """A run of bytes: in the JSON, or the binary chunk."""
+
+    byteLength: Index  # noqa: N815 - as in the file
+    uri: str | None = None
+
+
+class BufferView(_Part):
+    """A part of a buffer."""
+
+    buffer: Index
+    byteLength: Index  # noqa: N815
+    byteOffset: Index = 0  # noqa: N815
+    byteStride: Annotated[int, Field(ge=1, le=252)] | None = None  # noqa: N815
+
+
+class Accessor(_Part):
+    """A table of numbers in a view."""
+
+    componentType: int  # noqa: N815
+    count: Annotated[int, Field(ge=1, lt=_MOST_NUMBER)]
+    type: Annotated[str, Field(max_length=10)]
+    bufferView: Index | None = None  # noqa: N815
+    byteOffset: Index = 0  # noqa: N815
+    normalized: bool = False
+    sparse: object = None
+
+
+class Primitive(_Part):
+    """Triangles with one material."""
+
+    attributes: Annotated[dict[Name, Index], Field(max_length=100)]
+    indices: Index | None = None
+    mode: Annotated[int, Field(ge=0, le=6)] = 4
+
+
+class Mesh(_Part):
+    """What is drawn at a node."""
+
+    primitives: Annotated[list[Primitive], Field(max_length=_MOST)]
+
+
+class Skin(_Part):
+    """Bones of a mesh, and what brings its vertices into their frames."""
+
+    joints: Annotated[list[Index], Field(min_length=1, max_length=MOST_NODES)]
+    inverseBindMatrices: Index | None = None  # noqa: N815
+
+
+class Vrm0Bone(_Part):
+    """VRM 0: -1 for a bone that the model lacks."""
+
+    bone: Name
+    node: Annotated[int, Field(ge=-1, lt=_MOST_NUMBER)]
+
+
+class Vrm0Humanoid(_Part):
+    """VRM 0: bones in a list."""
+
+    humanBones: Annotated[list[Vrm0Bone], Field(max_length=200)]  # noqa: N815
+
+
+class Vrm0(_Part):
+    """The extension `VRM`."""
+
+    humanoid: Vrm0Humanoid | None = None
+
+
+class Vrm1Bone(_Part):
+    """VRM 1.0."""
+
+    node: Index
+
+
+class Vrm1Humanoid(_Part):
+    """VRM 1.0: bones by name."""
+
+    humanBones: Annotated[dict[Name, Vrm1Bone], Field(max_length=200)]  # noqa: N815
+
+
+class Vrm1(_Part):
+    """The extension `VRMC_vrm`."""
+
+    humanoid: Vrm1Humanoid
+
+
+class Extensions(_Part):
+    """The humanoid's bones, by either version of VRM."""
+
+    vrm0: Vrm0 | None = Field(None, alias="VRM")
+    vrm1: Vrm1 | None = Field(None, alias="VRMC_vrm")
+
+
+class Document(_Part):
+    """A file's JSON."""
+
+    extensionsRequired: Annotated[list[Name], Field(max_length=200)] = []  # noqa: N815
+    nodes: Annotated[list[Node], Field(max_length=MOST_NODES)] = []
+    meshes: Annotated[list[Mesh], Field(max_length=_MOST)] = []
+    skins: Annotated[list[Skin], Field(max_length=_MOST)] = []
+    accessors: Annotated[list[Accessor], Field(max_length=200_000)] = []
+    bufferViews: Annotated[list[BufferView], Field(max_length=200_000)] = []  # noqa: N815
+    buffers: Annotated[list[Buffer], Field(max_length=_MOST)] = []
+    extensions: Extensions | None = None
+
+
+_ADAPTER = TypeAdapter(Document)
+_COMPRESSED = {"KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"}
+
+
+def read_document(text: bytes) -> Document:
+    """The file's JSON; raises HumanoidFileError with the first thing that is wrong."""
+    try:
+        document = _ADAPTER.validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_context=False)[0]
+        more = f" ({error.error_count() - 1} more)" if error.error_count() > 1 else ""
+        place = ".".join(str(step) for step in first["loc"])
+        raise HumanoidFileError(f"{first['msg']}{more}.", place) from None
+    packed = sorted(_COMPRESSED & set(document.extensionsRequired))
+    if packed:
+        raise HumanoidFileError(
+            f"The mesh is compressed ({packed[0]}), which is not read. Export the model without"
+            " mesh compression.",
+            "extensionsRequired",
+        )
+    return document

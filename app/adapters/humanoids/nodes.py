@@ -1,0 +1,148 @@
+"""The tree of a file's nodes: who hangs on whom, and where each is in the world.
+
+Source: Khronos, glTF 2.0 specification, section 3.5: matrices are column by column; a node without
+one is translation, rotation (x, y, z, w) and scale, applied from right to left.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.adapters.humanoids.document import Document, Node
+from app.adapters.humanoids.errors import HumanoidFileError
+from app.science.rig import Rig
+from app.science.rotations import FloatArray, conjugate, multiply, normalise, rotate
+from app.science.rotations.scalars import Vector, q_from_axes
+
+_FARTHEST = 1e9
+_ROOT = "(file)"
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """All nodes of a file.
+
+    Attributes:
+        names: each with a name of its own.
+        parents: index of the node above, -1 for those at the top.
+        order: every node after the one above it.
+        world: (N, 4, 4) world_from_node.
+    """
+
+    names: tuple[str, ...]
+    parents: tuple[int, ...]
+    order: tuple[int, ...]
+    world: FloatArray
+
+    def line_up(self, node: int) -> list[int]:
+        """The node and all above it, upwards."""
+        line = []
+        while node >= 0:
+            line.append(node)
+            node = self.parents[node]
+        return line
+
+
+def tree_of(document: Document) -> Tree:
+    """Hang the nodes; raises HumanoidFileError for a loop, or a node under two others."""
+    nodes = document.nodes
+    parents = [-1] * len(nodes)
+    for number, node in enumerate(nodes):
+        for child in node.children:
+            if child >= len(nodes) or parents[child] >= 0:
+                why = "is no node" if child >= len(nodes) else "is also below another node"
+                raise HumanoidFileError(
+                    f"{child} {why}; valid are nodes 0 to {len(nodes) - 1}, each once.",
+                    f"nodes.{number}.children",
+                )
+            parents[child] = number
+    order = [number for number, parent in enumerate(parents) if parent < 0]
+    for number in order:  # grows while it is walked
+        order.extend(nodes[number].children)
+    if len(order) < len(nodes):
+        rest = sorted(set(range(len(nodes))) - set(order))
+        raise HumanoidFileError("The node hangs below itself.", f"nodes.{rest[0]}")
+    return Tree(_names(nodes), tuple(parents), tuple(order), _world(nodes, parents, order))
+
+
+def rig_of(tree: Tree, wanted: set[int]) -> tuple[Rig, dict[int, int]]:
+    """Make a rig of some nodes and all above them.
+
+    Returns:
+        The rig, in metres as the file says, and node -> bone.
+    """
+    kept = {above for node in wanted for above in tree.line_up(node)}
+    bones = [node for node in tree.order if node in kept]
+    tops = [node for node in bones if tree.parents[node] < 0]
+    first = 0 if len(tops) == 1 else 1
+    bone_of = {node: row + first for row, node in enumerate(bones)}
+    parents = [bone_of.get(tree.parents[node], first - 1) for node in bones]
+    names = [tree.names[node] for node in bones]
+    places = tree.world[bones, :3, 3]
+    turns = _turns(tree.world[bones, :3, :3])
+    if first:  # several at the top hang on one of ours
+        parents, names = [-1, *parents], [_ROOT, *names]
+        places = np.vstack((np.zeros(3), places))
+        turns = np.vstack((np.array((1.0, 0.0, 0.0, 0.0)), turns))
+    above = np.array(parents[1:], dtype=np.int64)
+    offsets, rotations = places.copy(), turns.copy()
+    back = conjugate(turns[above])
+    offsets[1:] = rotate(back, places[1:] - places[above])
+    rotations[1:] = normalise(multiply(back, turns[1:]))
+    return Rig(tuple(names), tuple(parents), offsets, rotations), bone_of
+
+
+def _names(nodes: list[Node]) -> tuple[str, ...]:
+    used: set[str] = {_ROOT}
+    names = []
+    for number, node in enumerate(nodes):
+        name = node.name or f"node {number}"
+        if name in used:
+            name = f"{name} (node {number})"
+        while name in used:
+            name += "'"
+        used.add(name)
+        names.append(name)
+    return tuple(names)
+
+
+def _world(nodes: list[Node], parents: list[int], order: list[int]) -> FloatArray:
+    world = np.empty((len(nodes), 4, 4))
+    with np.errstate(over="ignore", invalid="ignore"):
+        for number in order:
+            local = _local(nodes[number])
+            above = parents[number]
+            world[number] = local if above < 0 else world[above] @ local
+            if not (np.abs(world[number]) < _FARTHEST).all():
+                raise HumanoidFileError(
+                    "The node lies too far away to be part of a body.", f"nodes.{number}"
+                )
+    return world
+
+
+def _local(node: Node) -> FloatArray:
+    if node.matrix is not None:
+        return np.array(node.matrix).reshape(4, 4).T
+    local = np.eye(4)
+    x, y, z, w = node.rotation
+    length = (x * x + y * y + z * z + w * w) ** 0.5
+    turn = np.array((w, x, y, z)) / length if length > 0.0 else np.array((1.0, 0.0, 0.0, 0.0))
+    local[:3, :3] = rotate(turn[np.newaxis], np.eye(3)).T * np.array(node.scale)
+    local[:3, 3] = node.translation
+    return local
+
+
+def _turns(matrices: FloatArray) -> FloatArray:
+    """(N, 4) the rotations nearest to (N, 3, 3) matrices with any scale."""
+    lengths = np.linalg.norm(matrices, axis=1, keepdims=True)
+    left, _, right = np.linalg.svd(matrices / np.where(lengths > 0.0, lengths, 1.0))
+    signs = np.ones((len(matrices), 3))
+    signs[:, 2] = np.sign(np.linalg.det(left @ right))
+    rotations = (left * signs[:, np.newaxis]) @ right
+    return normalise(np.array([q_from_axes(*_columns(matrix)) for matrix in rotations]))
+
+
+def _columns(matrix: npt.NDArray[np.float64]) -> tuple[Vector, Vector, Vector]:
+    (a, b, c), (d, e, f), (g, h, i) = matrix.T.tolist()
+    return (a, b, c), (d, e, f), (g, h, i)

@@ -1,0 +1,97 @@
+"""From the bytes of a glTF or VRM file to a humanoid in the T-pose.
+
+The reader is ours, as a body needs so little of a file (nodes, skins, places and weights of
+vertices), and as a file from anywhere must not be able to hurt: every index and size is held
+against what is there before anything is made of it.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from app.adapters.humanoids.accessors import Tables
+from app.adapters.humanoids.bone_names import named_bones, vrm_nodes
+from app.adapters.humanoids.container import open_container
+from app.adapters.humanoids.document import Document, read_document
+from app.adapters.humanoids.errors import HumanoidFileError
+from app.adapters.humanoids.nodes import Tree, rig_of, tree_of
+from app.adapters.humanoids.skin import read_skin
+from app.science.avatar.humanoid import Humanoid, HumanoidError
+from app.science.avatar.humanoid_pose import RiggedMesh, humanoid_of
+from app.science.rig import RigError
+
+MapSource = Literal["vrm", "names"]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How much a file may ask for before it is refused; real models stay far below."""
+
+    bytes: int = 256_000_000
+    vertices: int = 2_000_000
+    values: int = 60_000_000
+    """Numbers that are read altogether."""
+
+
+@dataclass(frozen=True, eq=False)
+class ReadHumanoid:
+    """A model, and who said which bone is which body part."""
+
+    humanoid: Humanoid
+    bones_by: MapSource
+
+
+def read_humanoid(data: bytes, limits: Limits | None = None) -> ReadHumanoid:
+    """Read a humanoid model from GLB, glTF with its buffers inside, or VRM 0.x and 1.0.
+
+    Raises:
+        HumanoidFileError: the file cannot be read, with the place; or the model is no humanoid,
+            with the parts that are missing.
+    """
+    most = Limits() if limits is None else limits
+    if len(data) > most.bytes:
+        raise HumanoidFileError(f"The file has {len(data)} bytes; up to {most.bytes} are read.")
+    container = open_container(data)
+    document = read_document(container.text)
+    if not document.nodes:
+        raise HumanoidFileError("The file has no nodes, so there are no bones.", "nodes")
+    tree = tree_of(document)
+    mapped = vrm_nodes(document)
+    mesh = _mesh(document, tree, Tables(document, container.binary, most.values), mapped, most)
+    try:
+        return ReadHumanoid(humanoid_of(mesh), "names" if mapped is None else "vrm")
+    except (HumanoidError, RigError) as error:
+        raise HumanoidFileError(str(error)) from error
+
+
+def _mesh(
+    document: Document,
+    tree: Tree,
+    tables: Tables,
+    mapped: dict[str, int] | None,
+    most: Limits,
+) -> RiggedMesh:
+    skin = read_skin(document, tree, tables, most.vertices)
+    rig, bone_of = rig_of(tree, _bone_nodes(document, mapped))
+    if mapped is None:
+        bones = named_bones(rig)
+    else:
+        bones = {part: bone_of[node] for part, node in mapped.items()}
+    # A mesh that follows no bone, such as a floor below the figure, is not skin.
+    owner = np.full(len(tree.names), -1, dtype=np.int64)
+    for node in tree.order:
+        above = tree.parents[node]
+        owner[node] = bone_of.get(node, owner[above] if above >= 0 else -1)
+    owners = owner[skin.nodes]
+    held = owners >= 0
+    return RiggedMesh(rig, bones, skin.places_m[held], owners[held])
+
+
+def _bone_nodes(document: Document, mapped: dict[str, int] | None) -> set[int]:
+    """Nodes that may be bones: those of skins and of VRM's map; all where there is neither."""
+    nodes = set() if mapped is None else set(mapped.values())
+    nodes |= {
+        joint for skin in document.skins for joint in skin.joints if joint < len(document.nodes)
+    }
+    return nodes or set(range(len(document.nodes)))

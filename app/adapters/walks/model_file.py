@@ -1,0 +1,154 @@
+"""A fitted walking model as a file: tables of its walks, and how it was fitted.
+
+A NumPy archive without pickles: `header`, a JSON text, and the tables of the database. The space is
+not kept, since the seed makes it anew. The header has a hash over all the rest, so that a file that
+was cut or changed is refused. It is written beside its place and then moved there: whoever reads
+finds the old file or the new one, whole.
+"""
+
+import hashlib
+import json
+import os
+import zipfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.science.walking.annealing import StaticFit
+from app.science.walking.database import WalkDatabase
+from app.science.walking.fitting import FitOptions, FittedWalking, restored
+from app.science.walking.following import FollowingRules
+from app.science.walking.model import WalkingError
+from app.science.walking.parameters import ParameterGrid, SteeringParameter
+from app.science.walking.reading_choice import ReadingScore
+from app.science.walking.suitability import SuitabilityOptions
+
+FORMAT, VERSION = "reembody-walking-model", 1
+MOST_BYTES = 2_000_000_000
+_TABLES = ("vectors", "deviations", "arrivals_s", "durations_s", "lengths_m")
+
+
+def write_model(path: Path, fit: FittedWalking, rules: FollowingRules) -> str:
+    """Write a model, whole or not at all; return its content hash. Raises OSError."""
+    tables = {name: np.ascontiguousarray(getattr(fit.database, name)) for name in _TABLES}
+    header = _header(fit, rules)
+    digest = content_hash(header, tables)
+    text = json.dumps({**header, "content_hash": digest}, sort_keys=True)
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with part.open("xb") as file:
+            letters = np.frombuffer(text.encode(), dtype=np.uint8)
+            np.savez_compressed(file, allow_pickle=False, header=letters, **tables)
+            file.flush()
+            os.fsync(file.fileno())
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+    return digest
+
+
+def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
+    """Read a model, the rules its agents walk by, and its content hash.
+
+    Raises:
+        WalkingError: the file is no model, of a later version, or damaged.
+        OSError: it cannot be opened.
+    """
+    if path.stat().st_size > MOST_BYTES:
+        raise WalkingError(f"{path}: larger than {MOST_BYTES} bytes, which no model is.")
+    try:
+        with np.load(path, allow_pickle=False) as archive:
+            header = json.loads(archive["header"].tobytes().decode())
+            tables = {name: archive[name] for name in _TABLES}
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise WalkingError(
+            f"{path}: no model of how people walk ({error}); `reembody walk fit` writes one."
+        ) from error
+    _check_header(path, header)
+    digest = str(header.pop("content_hash", ""))
+    if digest != content_hash(header, tables):
+        raise WalkingError(f"{path}: damaged, its content is not what its hash says; fit it again.")
+    try:
+        return _fit_of(header, tables), FollowingRules(**header["rules"]), digest
+    except (KeyError, TypeError) as error:
+        raise WalkingError(f"{path}: incomplete ({error}); fit it again.") from error
+
+
+def content_hash(header: dict[str, Any], tables: dict[str, Any]) -> str:
+    """SHA-256 over the header, without its own hash, and the tables."""
+    digest = hashlib.sha256(json.dumps(header, sort_keys=True).encode())
+    for name in _TABLES:
+        table = tables[name]
+        digest.update(f"{name} {table.dtype.str} {table.shape}".encode())
+        digest.update(np.ascontiguousarray(table).tobytes())
+    return digest.hexdigest()
+
+
+def _check_header(path: Path, header: object) -> None:
+    if not isinstance(header, dict) or header.get("format") != FORMAT:
+        raise WalkingError(f"{path}: no model of how people walk.")
+    if header.get("version") != VERSION:
+        raise WalkingError(
+            f"{path}: version {header.get('version')} of the format, this program reads {VERSION}."
+        )
+
+
+def _header(fit: FittedWalking, rules: FollowingRules) -> dict[str, Any]:
+    base, static = fit.database, fit.static
+    return {
+        "format": FORMAT,
+        "version": VERSION,
+        "parameters": [asdict(one) for one in base.grid.parameters],
+        "values": [list(values) for values in base.grid.values],
+        "metric": base.metric,
+        "names": list(base.names),
+        "subjects": list(base.subjects),
+        "sources": list(base.sources),
+        "kinds": list(base.kinds),
+        "rules": asdict(rules),
+        "seed": fit.options.seed,
+        "k": fit.options.k,
+        "entries": fit.options.entries,
+        "reading": asdict(fit.reading),
+        "reading_chosen": fit.options.reading is None,
+        "scores": [{"options": asdict(one.options), "crps_s": one.crps_s} for one in fit.scores],
+        "static": {
+            "vector": static.vector.tolist(),
+            "deviation": static.deviation,
+            "node": static.node.tolist(),
+            "node_deviation": static.node_deviation,
+        },
+    }
+
+
+def _fit_of(header: dict[str, Any], tables: dict[str, Any]) -> FittedWalking:
+    grid = ParameterGrid(
+        tuple(SteeringParameter(**one) for one in header["parameters"]),
+        tuple(tuple(values) for values in header["values"]),
+    )
+    database = WalkDatabase(
+        grid=grid,
+        metric=header["metric"],
+        names=tuple(header["names"]),
+        subjects=tuple(header["subjects"]),
+        sources=tuple(header["sources"]),
+        kinds=tuple(header["kinds"]),
+        **tables,
+    )
+    reading = SuitabilityOptions(**header["reading"])
+    given = None if header["reading_chosen"] else reading
+    options = FitOptions(header["seed"], header["k"], header["entries"], given)
+    scores = [
+        ReadingScore(SuitabilityOptions(**one["options"]), one["crps_s"])
+        for one in header["scores"]
+    ]
+    told = header["static"]
+    static = StaticFit(
+        np.array(told["vector"]),
+        told["deviation"],
+        np.array(told["node"]),
+        told["node_deviation"],
+    )
+    return restored(database, options, reading, scores, static)

@@ -1,0 +1,104 @@
+"""Scene files (YAML or JSON): a floor with obstacles, places and the paths between them.
+
+    key: my-lab
+    bounds_m: [-2, -2, 2, 4]          # left, near, right, far; x to the right, y ahead
+    clearance_m: 0.2                  # how far a walker's middle keeps from obstacles
+    obstacles:
+      - {shape: box, name: table, center_m: [0, 1], size_m: [1.2, 0.6], turned_deg: 10}
+      - {shape: disc, name: pole, center_m: [1, 2], radius_m: 0.05}
+      - {shape: wall, name: screen, from_m: [-2, 0], to_m: [-1, 0], thickness_m: 0.05}
+      - {shape: polygon, name: corner, corners_m: [[1, -2], [2, -2], [2, -1]]}
+    places: {start: [0, -1], goal: [0, 3]}
+    paths:
+      - {name: there, from: start, to: goal}
+
+All problems of a file come at once, each with line, column and remedy.
+"""
+
+import json
+from pathlib import Path as FilePath
+
+from pydantic import ValidationError
+
+from app.adapters.walks.scene_schema import SceneFile, point_of
+from app.protocol.errors import ConfigError, ConfigProblem
+from app.protocol.explain import explain
+from app.protocol.source import Path, Source, path_text, read_source
+from app.science.walking.scene import Obstacle, Scene, SceneError, ScenePath
+
+SHIPPED = FilePath(__file__).with_name("scenes")
+"""The workplaces of the paper, as scene files."""
+_REMEDY = "Correct it: lengths are in metres, x to the right, y ahead."
+
+
+def shipped_scenes() -> dict[str, FilePath]:
+    """The files that come with the product, by their scenes' keys."""
+    return {file.stem: file for file in sorted(SHIPPED.glob("*.yaml"))}
+
+
+def load_shipped(key: str) -> Scene:
+    """Read a scene that comes with the product; raises KeyError for another name."""
+    return load_scene(shipped_scenes()[key].read_text(encoding="utf-8"))
+
+
+def load_scene(text: str) -> Scene:
+    """Read a scene file.
+
+    Raises:
+        ConfigError: with every problem of the file: unknown keys, values that are no numbers, an
+            outline that is not convex, a place inside an obstacle, a path to an unknown place.
+    """
+    source = read_source(text)
+    if not isinstance(source.tree, dict):
+        remedy = "Begin with lines like key: my-lab."
+        problem = ConfigProblem("", 1, 1, "The file is not a mapping.", remedy=remedy)
+        raise ConfigError([*source.problems, problem])
+    try:
+        # By way of JSON: there a list may become a tuple, and still nothing else is converted.
+        file = SceneFile.model_validate_json(json.dumps(source.tree))
+    except ValidationError as error:
+        found = explain(error, SceneFile.model_json_schema(), source)
+        raise ConfigError([*source.problems, *found]) from error
+    problems = list(source.problems)
+    scene = _scene(file, source, problems)
+    if scene is None or problems:
+        raise ConfigError(problems)
+    return scene
+
+
+def _scene(file: SceneFile, source: Source, problems: list[ConfigProblem]) -> Scene | None:
+    """Put the scene together, noting what science refuses at its place in the file."""
+    obstacles: list[Obstacle] = []
+    for at, shape in enumerate(file.obstacles):
+        try:
+            obstacles.append(shape.obstacle())
+        except SceneError as error:
+            problems.append(_at(("obstacles", at), error, source))
+    try:
+        floor = Scene(file.key, file.bounds_m, tuple(obstacles), {}, (), file.clearance_m)
+    except SceneError as error:
+        problems.append(_at(("bounds_m",), error, source))
+        return None
+    places = {name: point_of(place) for name, place in file.places.items()}
+    for name, point in places.items():
+        try:
+            floor.check_point(point, f"Place {name!r}")
+        except SceneError as error:
+            problems.append(_at(("places", name), error, source))
+    paths = tuple(ScenePath(way.name, way.start, way.goal) for way in file.paths)
+    for at, path in enumerate(paths):
+        unknown = [place for place in (path.start, path.goal) if place not in places]
+        if unknown or path.start == path.goal:
+            told = f"names {unknown[0]!r}" if unknown else "leads back to where it begins"
+            known = ", ".join(places) or "none"
+            refused = SceneError(f"Path {path.name!r} {told}; places are {known}.")
+            problems.append(_at(("paths", at), refused, source))
+    if problems:
+        return None
+    named = (file.key, file.bounds_m, tuple(obstacles), places, paths)
+    return Scene(*named, file.clearance_m, file.title, file.about)
+
+
+def _at(path: Path, error: SceneError, source: Source) -> ConfigProblem:
+    mark = source.place(path)
+    return ConfigProblem(path_text(path), mark.line, mark.column, str(error), remedy=_REMEDY)

@@ -1,0 +1,198 @@
+"""Tracks on the floor out of text tables: CSV with a header, or columns as Juelich's archive has.
+
+A header names columns, in any case: `id` (or subject, person, participant, ped), `t`, `time`,
+`time_s`, `time_ms` or `frame`, and `x`, `y`, each of these two with a unit where it is not metres
+(`x_cm`, `y [mm]`). Other columns are left alone. Columns are parted by commas, semicolons, tabs or
+spaces; lines beginning with # are comments, of which `framerate: 16` is read.
+
+Without a header the columns are id, frame, x, y (z) in centimetres, as in the trajectories of the
+pedestrian dynamics data archive of Juelich. Where time is a frame number, the rate must be known.
+"""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.adapters.captures.capture import CaptureError
+from app.adapters.captures.text import text_lines
+from app.science.rotations import FloatArray
+from app.science.walking.model import Kind, Track, WalkingError
+
+MOST_ROWS, MOST_PEOPLE = 5_000_000, 20_000
+LONGEST_GAP_S = 0.5
+FASTEST_M_S = 12.0
+"""Nobody's median speed; a faster track is in another unit."""
+_UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+_IDS = ("id", "subject", "person", "participant", "ped", "pers_id", "agent")
+_TIMES = {"t": 1.0, "time": 1.0, "time_s": 1.0, "t_s": 1.0, "time_ms": 0.001, "t_ms": 0.001}
+_FRAMES = ("frame", "frame_id", "fr")
+_NAME = re.compile(r"^([a-z_]+?)(?:[_ ]*[\[(]?(cm|mm|m)[\])]?)?$")
+_RATE = re.compile(r"frame\s*rate\D*([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE | re.ASCII)
+
+
+@dataclass(frozen=True)
+class TrackReading:
+    """What a user says about a table where the table does not.
+
+    Attributes:
+        rate_hz: frames a second, where time is a frame number.
+        metres_per_unit: of x and y; None to take the header's unit, else metres.
+        statures_m: subject to height.
+        kind: whether people walked or a program.
+    """
+
+    rate_hz: float | None = None
+    metres_per_unit: float | None = None
+    statures_m: Mapping[str, float] = field(default_factory=dict)
+    kind: Kind = "human"
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Which columns hold what, and their factors to SI; `person` is -1 where all are one."""
+
+    person: int
+    time: int
+    x: int
+    y: int
+    seconds: float
+    metres: tuple[float, float]
+    separator: str | None
+    rows_from: int
+
+
+_AS_IT_IS = TrackReading()
+
+
+def read_tracks(data: bytes, *, name: str, reading: TrackReading = _AS_IT_IS) -> list[Track]:
+    """Read the tracks of all people of a table, in the order in which they appear.
+
+    Args:
+        data: the file.
+        name: of the file; tracks name it as their source.
+        reading: what the file does not say.
+
+    Raises:
+        CaptureError: with the line: a missing column, a cell that is no number, NaN, a person with
+            one sample only, times that do not grow, positions that are not in metres.
+    """
+    lines = list(text_lines(data))
+    layout = _layout(lines, reading)
+    people: dict[str, list[tuple[float, float, float]]] = {}
+    for at in range(layout.rows_from, len(lines)):
+        if lines[at].strip() and not lines[at].lstrip().startswith("#"):
+            person, sample = _sample(lines[at], at + 1, layout)
+            people.setdefault(person, []).append(sample)
+            if len(people) > MOST_PEOPLE or at > MOST_ROWS:
+                raise CaptureError(
+                    f"more than {MOST_PEOPLE} people or {MOST_ROWS} rows: split it.", line=at + 1
+                )
+    if not people:
+        raise CaptureError("the table has no rows.")
+    return [_track(person, np.array(rows), name, reading) for person, rows in people.items()]
+
+
+def _layout(lines: list[str], reading: TrackReading) -> _Layout:
+    rate_hz, first = reading.rate_hz, 0
+    while first < len(lines) and (not lines[first].strip() or lines[first].lstrip()[0] == "#"):
+        if rate_hz is None and (said := _RATE.search(lines[first])):
+            rate_hz = float(said.group(1))
+        first += 1
+    if first == len(lines):
+        raise CaptureError("the file is empty.")
+    separator = next((mark for mark in (";", "\t", ",") if mark in lines[first]), None)
+    cells = [cell.strip().strip('"').lower() for cell in lines[first].split(separator)]
+    if not any(cell and cell[0].isalpha() and cell != "nan" for cell in cells):
+        if len(cells) not in (4, 5):
+            raise CaptureError(
+                f"{len(cells)} columns without a header: give a header with id, time, x, y.",
+                line=first + 1,
+            )
+        unit = reading.metres_per_unit or _UNITS["cm"]
+        return _Layout(0, 1, 2, 3, _step_s(rate_hz, first), (unit, unit), separator, first)
+    return _named(cells, separator, first, rate_hz, reading)
+
+
+def _named(
+    cells: list[str], separator: str | None, at: int, rate_hz: float | None, reading: TrackReading
+) -> _Layout:
+    person = next((cells.index(word) for word in _IDS if word in cells), -1)
+    time = next(((cells.index(word), unit) for word, unit in _TIMES.items() if word in cells), None)
+    if time is None:
+        frame = next((cells.index(word) for word in _FRAMES if word in cells), None)
+        if frame is None:
+            known = ", ".join((*_TIMES, *_FRAMES))
+            raise CaptureError(f"no column of time: name one of {known}.", line=at + 1)
+        time = (frame, _step_s(rate_hz, at))
+    found: dict[str, tuple[int, float]] = {}
+    for column, cell in enumerate(cells):
+        match = _NAME.match(cell)
+        if match and match.group(1) in ("x", "y"):
+            unit = reading.metres_per_unit or _UNITS[match.group(2) or "m"]
+            found.setdefault(match.group(1), (column, unit))
+    missing = [axis for axis in ("x", "y") if axis not in found]
+    if missing:
+        raise CaptureError(
+            f"no column {' and '.join(missing)}: there are {', '.join(cells)}.", line=at + 1
+        )
+    (x, x_unit), (y, y_unit) = found["x"], found["y"]
+    return _Layout(person, time[0], x, y, time[1], (x_unit, y_unit), separator, at + 1)
+
+
+def _step_s(rate_hz: float | None, at: int) -> float:
+    if rate_hz is None or not 0.0 < rate_hz < math.inf:
+        raise CaptureError(
+            "time is a frame number, and how many frames a second there are is not said: give the"
+            " rate in hertz.",
+            line=at + 1,
+        )
+    return 1.0 / rate_hz
+
+
+def _sample(line: str, number: int, layout: _Layout) -> tuple[str, tuple[float, float, float]]:
+    cells = line.split(layout.separator)
+    columns = (layout.time, layout.x, layout.y)
+    if len(cells) <= max(*columns, layout.person):
+        raise CaptureError(f"the row has {len(cells)} columns only.", line=number)
+    values = []
+    for column in columns:
+        try:
+            value = float(cells[column].strip().strip('"'))
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise CaptureError(
+                f"column {column + 1} holds {cells[column].strip()!r}, not a finite number: leave"
+                " out rows in which a person was not seen.",
+                line=number,
+            )
+        values.append(value)
+    person = cells[layout.person].strip().strip('"') if layout.person >= 0 else "1"
+    time_s = values[0] * layout.seconds
+    return person, (time_s, values[1] * layout.metres[0], values[2] * layout.metres[1])
+
+
+def _track(person: str, rows: FloatArray, name: str, reading: TrackReading) -> Track:
+    times_s, xy_m = rows[:, 0] - rows[0, 0], rows[:, 1:]
+    try:
+        track = Track(times_s, xy_m, person, name, reading.kind, reading.statures_m.get(person))
+    except WalkingError as error:
+        raise CaptureError(str(error)) from error
+    waits_s = np.diff(times_s)
+    longest = int(np.argmax(waits_s))
+    if waits_s[longest] > max(LONGEST_GAP_S, 3.0 * float(np.median(waits_s))):
+        raise CaptureError(
+            f"person {person!r} was not seen for {waits_s[longest]:.2f} s from"
+            f" {rows[longest, 0]:.2f} s on: give each part an id of its own."
+        )
+    with np.errstate(over="ignore"):
+        speed = float(np.median(np.linalg.norm(np.diff(xy_m, axis=0), axis=1) / waits_s))
+    if speed > FASTEST_M_S:
+        raise CaptureError(
+            f"person {person!r} moves at {speed:.0f} m/s as a rule: positions are not in metres, or"
+            " the rate is not right. Say the unit, or the rate."
+        )
+    return track

@@ -1,0 +1,97 @@
+"""One door for all formats: told apart by content, refused with what was seen."""
+
+import re
+
+import pytest
+
+from app.adapters.captures import FORMATS, CaptureError, Limits, Reading, read_capture
+from app.adapters.captures.sniffing import format_of
+
+_HEADS = {
+    "bvh": b"\xef\xbb\xbfHIERARCHY\r\nROOT Hips\r\n",
+    "motive-csv": b"\xef\xbb\xbfFormat Version,1.23,Take Name,x\n\n",
+    "vicon-tracker-csv": b"\xef\xbb\xbfObjects\n100\n",
+    "uxf-tracker": b"time;pos_x;pos_y;pos_z;rot_x;rot_y;rot_z\n",
+    "quest-log": b"HeadPosX,HeadPosY,HeadPosZ,HeadOrientationW,time\n",
+    "trc": b"PathFileType\t4\t(X/Y/Z)\twalk.trc\n",
+    "c3d": b"\x02\x50" + bytes(510),
+    "asf-amc": b"#!OML:ASF\n:FULLY-SPECIFIED\n:DEGREES\n1\n",
+}
+
+
+@pytest.mark.parametrize("key", _HEADS)
+def test_the_content_tells_the_format_whatever_the_name(key: str) -> None:
+    """Half of the formats end in .csv, and people rename files."""
+    assert format_of(_HEADS[key], "recording.txt") == key
+    assert key in {known.key for known in FORMATS}
+
+
+def test_a_blank_before_the_first_word_makes_no_binary_file() -> None:
+    """A C3D's second byte is "P", and so may be a text's."""
+    assert format_of(b"\nPathFileType\t4\n", "walk.csv") == "trc"
+
+
+def test_every_format_can_be_told_by_its_content() -> None:
+    """No format depends on its file's name."""
+    assert {known.key for known in FORMATS} == set(_HEADS)
+
+
+def test_an_extension_helps_where_the_content_is_broken() -> None:
+    """A BVH without its first word is still read as BVH, so that the error names the line."""
+    with pytest.raises(CaptureError, match="expected 'HIERARCHY', got 'HIERARCH'") as caught:
+        read_capture(b"\nHIERARCH\nROOT Hips\n", name="walk.BVH")
+    assert caught.value.line == 2
+
+
+@pytest.mark.parametrize(
+    ("data", "seen"),
+    [
+        (b"", "the file is empty"),
+        (b" \n\t\n", "the file is empty"),
+        (b"PK\x03\x04rest", "a ZIP archive"),
+        (b"XDF:\x01\x02", "an XDF recording"),
+        (b"Kaydara FBX Binary  \x00", "an FBX scene"),
+        (b'{"frames": []}', "looks like JSON"),
+        (b"\x07\x00\xf1\x0b\xb6\xaa", "begins with the bytes 07 00 f1 0b b6 aa"),
+        (b"experiment,ppid,session_num\n1,2,3\n", "begins with 'experiment,ppid,session_num'"),
+        ("länge,breite\n1,2\n".encode("latin-1"), "a text that begins with 'l"),
+    ],
+)
+def test_unknown_content_is_refused_with_what_was_seen(data: bytes, seen: str) -> None:
+    """The message says what the file looks like and which formats are valid."""
+    with pytest.raises(CaptureError, match=re.escape(seen)) as caught:
+        read_capture(data, name="something.dat")
+    for known in FORMATS:
+        assert known.title in str(caught.value)
+
+
+def test_a_scale_that_nobody_means_is_refused() -> None:
+    """Zero, negative, endless or astronomic units are slips."""
+    for scale in (0.0, -1.0, float("inf"), float("nan"), 1e9):
+        with pytest.raises(CaptureError, match="m per unit"):
+            read_capture(_HEADS["bvh"], name="a.bvh", reading=Reading(metres_per_unit=scale))
+
+
+def test_a_file_above_the_limit_is_not_looked_at() -> None:
+    """Size comes first."""
+    with pytest.raises(CaptureError, match="up to 10 are read"):
+        read_capture(b"x" * 11, name="a.bvh", limits=Limits(bytes=10))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+def test_texts_of_other_encodings_are_read(encoding: str) -> None:
+    """Windows programs write marks, two bytes a letter, or the local code page."""
+    text = (
+        "HIERARCHY\nROOT Hüfte\n{\nOFFSET 0 1 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n}\n"
+        "MOTION\nFrames: 1\nFrame Time: 0.01\n0 0 0\n"
+    )
+    capture = read_capture(text.encode(encoding), name="walk.bvh")
+    assert "Hüfte" in repr(capture.motion)
+
+
+def test_a_line_without_end_is_refused_before_it_is_split() -> None:
+    """Hundreds of megabytes on one line would become gigabytes of words."""
+    for head in (b"HIERARCHY\nROOT a\n", b"Format Version,1.23\n"):
+        with pytest.raises(CaptureError, match="longer than 2000000 characters") as caught:
+            read_capture(head + b"1," * 1_000_001, name="long")
+        assert caught.value.line > 1

@@ -1,0 +1,116 @@
+"""Vicon Tracker's CSV: rotation vectors, z up, objects that vanish."""
+
+from itertools import permutations
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from app.adapters.captures import Capture, CaptureError, Reading, read_capture
+from app.science.rig import BodyMotion, RigMotion
+from app.science.rotations import FloatArray, conjugate, from_rotation_vector, rotate
+
+_TEXT = """Objects
+100
+,,Global Angle hip:hip,,,,,,Global Angle a:head,,,,,
+Frame,Sub Frame,RX,RY,RZ,TX,TY,TZ,RX,RY,RZ,TX,TY,TZ
+,,rad,rad,rad,mm,mm,mm,rad,rad,rad,mm,mm,mm
+5,0,0,0,1.5,1000,2000,3000,0,0,0,10,20,30
+6,0,0,0,1.6,1000,2000,3000,,,,,,
+8,0,0,0,1.7,1000,2000,3000,0,0,0,10,20,30
+
+"""
+
+
+def _bodies(capture: Capture) -> BodyMotion:
+    assert isinstance(capture.motion, BodyMotion)
+    return capture.motion
+
+
+def test_z_up_becomes_y_up_and_gaps_stay_gaps() -> None:
+    """Places and rotations turn together; frames keep their times; empty cells are not seen."""
+    capture = read_capture(("\ufeff" + _TEXT).encode(), name="take.csv")
+    motion = _bodies(capture)
+    assert motion.names == ("hip", "a:head")
+    np.testing.assert_allclose(motion.times_s, (0.0, 0.01, 0.03))
+    np.testing.assert_allclose(motion.positions_m[0, 0], (1.0, 3.0, -2.0), atol=1e-12)
+    # A turn about the file's z is one about our y.
+    expected = from_rotation_vector(np.array((0.0, 1.5, 0.0)))
+    np.testing.assert_allclose(motion.rotations[0, 0], expected, atol=1e-12)
+    assert np.isnan(motion.positions_m[1, 1]).all()
+    assert np.isnan(motion.rotations[1, 1]).all()
+    assert "Not seen: a:head in 1 of 3 frames." in capture.notes
+    assert capture.conventions.axes.value == "z up, right-handed"
+
+
+def test_y_up_by_choice_leaves_the_axes() -> None:
+    """What the user says goes first."""
+    motion = _bodies(read_capture(_TEXT.encode(), name="take.csv", reading=Reading(up="y")))
+    np.testing.assert_allclose(motion.positions_m[0, 0], (1.0, 2.0, 3.0))
+
+
+def _scatter(turns: FloatArray, places: FloatArray) -> float:
+    """How much a second body wanders in the frame of the first, relative to their distance."""
+    within = rotate(conjugate(turns), places)
+    wander = np.linalg.norm(within - np.median(within, axis=0), axis=-1)
+    return float(np.mean(wander) / np.mean(np.linalg.norm(places, axis=-1)))
+
+
+def test_the_angles_are_rotation_vectors(shared_data: Path) -> None:
+    """A hand stays at its place in the elbow's frame by this reading and by no Euler order."""
+    path = shared_data / "motion" / "vicon_tracker" / "HumanRobotHandover_0.csv"
+    motion = _bodies(read_capture(path.read_bytes(), name=path.name))
+    elbow, hand = motion.names.index("left_elbow"), motion.names.index("left_hand")
+    apart = motion.positions_m[:, hand] - motion.positions_m[:, elbow]
+    seen = ~np.isnan(apart).any(axis=-1)
+    assert _scatter(motion.rotations[seen, elbow], apart[seen]) < 0.035
+    rows = [line.split(",") for line in path.read_text("utf-8-sig").splitlines()[5:] if line]
+    first = 2 + 6 * elbow
+    told = np.array([[float(cell or "nan") for cell in row[first : first + 3]] for row in rows])
+    to_ours = Rotation.from_rotvec((-np.pi / 2.0, 0.0, 0.0))
+    for order in ("".join(axes) for axes in permutations("XYZ")):
+        columns = ["XYZ".index(axis) for axis in order]
+        turn = to_ours * Rotation.from_euler(order, told[seen][:, columns]) * to_ours.inv()
+        scatter = _scatter(turn.as_quat(scalar_first=True), apart[seen])
+        assert scatter > 0.07, f"Euler {order} would fit as well: {scatter}"
+
+
+@pytest.mark.parametrize("take", ["HumanRobotHandover_0", "ObjectInspection_0"])
+def test_the_hip_walks_as_in_the_authors_bvh(shared_data: Path, take: str) -> None:
+    """Their conversion drops frames; each of its root places is one of ours, to 5 mm."""
+    folder = shared_data / "motion" / "vicon_tracker"
+    csv, bvh = (
+        read_capture((folder / f"{take}.{kind}").read_bytes(), name=f"{take}.{kind}").motion
+        for kind in ("csv", "bvh")
+    )
+    assert isinstance(csv, BodyMotion)
+    assert isinstance(bvh, RigMotion)
+    hip = csv.positions_m[:, csv.names.index("hip")]
+    apart = np.linalg.norm(bvh.root_positions_m[::10, None] - hip[None], axis=-1).min(axis=1)
+    assert float(apart.max()) < 0.005
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason", "line"),
+    [
+        ("\n100\n", "\nfast\n", "the rate is 'fast'", 2),
+        ("\n100\n", "\n0\n", "the rate is '0'", 2),
+        ("a:head", "hip:hip", "missing or repeated", 3),
+        ("TZ,RX", "RX,TZ", "not RX, RY, RZ", 4),
+        ("rad,rad,rad,mm", "rad,grad,rad,mm", "units are", 5),
+        ("\n6,0,", "\n5,0,", "frame 5 comes after frame 5", 7),
+        ("1.6,1000", "1.6,x", "TX of hip is 'x'", 7),
+        ("1.6,1000", "1.6,inf", "TX of hip is infinite", 7),
+        ("1.6,1000", "1.6,1e12", "hip is at 1e.09 m", 7),
+        ("10,20,30\n\n", "10,20\n\n", "TZ of a:head is missing", 8),
+    ],
+)
+def test_a_broken_table_is_refused_with_its_line(
+    old: str, new: str, reason: str, line: int
+) -> None:
+    """Each broken rule names its line and what is valid."""
+    assert old in _TEXT
+    with pytest.raises(CaptureError, match=reason) as caught:
+        read_capture(_TEXT.replace(old, new, 1).encode(), name="take.csv")
+    assert caught.value.line == line

@@ -1,0 +1,103 @@
+"""Damaged models: a humanoid or a reason, never a crash, a hang or a warning."""
+
+import contextlib
+import json
+import warnings
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
+from app.science.avatar.figure import figure_of
+from app.science.avatar.humanoid import HumanoidError
+from tests.support.humanoid_files import glb, humanoid_file, taken_apart
+from tests.support.humanoid_model import Model, without
+
+_LIMITS = Limits(bytes=400_000, vertices=20_000, values=400_000)
+_SEEDS = [
+    humanoid_file(Model(parts=without("Index", "Ring", "Little"), vrm=1)),
+    humanoid_file(Model(parts=without("Index", "Ring", "Little"), vrm=0)),
+    humanoid_file(Model(parts=without("Index", "Ring", "Little"))),
+]
+_ODD: list[Any] = [
+    *(0, -1, 1, 2**31, 2**63, 1e308, 1e-320, -0.0, 0.5, 5126, 5121, None, True, "", "x", "NaN"),
+    *([], {}, [0], [[]], [1, 2, 3], {"node": 0}),
+]
+
+
+def survives(data: bytes) -> None:
+    """Read it, or be told why not."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with contextlib.suppress(HumanoidFileError, HumanoidError):
+            figure_of(read_humanoid(data, _LIMITS).humanoid)
+
+
+def places_in(tree: Any, path: tuple[str | int, ...] = ()) -> list[tuple[str | int, ...]]:
+    """Every place of a JSON."""
+    found = [path] if path else []
+    if isinstance(tree, dict | list):
+        for step, child in tree.items() if isinstance(tree, dict) else enumerate(tree):
+            found += places_in(child, (*path, step))
+    return found
+
+
+_PLACES = [places_in(taken_apart(seed)[0]) for seed in _SEEDS]
+
+
+@st.composite
+def edited(draw: st.DrawFn) -> bytes:
+    """A model in whose JSON a few values are something else."""
+    number = draw(st.integers(0, len(_SEEDS) - 1))
+    document, binary = taken_apart(_SEEDS[number])
+    for _ in range(draw(st.integers(1, 3))):
+        path = draw(st.sampled_from(_PLACES[number]))
+        found: Any = document
+        try:
+            for step in path[:-1]:
+                found = found[step]
+            found[path[-1]] = draw(st.sampled_from(_ODD))
+        except (KeyError, IndexError, TypeError):
+            continue  # an earlier edit took the place away
+    return glb(json.loads(json.dumps(document)), binary)
+
+
+@st.composite
+def damaged(draw: st.DrawFn) -> bytes:
+    """A model with bytes exchanged, or cut."""
+    data = bytearray(draw(st.sampled_from(_SEEDS)))
+    for _ in range(draw(st.integers(1, 20))):
+        data[draw(st.integers(0, len(data) - 1))] = draw(st.integers(0, 255))
+    return bytes(data[: draw(st.integers(len(data) // 2, len(data)))])
+
+
+_BOUNDED = settings(
+    max_examples=150,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
+)
+
+
+@_BOUNDED
+@given(edited())
+def test_an_edited_json_is_read_or_refused(data: bytes) -> None:
+    """Any value in it may be any other."""
+    survives(data)
+
+
+@_BOUNDED
+@given(damaged())
+def test_damaged_bytes_are_read_or_refused(data: bytes) -> None:
+    """Bytes may be anything, and the end may be missing."""
+    survives(data)
+
+
+@pytest.mark.long
+@settings(_BOUNDED, max_examples=3_000)
+@given(st.one_of(edited(), damaged()))
+def test_damaged_models_are_read_or_refused_at_length(data: bytes) -> None:
+    """The same, ten times as often."""
+    survives(data)

@@ -1,0 +1,141 @@
+"""Scene files: what they say, and how plainly they say what is wrong."""
+
+import json
+import re
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.adapters.walks.scene_file import load_scene, load_shipped, shipped_scenes
+from app.protocol.errors import ConfigError
+from app.protocol.source import read_source
+from app.science.walking.shapes import area_m2
+
+SCENE = """
+key: my-lab
+title: My lab
+bounds_m: [-2, -2, 2, 4]
+clearance_m: 0.25
+obstacles:
+  - {shape: box, name: table, center_m: [0, 1], size_m: [1.2, 0.6], turned_deg: 90}
+  - {shape: disc, name: pole, center_m: [1, 2], radius_m: 0.05}
+  - {shape: wall, name: screen, from_m: [-2, 0], to_m: [-1, 0], thickness_m: 0.05}
+  - {shape: polygon, name: corner, corners_m: [[1, -2], [2, -2], [2, -1]]}
+places: {start: [0, -1], goal: [0, 3]}
+paths:
+  - {name: there, from: start, to: goal}
+"""
+
+
+def test_a_scene_file_gives_its_scene() -> None:
+    """All four shapes, turned boxes, places and paths."""
+    scene = load_scene(SCENE)
+    assert (scene.name, scene.title, scene.clearance_m) == ("my-lab", "My lab", 0.25)
+    assert [obstacle.name for obstacle in scene.obstacles] == ["table", "pole", "screen", "corner"]
+    table = scene.obstacles[0].corners_m
+    assert np.ptp(table, axis=0) == pytest.approx([0.6, 1.2])
+    areas = [area_m2(obstacle.corners_m) for obstacle in scene.obstacles]
+    assert areas == pytest.approx([0.72, np.pi * 0.0025, 0.05, 0.5], rel=0.02)
+    assert (scene.paths[0].start, scene.paths[0].goal) == ("start", "goal")
+    assert scene.places["goal"] == (0.0, 3.0)
+
+
+def test_json_is_read_too() -> None:
+    """JSON is YAML on one line."""
+    tree = {"key": "a", "bounds_m": [0, 0, 1, 1], "places": {"p": [0.5, 0.5]}}
+    assert load_scene(json.dumps(tree)).places == {"p": (0.5, 0.5)}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("[0, 1], size", "[0, .nan], size", r"line 7.*center_m\[1\].*nan.*finite"),
+        ("size_m: [1.2, 0.6]", "size_m: [1.2, -0.6]", r"line 7.*size_m\[1\].*out of range"),
+        ("shape: disc", "shape: ball", r"line 8.*shape is 'ball'.*box"),
+        ("radius_m", "radius", r"line 8.*'radius'.*Did you mean 'radius_m'"),
+        ("[2, -2], [2, -1]", "[2, -1], [2, -2]", r"line 10.*'corner'.*clockwise"),
+        ("goal: [0, 3]", "goal: [0, 1]", r"line 11.*places.goal.*inside obstacle 'table'"),
+        ("goal: [0, 3]", "goal: [0, 9]", r"line 11.*outside the scene's bounds"),
+        ("to: goal", "to: gaol", r"line 13.*names 'gaol'; places are start, goal"),
+        ("to: goal", "to: start", r"line 13.*leads back"),
+        ("[-2, -2, 2, 4]", "[-2, 4, 2, -2]", r"line 4.*near < far"),
+        ("[-2, -2, 2, 4]", "[-2, -2, 2]", r"bounds_m"),
+        ("key: my-lab", "key: My Lab", r"line 2.*key"),
+        ("title: My lab", "tittle: My lab", r"line 3.*Did you mean 'title'"),
+    ],
+)
+def test_each_problem_is_told_at_its_line(old: str, new: str, said: str) -> None:
+    """Line, place, what is wrong and what is valid."""
+    text = SCENE.replace(old, new, 1)
+    assert text != SCENE
+    with pytest.raises(ConfigError) as refused:
+        load_scene(text)
+    assert any(re.search(said, str(problem)) for problem in refused.value.problems)
+
+
+def test_all_problems_come_at_once() -> None:
+    """A bad outline, a place in a table and a path to nowhere: three problems."""
+    text = SCENE.replace("[2, -2], [2, -1]", "[2, -1], [2, -2]").replace("to: goal", "to: gaol")
+    with pytest.raises(ConfigError) as refused:
+        load_scene(text.replace("goal: [0, 3]", "goal: [0, 1]"))
+    assert len(refused.value.problems) == 3
+
+
+@pytest.mark.parametrize("text", ["", "- a", "key: [", "key: a\nbounds_m: *there"])
+def test_what_is_no_scene_file_is_refused(text: str) -> None:
+    """Empty, a list, broken YAML, an alias."""
+    with pytest.raises(ConfigError):
+        load_scene(text)
+
+
+ODD: tuple[Any, ...] = (
+    None,
+    True,
+    -1,
+    0,
+    1e300,
+    "",
+    "x" * 500,
+    [],
+    {},
+    [[]],
+    [0, 0],
+    [[0, 0]] * 3,
+    {"a": 1},
+)
+
+
+@settings(max_examples=80, deadline=None)
+@given(st.data())
+def test_a_broken_scene_file_is_a_scene_or_a_list_of_problems(data: st.DataObject) -> None:
+    """Any value replaced by any other: never another error."""
+    tree = read_source(SCENE).tree
+    node, key = _somewhere(tree, data)
+    node[key] = data.draw(st.sampled_from(ODD))
+    with suppress(ConfigError):
+        scene = load_scene(json.dumps(tree))
+        assert scene.bounds_m[0] < scene.bounds_m[2]
+
+
+def _somewhere(tree: Any, data: st.DataObject) -> tuple[Any, Any]:
+    """A mapping or list of the tree, and one of its keys."""
+    while True:
+        keys = sorted(tree) if isinstance(tree, dict) else range(len(tree))
+        key = data.draw(st.sampled_from(list(keys)))
+        inner = tree[key]
+        if not isinstance(inner, dict | list) or not inner or data.draw(st.booleans()):
+            return tree, key
+        tree = inner
+
+
+@pytest.mark.parametrize("key", sorted(shipped_scenes()))
+def test_shipped_scenes_say_what_they_assume(key: str) -> None:
+    """Their keys are their names; each tells what is the paper's and what is not."""
+    scene = load_shipped(key)
+    assert scene.name == key
+    assert "From the paper:" in scene.about
+    assert "Assumed, since the paper does not say:" in scene.about

@@ -1,0 +1,111 @@
+"""Tables of tracks: headers, units, rates, and what is refused with its line."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from app.adapters.captures.capture import CaptureError
+from app.adapters.walks.track_table import TrackReading, read_tracks
+from app.science.walking.segmentation import walks_of
+
+SIMPLE = "t,x,y\n0,0,0\n0.5,0.1,0.2\n1,0.3,0.5\n"
+
+
+def test_a_plain_table_is_one_track() -> None:
+    """Without a column of people there is one, in metres and seconds."""
+    (track,) = read_tracks(SIMPLE.encode(), name="a.csv")
+    assert track.times_s == pytest.approx([0.0, 0.5, 1.0])
+    assert track.xy_m[2] == pytest.approx([0.3, 0.5])
+    assert (track.source, track.kind, track.stature_m) == ("a.csv", "human", None)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Subject;time_ms;x_cm;y_cm\n7;0;0;0\n7;500;10;20\n7;1000;30;50\n",
+        'person\tframe\t"x [mm]"\ty (mm)\n7\t100\t0\t0\n7\t101\t100\t200\n7\t102\t300\t500\n',
+        "# framerate: 2 fps\n# id frame x y z\n7 4 0 0 180\n7 5 10 20 180\n7 6 30 50 180\n",
+        "\ufeffid,note,T,X,Y\n7,a,5,0,0\n7,b,5.5,0.1,0.2\n7,c,6,0.3,0.5\n",
+    ],
+)
+def test_units_separators_and_rates_are_read(text: str) -> None:
+    """The same track in centimetres and milliseconds, in millimetres and frames, as in Juelich."""
+    reading = TrackReading(rate_hz=2.0, statures_m={"7": 1.8})
+    (track,) = read_tracks(text.encode(), name="a.csv", reading=reading)
+    assert track.subject == "7"
+    assert track.stature_m == 1.8
+    assert track.times_s == pytest.approx([0.0, 0.5, 1.0])
+    assert track.xy_m == pytest.approx(np.array([[0.0, 0.0], [0.1, 0.2], [0.3, 0.5]]))
+
+
+def test_people_are_kept_apart() -> None:
+    """Rows of two people may be mixed."""
+    text = "id,t,x,y\n1,0,0,0\n2,0,5,5\n1,1,0,1\n2,1,5,6\n"
+    tracks = read_tracks(text.encode(), name="a.csv")
+    assert [track.subject for track in tracks] == ["1", "2"]
+    assert tracks[1].xy_m[-1] == pytest.approx([5.0, 6.0])
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("t,x,y\n0,0,0\n0.5,nan,0\n", "line 3: column 2 holds 'nan'"),
+        ("t,x,y\n0,0,0\n0.5,,0\n", "line 3: column 2 holds ''"),
+        ("t,x,y\n0,0,0\n0.5,1\n", "line 3: the row has 2 columns"),
+        ("t,x\n0,0\n", "no column y"),
+        ("x,y\n0,0\n", "no column of time"),
+        ("frame,x,y\n0,0,0\n1,0,1\n", "give the rate"),
+        ("t,x,y\n0,0,0\n", r"1 point\(s\); a walk needs at least two"),
+        ("t,x,y\n0,0,0\n0,0,1\n", "do not grow, at index 1"),
+        ("t,x,y\n0,0,0\n1,0,30\n2,0,60\n", "moves at 30 m/s"),
+        ("t,x,y\n0,0,0\n1,0,1\n2,0,2\n9,0,3\n", r"not seen for 7\.00 s from 2\.00 s"),
+        ("t,x,y\n", "no rows"),
+        ("", "empty"),
+        ("1 2 3\n", "3 columns without a header"),
+    ],
+)
+def test_bad_tables_are_refused_with_their_line(text: str, said: str) -> None:
+    """Nothing is guessed, nothing is skipped."""
+    with pytest.raises(CaptureError, match=said):
+        read_tracks(text.encode(), name="a.csv")
+
+
+def test_a_stature_that_cannot_be_is_refused() -> None:
+    """In centimetres, for one of the people."""
+    with pytest.raises(CaptureError, match="Stature 180"):
+        read_tracks(SIMPLE.encode(), name="a", reading=TrackReading(statures_m={"1": 180.0}))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.text("0123456789.,;- \t\nexyidtfram#:_cmn", max_size=60) | st.text(max_size=30))
+def test_any_text_gives_tracks_or_a_reason(text: str) -> None:
+    """Whatever a file holds, there is never another error."""
+    for head in ("", "t,x,y\n", "id;frame;x_cm;y_cm\n", "# framerate: 16\n"):
+        try:
+            tracks = read_tracks((head + text).encode(), name="a.csv")
+        except CaptureError:
+            continue
+        assert all(np.isfinite(track.xy_m).all() for track in tracks)
+
+
+@pytest.mark.parametrize(
+    ("name", "rate_hz", "people", "speed_m_s"),
+    [("uo-050-180-180.txt", 16.0, 61, 1.395), ("n34_cam2.csv", 25.0, 71, 0.484)],
+)
+def test_trajectories_of_juelich_are_read(
+    shared_data: Path, name: str, rate_hz: float, people: int, speed_m_s: float
+) -> None:
+    """Both layouts; nobody stands, and the median walk has a walking speed.
+
+    The second file tells speeds of its own, .404 m/s in its first row among them.
+    """
+    data = (shared_data / "walking" / "pedestrian" / name).read_bytes()
+    tracks = read_tracks(data, name=name, reading=TrackReading(rate_hz=rate_hz))
+    assert len(tracks) == people
+    walks = [walk for track in tracks for walk in walks_of(track)]
+    assert not any(walk.begins_still for walk in walks)
+    speeds = [walk.length_m / walk.duration_s for walk in walks]
+    assert np.median(speeds) == pytest.approx(speed_m_s, abs=0.01)

@@ -1,0 +1,74 @@
+"""The avatar in a study file: moved by physics as a configuration says, or a delayed copy."""
+
+import json
+
+import pytest
+
+from app.protocol import ConfigError, load_study
+from tests.protocol.helpers import edited, instruments, loaded, problems
+
+AVATARS = {"standard": 2, "soft": 1}
+
+
+def physics(configuration: str = "{key: standard, version: 1}") -> str:
+    """The shipped study with a physics avatar."""
+    return edited(
+        ("avatar: delayed_copy", f"avatar: physics\navatar_configuration: {configuration}")
+    )
+
+
+def test_a_study_names_the_version_of_its_avatar() -> None:
+    """It is part of the content, and no part of the design: the ledger stays."""
+    study = loaded(physics())
+    assert study.protocol.avatar == "physics"
+    assert json.loads(study.canonical_json)["avatar_configuration"] == {
+        "key": "standard",
+        "version": 1,
+    }
+    assert study.content_hash != loaded().content_hash
+    assert study.protocol.design_hash == loaded().protocol.design_hash
+    assert "avatar_configuration" not in json.loads(loaded().canonical_json)
+
+
+def test_a_physics_avatar_needs_a_configuration() -> None:
+    """And is told which there are, where somebody knows."""
+    text = edited(("avatar: delayed_copy", "avatar: physics"))
+    (problem,) = problems(text)
+    assert problem.path == "avatar_configuration"
+    assert "{key: standard, version: 1}" in problem.remedy
+    with pytest.raises(ConfigError) as caught:
+        load_study(text, instruments=instruments(), avatars=AVATARS)
+    assert caught.value.problems[0].valid == ["soft", "standard"]
+    assert "{key: standard, version: 1}" in caught.value.problems[0].remedy
+
+
+def test_a_delayed_copy_has_none() -> None:
+    """What would not be used is not accepted."""
+    (problem,) = problems(physics().replace("avatar: physics", "avatar: delayed_copy"))
+    assert (problem.path, "left out" in str(problem.valid)) == ("avatar_configuration", True)
+    assert problem.line > 0
+
+
+@pytest.mark.parametrize(
+    ("configuration", "path", "said"),
+    [
+        ("{key: hard, version: 1}", "avatar_configuration.key", "no avatar 'hard'"),
+        ("{key: standard, version: 3}", "avatar_configuration.version", "no version 3"),
+        ("{key: standard, version: 0}", "avatar_configuration.version", "out of range"),
+        ("{key: standard}", "avatar_configuration.version", "missing"),
+        ("standard", "avatar_configuration", "Expected a mapping"),
+    ],
+)
+def test_an_avatar_that_is_not_there_is_told(configuration: str, path: str, said: str) -> None:
+    """With its place in the file."""
+    with pytest.raises(ConfigError) as caught:
+        load_study(physics(configuration), instruments=instruments(), avatars=AVATARS)
+    (problem,) = caught.value.problems
+    assert problem.path == path
+    assert said in problem.message
+    assert problem.line > 0
+
+
+def test_without_a_lab_only_the_file_is_checked() -> None:
+    """A file can be read where no avatars are known."""
+    assert loaded(physics("{key: hard, version: 7}")).protocol.avatar_configuration is not None
