@@ -11,13 +11,15 @@ endpoints, the one that holds the lock could find no thread to finish on. Postgr
 waited for where endpoints run, so fewer requests may write at once than there are such threads.
 """
 
+import asyncio
 import threading
-from collections.abc import AsyncIterator, Iterator
+import time
+from collections.abc import AsyncIterator, Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
@@ -28,6 +30,7 @@ from sqlalchemy.pool import NullPool
 
 from app.errors import NotDurable
 from app.sqlite import BUSY_TIMEOUT_S, SqliteBegin, has_changes, prepare_connection
+from app.turns import Turns
 
 NAMING_CONVENTION = {
     "ix": "ix_%(table_name)s_%(column_0_N_name)s",
@@ -40,6 +43,7 @@ TURN_TIMEOUT_S = 20.0
 """How long a request waits for the writers of this process before it is told to come again."""
 WRITERS = 20
 """Half of the threads that endpoints run on."""
+Result = TypeVar("Result")
 
 
 class Base(DeclarativeBase):
@@ -77,7 +81,8 @@ class Database:
     engine: Engine
     observer: WriteObserver | None = None
     commits: CommitCount = field(default_factory=CommitCount)
-    _write_lock: threading.Lock = field(default_factory=threading.Lock)
+    _write_lock: Turns = field(default_factory=Turns)
+    _queue: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "writes"))
     _waiting_room: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(1000))
     _writers: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(WRITERS))
 
@@ -119,16 +124,35 @@ class Database:
                 yield session
                 await run_sync(self._commit, session)
 
+    async def write(self, work: Callable[[Session], Result]) -> Result:
+        """The same on one thread, which waits, works and commits: for what comes in crowds.
+
+        `work` gets the transaction and must not wait for anything else. On SQLite a crowd queues
+        for one thread, which goes from commit to commit. Raises NotDurable likewise.
+        """
+        if not self.is_sqlite:
+            return await run_sync(self._in_transaction, work, limiter=self._writers)
+        late_s = time.monotonic() + TURN_TIMEOUT_S
+
+        def in_turn() -> Result:
+            self._take_turn(late_s - time.monotonic())
+            try:
+                return self._in_transaction(work)
+            finally:
+                self._write_lock.release()
+
+        return await asyncio.get_running_loop().run_in_executor(self._queue, in_turn)
+
+    def _in_transaction(self, work: Callable[[Session], Result]) -> Result:
+        with self._observed(), self._writer() as session:
+            result = work(session)
+            self._commit(session)
+            return result
+
     @asynccontextmanager
     async def _turn(self) -> AsyncIterator[None]:
         if self.is_sqlite:
-            acquire = partial(self._write_lock.acquire, timeout=TURN_TIMEOUT_S)
-            if not await run_sync(acquire, limiter=self._waiting_room):
-                raise NotDurable(
-                    "too much waits to be stored before this; nothing was promised",
-                    value=f"waited {TURN_TIMEOUT_S:g} s",
-                    remedy="Try again in a moment.",
-                )
+            await run_sync(self._take_turn, limiter=self._waiting_room)
             try:
                 yield
             finally:
@@ -140,6 +164,14 @@ class Database:
                 yield
             finally:
                 self._writers.release_on_behalf_of(request)
+
+    def _take_turn(self, timeout_s: float = TURN_TIMEOUT_S) -> None:
+        if not self._write_lock.acquire(timeout=max(0.0, timeout_s)):
+            raise NotDurable(
+                "too much waits to be stored before this; nothing was promised",
+                value=f"waited {TURN_TIMEOUT_S:g} s",
+                remedy="Try again in a moment.",
+            )
 
     def _writer(self) -> Session:
         engine = self.engine.execution_options(reembody_writes=True)
@@ -166,6 +198,7 @@ class Database:
 
     def close(self) -> None:
         """Return every connection."""
+        self._queue.shutdown()
         self.engine.dispose()
 
 

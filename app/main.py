@@ -10,23 +10,29 @@ from app import __version__
 from app.api.errors import install_error_handler
 from app.api.guards import Guards
 from app.api.pages import install_pages
-from app.api.router import build_router
+from app.api.router import add_routes
 from app.clock import Clock
 from app.database import open_database
 from app.features.accounts.service import ensure_admin
 from app.features.analysis.drawing import Drawings
+from app.features.avatar.service import add_shipped_avatar
 from app.features.context import AppContext
+from app.features.exports.desk import ExportDesk
 from app.features.live import Hub
 from app.features.opening.service import bring_up_to_date
 from app.features.rate_limit import RateLimiter
+from app.features.replay.desk import ReplayDesk
 from app.features.rights.service import finish_erasures
 from app.features.sessions.recovery import stop_running_clocks
+from app.features.storage.measuring import StorageDesk
 from app.features.storage_health import StorageHealth
 from app.features.studies.service import add_shipped
 from app.features.telemetry.encoder import Encoder
 from app.features.telemetry.fold import Folder
 from app.features.telemetry.summaries import Summariser
 from app.features.telemetry.writer import TelemetryWriter
+from app.features.tryout.desk import TryoutDesk
+from app.features.walking.desk import FittingDesk
 from app.lan.network import Network
 from app.resources import static_dir
 from app.settings import Settings
@@ -52,15 +58,31 @@ def create_app(
     settings = settings or Settings()
     clock, hub = clock or Clock(), Hub()
     storage = StorageHealth(clock, settings.data_dir, settings.low_disk_bytes, hub.publish_storage)
+    database = open_database(settings.resolved_database_url, storage)
     context = AppContext(
         settings=settings,
-        database=open_database(settings.resolved_database_url, storage),
+        database=database,
         clock=clock,
         hub=hub,
         storage=storage,
         login_limiter=RateLimiter(LOGIN_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
         pairing_limiter=RateLimiter(PAIRING_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
         drawings=Drawings(settings.resolved_database_url, clock.utc_now),
+        replays=ReplayDesk(database),
+        exports=ExportDesk(
+            settings.scratch_dir / "exports",
+            settings.resolved_database_url,
+            clock,
+            settings.low_disk_bytes,
+        ),
+        room=StorageDesk(database, settings, clock),
+        tryout=TryoutDesk(database, clock),
+        fits=FittingDesk(
+            settings.data_dir.resolve() / "walking",
+            settings.resolved_database_url,
+            database,
+            clock,
+        ),
         network=network or Network(),
     )
     summariser = Summariser(context)
@@ -73,11 +95,19 @@ def create_app(
         writer.start()
         folder.start()
         summariser.catch_up()
+        context.exports.begin()
+        context.fits.begin()
         yield
+        context.tryout.end()
         writer.stop()
         folder.stop()
         summariser.stop()
         context.drawings.end()
+        context.replays.end()
+        context.captures.end()
+        context.walking.end()
+        context.fits.end()
+        context.exports.end()
         context.database.close()
 
     app = FastAPI(
@@ -91,11 +121,15 @@ def create_app(
     app.state.context = context
     app.state.writer = writer
     install_error_handler(app)
-    app.include_router(build_router())
+    add_routes(app)
     install_pages(app, static_dir())
     app.add_middleware(
         Guards,
         max_body_bytes=settings.max_body_bytes,
+        larger_bodies={
+            ("POST", path): settings.max_capture_bytes
+            for path in ("/api/captures", "/api/humanoids", "/api/walking/walk-sets/tracks")
+        },
         host_names=lambda: (*settings.host_names, *context.network.reach.names),
     )
     return app
@@ -109,6 +143,7 @@ def _prepare(context: AppContext, on_first_password: Callable[[str], None] | Non
     now = context.clock.utc_now()
     with context.database.writing() as db:
         made = ensure_admin(db, password=secret.get_secret_value() if secret else None, now=now)
+        add_shipped_avatar(db, now)
         add_shipped(db, now)
     if made is not None and on_first_password is not None:
         on_first_password(made)

@@ -16,7 +16,8 @@ class Settings(BaseSettings):
     `database_url` empty means the embedded SQLite in `data_dir`. `admin_password` is for scripts;
     without it the first start makes a random one and prints it once. Below `low_disk_bytes` of free
     space in `data_dir` the console warns. A running phase is paused after `headset_silent_s`
-    without a frame.
+    without a frame. A capture file may have `max_capture_bytes`, every other request
+    `max_body_bytes`.
 
     `lan` opens https on `lan_port` of every address (or of `lan_host`), with `certificate` and
     `key` or with the built-in authority, whose help page is on `help_port`. An address that others
@@ -43,9 +44,15 @@ class Settings(BaseSettings):
     login_hours: float = 12.0
     pairing_minutes: float = 10.0
     max_body_bytes: int = 2 * 1024 * 1024
+    max_capture_bytes: int = 64 * 1024 * 1024
     max_telemetry_message_bytes: int = 256 * 1024
     low_disk_bytes: int = 1024**3
     headset_silent_s: float = 3.0
+
+    @property
+    def scratch_dir(self) -> Path:
+        """Where files are made that are fetched and go again: beside the data, and as protected."""
+        return (self.data_dir / "scratch").resolve()
 
     @property
     def resolved_database_url(self) -> str:

@@ -46,7 +46,9 @@ class SqliteBegin:
             connection.exec_driver_sql("BEGIN")
             return
         timeout_s = STILL_BUSY_TIMEOUT_S if self._locked else BUSY_TIMEOUT_S
-        connection.exec_driver_sql(f"PRAGMA busy_timeout={round(1000 * timeout_s)}")
+        if connection.info.get("busy_timeout_s") != timeout_s:
+            connection.exec_driver_sql(f"PRAGMA busy_timeout={round(1000 * timeout_s)}")
+            connection.info["busy_timeout_s"] = timeout_s
         try:
             connection.exec_driver_sql("BEGIN IMMEDIATE")
         except OperationalError as error:

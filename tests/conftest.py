@@ -8,10 +8,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from argon2 import PasswordHasher
 
-from app.features.accounts import passwords
 from tests.support import postgres, shared_run
+from tests.support.nursery import CHEAP_PASSWORDS, make_passwords_cheap
 from tests.support.server import LiveServer
 from tests.support.sqlite import fresh_sqlite
 
@@ -37,37 +36,28 @@ def pytest_unconfigure(config: pytest.Config) -> None:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _cheap_passwords() -> Iterator[None]:
-    """A password costs a sixth of a second on purpose; hundreds of applications need not pay it.
+def _cheap_passwords() -> None:
+    """A password costs a sixth of a second on purpose; a thousand logins need not pay it.
 
-    Servers that run as processes do.
+    Commands that are not made by the nursery do.
     """
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            passwords, "_HASHER", PasswordHasher(time_cost=1, memory_cost=64, parallelism=1)
-        )
-        yield
+    make_passwords_cheap()
+    os.environ[CHEAP_PASSWORDS] = "1"
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Deselect the long tests unless they are asked for: not skipped, since nothing is missing."""
     if config.getoption("--long"):
         return
-    long = [item for item in items if item.get_closest_marker("long") or _reads_again(item)]
+    long = [item for item in items if _is_long(item)]
     if long:
         config.hook.pytest_deselected(items=long)
-        left_out = {id(item) for item in long}
-        items[:] = [item for item in items if id(item) not in left_out]
+        items[:] = [item for item in items if not _is_long(item)]
 
 
-def _reads_again(item: pytest.Item) -> bool:
-    """Tables and exports read by the same statements on either engine: PostgreSQL's turn is long.
-
-    Their reading on PostgreSQL is part of other tests, such as those of erasure and of backups.
-    """
-    return "postgresql" in item.name and any(
-        part in item.nodeid for part in ("features/analysis/", "features/exports/")
-    )
+def _is_long(item: pytest.Item) -> bool:
+    again = "postgresql" in item.name and item.get_closest_marker("one_engine")
+    return bool(item.get_closest_marker("long") or again)
 
 
 def _is_worker(config: pytest.Config) -> bool:

@@ -5,6 +5,7 @@ something, and the first for WebSockets, which no cookie rule of the browser cov
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -35,10 +36,17 @@ class Guards:
     """ASGI middleware around the whole application."""
 
     def __init__(
-        self, app: ASGIApp, *, max_body_bytes: int, host_names: Callable[[], Iterable[str]]
+        self,
+        app: ASGIApp,
+        *,
+        max_body_bytes: int,
+        host_names: Callable[[], Iterable[str]],
+        larger_bodies: Mapping[tuple[str, str], int] = MappingProxyType({}),
     ) -> None:
+        """`larger_bodies` by method and path: routes that let people in before reading a body."""
         self._app = app
         self._max_body_bytes = max_body_bytes
+        self._larger_bodies = larger_bodies
         self._host_names = host_names
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -57,13 +65,14 @@ class Guards:
         if scope["type"] == "websocket":
             await self._app(scope, receive, send)
         else:
-            await self._app(scope, _Limited(receive, self._max_body_bytes), _headed(scope, send))
+            await self._app(scope, _Limited(receive, self._limit(scope)), _headed(scope, send))
 
     def _check(self, scope: Scope, headers: Headers) -> None:
         require_known_host(headers.get("host", ""), self._host_names())
         declared = headers.get("content-length", "0")
-        if declared.isdigit() and int(declared) > self._max_body_bytes:
-            raise _too_large(int(declared), self._max_body_bytes)
+        limit = self._limit(scope)
+        if declared.isdigit() and int(declared) > limit:
+            raise _too_large(int(declared), limit)
         if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
             return
         site, origin = headers.get("sec-fetch-site"), headers.get("origin")
@@ -75,6 +84,10 @@ class Guards:
                 value=origin,
                 remedy="Open the page on the address of this server.",
             )
+
+    def _limit(self, scope: Scope) -> int:
+        route = (scope.get("method", ""), scope["path"])
+        return self._larger_bodies.get(route, self._max_body_bytes)
 
 
 class _Limited:

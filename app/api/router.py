@@ -4,7 +4,7 @@ import asyncio
 from datetime import datetime
 from typing import Any, Literal
 
-from fastapi import APIRouter, WebSocket
+from fastapi import APIRouter, FastAPI, WebSocket
 from pydantic import BaseModel
 from sqlalchemy import text
 
@@ -14,24 +14,40 @@ from app.features.accounts.people_endpoints import router as people
 from app.features.alarms.endpoints import router as alarms
 from app.features.analysis.endpoints import router as analysis
 from app.features.audit.endpoints import router as audit
+from app.features.avatar.endpoints import router as avatars
 from app.features.calibrations.endpoints import router as calibrations
+from app.features.captures.avatar_endpoints import router as on_avatars
+from app.features.captures.endpoints import router as captures
 from app.features.context import AppContext
 from app.features.dependencies import API_PREFIX, Context
 from app.features.devices.endpoints import router as devices
 from app.features.exports.endpoints import router as exports
+from app.features.exports.file_endpoints import router as export_files
+from app.features.headset.avatar_endpoints import router as avatar_of_session
 from app.features.headset.socket import serve_headset
+from app.features.humanoids.endpoints import router as humanoids
+from app.features.imports.endpoints import router as imports
 from app.features.instruments.endpoints import router as instruments
 from app.features.network.endpoints import router as network
 from app.features.participants.endpoints import router as participants
+from app.features.poses.endpoints import router as poses
+from app.features.preflight.endpoints import router as preflight
+from app.features.preregistration.endpoints import router as preregistrations
 from app.features.receipts.endpoints import router as receipts
+from app.features.replay.endpoints import router as replays
 from app.features.rights.endpoints import router as rights
 from app.features.sessions.consent_endpoints import router as consents
 from app.features.sessions.endpoints import router as sessions
 from app.features.sessions.watching import router as watching
+from app.features.storage.endpoints import router as storage
 from app.features.studies.endpoints import router as studies
 from app.features.suggestions.endpoints import router as suggestions
+from app.features.tablet.call_endpoints import router as calls
 from app.features.tablet.endpoints import router as tablet
 from app.features.telemetry.writer import TelemetryWriter
+from app.features.tryout.endpoints import router as tryout
+from app.features.walking.endpoints import router as walks
+from app.features.walking.model_endpoints import router as walking_models
 
 
 class Health(BaseModel):
@@ -75,19 +91,33 @@ REFUSALS: dict[int | str, dict[str, Any]] = {
 }
 
 
-def build_router() -> APIRouter:
-    """The routes under /api."""
-    router = APIRouter(prefix=API_PREFIX, responses=REFUSALS)
+def add_routes(app: FastAPI) -> None:
+    """The routes under /api: each part at once, since all routes of a level are built anew."""
     parts = (
-        *(accounts, people, audit, studies, instruments, participants, sessions, watching),
-        *(devices, tablet, alarms, consents, suggestions, calibrations),
-        *(analysis, exports, receipts, rights, network),
+        # Looked through in this order: what comes in crowds first.
+        *(tablet, sessions, watching),
+        *(accounts, people, audit, studies, instruments, participants),
+        *(devices, calls, avatar_of_session, alarms, consents, suggestions, calibrations),
+        *(analysis, exports, receipts, rights, network, captures, on_avatars, avatars),
+        *(
+            humanoids,
+            preflight,
+            poses,
+            replays,
+            export_files,
+            storage,
+            tryout,
+            imports,
+            preregistrations,
+        ),
+        *(walks, walking_models),
     )
     for part in parts:
-        router.include_router(part)
-    router.add_api_route("/health", get_health, methods=["GET"], tags=["health"])
-    router.add_api_websocket_route("/vr/stream", vr_stream)
-    return router
+        app.include_router(part, prefix=API_PREFIX, responses=REFUSALS)
+    own = APIRouter()
+    own.add_api_route("/health", get_health, methods=["GET"], tags=["health"])
+    own.add_api_websocket_route("/vr/stream", vr_stream)
+    app.include_router(own, prefix=API_PREFIX, responses=REFUSALS)
 
 
 def get_health(context: Context) -> Health:

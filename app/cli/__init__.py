@@ -1,5 +1,9 @@
 """The `reembody` command."""
 
-from app.cli.commands import app as main
+from app.collecting import start_unhurried
+
+start_unhurried()
+
+from app.cli.commands import app as main  # noqa: E402 - what it loads is why
 
 __all__ = ["main"]

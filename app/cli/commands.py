@@ -7,8 +7,12 @@ from typing import Annotated
 
 import typer
 
+from app.cli.analyse_command import analyse
 from app.cli.failing import fail
+from app.cli.retarget_command import retarget
 from app.cli.tls_commands import tls
+from app.cli.tune_command import tune
+from app.cli.walk_command import walk
 
 app = typer.Typer(
     help="Runs, watches and analyses VR re-embodiment studies.",
@@ -17,6 +21,10 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.add_typer(tls, name="tls")
+app.add_typer(walk, name="walk")
+app.command()(retarget)
+app.command()(tune)
+app.command()(analyse)
 INCOMPLETE = 1
 
 
@@ -144,13 +152,17 @@ def token(
 def rehearse(
     url: Annotated[str | None, typer.Option(help="Server; without it one is started.")] = None,
     token: Annotated[str | None, typer.Option(help="Bearer token for --url.")] = None,
-    capture: Annotated[Path | None, typer.Option(help="BVH capture to move by.")] = None,
+    capture: Annotated[Path | None, typer.Option(help="Capture to move by.")] = None,
     speed: Annotated[float, typer.Option(help="Seconds of study time per second.")] = 1.0,
     seed: Annotated[int, typer.Option(help="Seed of everything that is drawn.")] = 1,
     study: Annotated[str, typer.Option(help="Key of the study.")] = "reembodiment-latency",
     data: Annotated[
         Path | None, typer.Option(help="Keep the started server's data in this folder.")
     ] = None,
+    physics: Annotated[
+        bool,
+        typer.Option("--physics", help="With an avatar that follows by forces."),
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
 ) -> None:
     """Take a simulated participant through a whole session."""
@@ -166,6 +178,7 @@ def rehearse(
                 seed=seed,
                 study=study,
                 data=data,
+                physics=physics,
                 as_json=as_json,
             )
         )

@@ -31,6 +31,7 @@ def run_rehearsal(
     seed: int,
     study: str,
     data: Path | None,
+    physics: bool,
     as_json: bool,
 ) -> str:
     """Rehearse and give the report as text or JSON; raises ValueError or RuntimeError."""
@@ -39,7 +40,13 @@ def run_rehearsal(
     if not 0 < speed <= 100:
         raise ValueError(f"a speed of {speed} is not possible; give above 0 and at most 100")
     plan = RehearsalPlan(
-        url=url or "", study=study, speed=speed, seed=seed, capture=capture, token=token
+        url=url or "",
+        study=study,
+        speed=speed,
+        seed=seed,
+        capture=capture,
+        token=token,
+        physics=physics,
     )
     if url is not None:
         report = _run(plan)
@@ -119,6 +126,7 @@ def _text(report: RehearsalReport) -> str:
     practised = sum(phase["kind"] == "practice" for phase in report.phases)
     lines = [
         f"SIMULATED session {report.session_id}: {report.duration_s:.1f} s at {report.speed:g}x",
+        f"avatar {report.avatar} {(report.avatar_configuration_hash or '')[:12]}".rstrip(),
         f"frames sent {report.frames_sent}, stored {report.frames_stored}",
         f"{len(phases)} task phases, {report.questionnaires} questionnaires",
         *([f"{practised} practice phases, which no analysis uses"] if practised else []),

@@ -1,6 +1,5 @@
 """Starting the server: on this machine, and on the lab's network if asked to."""
 
-import gc
 import sys
 from collections.abc import Mapping
 from typing import NoReturn
@@ -11,6 +10,7 @@ from sqlalchemy.exc import DBAPIError
 
 from app.cli.opened import addresses
 from app.clock import Clock
+from app.collecting import settle
 from app.errors import ReembodyError
 from app.features.opening.service import prepare_database
 from app.lan.help.site import HelpSite
@@ -48,10 +48,7 @@ def serve_forever(given: Mapping[str, object], *, new_database: bool = False) ->
     _prepare(settings, new_database=new_database)
     app = create_app(settings, network=watch.network, on_first_password=_tell_password)
     sys.setswitchinterval(SWITCH_INTERVAL_S)
-    # What is here to stay need not be searched for garbage: that took 0.2 s now and then, in which
-    # nothing was acknowledged.
-    gc.collect()
-    gc.freeze()
+    settle()
     print(addresses(watch.network.reach, _where(settings)), flush=True)
     allow_open_files()
     server = LabServer(bound.doors(app, watch, settings), watch.run)

@@ -51,13 +51,15 @@ class TelemetryClient:
             client.state            # newest state of the session
             await client.drained()  # everything is on the server's disk
 
-    `url`: ws://HOST/api/vr/stream. `monotonic_s`: the client's own clock.
+    `url`: ws://HOST/api/vr/stream. `monotonic_s`: the client's own clock. `avatars`: what it can
+    show.
     """
 
     url: str
     token: str
     name: str
     monotonic_s: Callable[[], float]
+    avatars: tuple[str, ...] = ("delayed_copy",)
     probe_every_s: float = 1.0
     journal: Journal = field(default_factory=Journal)
     welcome: Welcome | None = None
@@ -167,7 +169,7 @@ class TelemetryClient:
             try:
                 async with connect(
                     self.url,
-                    subprotocols=[SUBPROTOCOL, f"bearer.{self.token}"],  # type: ignore[list-item]
+                    subprotocols=[SUBPROTOCOL, f"bearer.{self.token}"],  # type: ignore[list-item]  # a token is a plain str
                     open_timeout=OPEN_TIMEOUT_S,
                     max_size=4 * 1024 * 1024,
                     compression=None,
@@ -185,7 +187,9 @@ class TelemetryClient:
     async def _serve(self, socket: ClientConnection) -> None:
         """Greet, then send the journal and what joins it, and read, until the socket closes."""
         epoch = None if self.welcome is None else self.welcome.epoch
-        hello = Hello(protocol=PROTOCOL_VERSION, client=self.name, epoch=epoch)
+        hello = Hello(
+            protocol=PROTOCOL_VERSION, client=self.name, epoch=epoch, avatars=self.avatars
+        )
         await socket.send(hello.model_dump_json())
         first = SERVER_MESSAGE.validate_json(await socket.recv())
         if isinstance(first, Failure):

@@ -5,9 +5,16 @@ from dataclasses import dataclass, field
 from app.clock import Clock
 from app.database import Database
 from app.features.analysis.drawing import Drawings
+from app.features.captures.workbench import Workbench
+from app.features.exports.desk import ExportDesk
 from app.features.live import Hub
 from app.features.rate_limit import RateLimiter
+from app.features.replay.desk import ReplayDesk
+from app.features.storage.measuring import StorageDesk
 from app.features.storage_health import StorageHealth
+from app.features.tryout.desk import TryoutDesk
+from app.features.walking.bench import Bench
+from app.features.walking.desk import FittingDesk
 from app.lan.network import Network
 from app.settings import Settings
 
@@ -24,4 +31,11 @@ class AppContext:
     login_limiter: RateLimiter
     pairing_limiter: RateLimiter
     drawings: Drawings
+    replays: ReplayDesk
+    exports: ExportDesk
+    room: StorageDesk
+    tryout: TryoutDesk
+    fits: FittingDesk
+    captures: Workbench = field(default_factory=Workbench)
+    walking: Bench = field(default_factory=Bench)
     network: Network = field(default_factory=Network)

@@ -7,16 +7,17 @@ A request is read for the name of its own scheme only.
 """
 
 from fastapi import Request, Response
+from starlette.requests import HTTPConnection
 
 HOST_ONLY = "__Host-"
 
 
-def cookie_name(request: Request, name: str) -> str:
+def cookie_name(request: HTTPConnection, name: str) -> str:
     """What the cookie `name` is called where `request` comes from."""
     return f"{HOST_ONLY}{name}" if _is_secure(request) else name
 
 
-def read_cookie(request: Request, name: str) -> str | None:
+def read_cookie(request: HTTPConnection, name: str) -> str | None:
     """The token in the cookie `name`."""
     return request.cookies.get(cookie_name(request, name))
 
@@ -45,5 +46,5 @@ def delete_cookie(request: Request, response: Response, name: str) -> None:
     )
 
 
-def _is_secure(request: Request) -> bool:
-    return request.url.scheme == "https"
+def _is_secure(request: HTTPConnection) -> bool:
+    return request.url.scheme in ("https", "wss")

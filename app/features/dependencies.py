@@ -3,11 +3,12 @@
 `Writing` commits before the response leaves, so whoever hears "stored" can rely on it.
 """
 
-from collections.abc import AsyncIterator, Iterator
-from typing import Annotated
+from collections.abc import AsyncIterator, Callable, Iterator
+from typing import Annotated, TypeVar, cast
 
 from fastapi import Depends, Request
 from sqlalchemy.orm import Session
+from starlette.requests import HTTPConnection
 
 from app.errors import KeptConflict, NotAllowed, NotSignedIn
 from app.features.access import Caller, caller_of, require_object
@@ -21,10 +22,11 @@ from app.models import Device
 LOGIN_COOKIE = "reembody_login"
 TABLET_COOKIE = "reembody_tablet"
 API_PREFIX = "/api"
+Result = TypeVar("Result")
 
 
-def get_context(request: Request) -> AppContext:
-    """The running application's parts."""
+async def get_context(request: Request) -> AppContext:
+    """The running application's parts; asynchronous, since a thread of its own would cost more."""
     context = request.app.state.context
     assert isinstance(context, AppContext)  # noqa: S101 - narrows what create_app put there
     return context
@@ -49,11 +51,28 @@ async def _writing(context: Context) -> AsyncIterator[Session]:
         raise refusal
 
 
+async def write(context: AppContext, work: Callable[[Session], Result]) -> Result:
+    """What `work` gives in a transaction like that of `Writing`, all of it on one thread."""
+    refusals: list[KeptConflict] = []
+
+    def kept(db: Session) -> Result | None:
+        try:
+            return work(db)
+        except KeptConflict as error:
+            refusals.append(error)
+            return None
+
+    result = await context.database.write(kept)
+    for refusal in refusals:
+        raise refusal
+    return cast("Result", result)
+
+
 Reading = Annotated[Session, Depends(_reading, scope="function")]
 Writing = Annotated[Session, Depends(_writing, scope="function")]
 
 
-def bearer_token(request: Request) -> str | None:
+def bearer_token(request: HTTPConnection) -> str | None:
     """The token of an `Authorization: Bearer` header, if there is one."""
     scheme, _, token = request.headers.get("authorization", "").partition(" ")
     return token.strip() if scheme.lower() == "bearer" and token else None
@@ -65,9 +84,14 @@ def get_caller(request: Request, context: Context) -> Caller:
     Raises NotSignedIn, NotAllowed where the route is not for their role, and NotFound where the
     object is of a study that is not theirs.
     """
+    return admitted(request, context, request.method)
+
+
+def admitted(request: HTTPConnection, context: AppContext, method: str) -> Caller:
+    """The same for a request or a socket; `method` as the policy names it. Raises likewise."""
     caller = known_caller(request, context)
     template = _template(request)
-    roles = allowed(request.method, template)
+    roles = allowed(method, template)
     if caller.role not in roles:
         raise NotAllowed(
             f"this is not for the role {caller.role}",
@@ -80,7 +104,7 @@ def get_caller(request: Request, context: Context) -> Caller:
     return caller
 
 
-def known_caller(request: Request, context: Context) -> Caller:
+def known_caller(request: HTTPConnection, context: Context) -> Caller:
     """The signed-in person, whatever the route; raises NotSignedIn."""
     token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE)
     if not token:
@@ -91,9 +115,15 @@ def known_caller(request: Request, context: Context) -> Caller:
 
 def get_tablet(request: Request, context: Context) -> Device:
     """The paired tablet; raises NotSignedIn when it is unknown or was replaced."""
+    with context.database.reading() as db:
+        return tablet_in(db, request, context)
+
+
+def tablet_in(db: Session, request: Request, context: AppContext) -> Device:
+    """The same within a transaction that goes on."""
     _require_device_route(request, TABLET)
     token = read_cookie(request, TABLET_COOKIE) or bearer_token(request)
-    tablet = _device(token, "tablet", context)
+    tablet = _device(db, token, "tablet")
     context.hub.note_seen(tablet.id, context.clock.utc_now())
     return tablet
 
@@ -101,7 +131,8 @@ def get_tablet(request: Request, context: Context) -> Device:
 def get_headset(request: Request, context: Context) -> Device:
     """The paired headset; raises NotSignedIn when it is unknown or was replaced."""
     _require_device_route(request, HEADSET)
-    return _device(bearer_token(request), "headset", context)
+    with context.database.reading() as db:
+        return _device(db, bearer_token(request), "headset")
 
 
 def _require_device_route(request: Request, who: frozenset[str]) -> None:
@@ -109,18 +140,18 @@ def _require_device_route(request: Request, who: frozenset[str]) -> None:
         raise NotAllowed("this route is not open to devices", remedy="Use the device's own page.")
 
 
-def _template(request: Request) -> str:
+def _template(request: HTTPConnection) -> str:
     """The route's path with the names of its parameters; all routes are included under one prefix,
-    which the route itself does not know.
+    which the route itself does not know, unless it is a socket's.
     """
-    return f"{API_PREFIX}{request.scope['route'].path}"
+    path = str(request.scope["route"].path)
+    return path if path.startswith(f"{API_PREFIX}/") else f"{API_PREFIX}{path}"
 
 
-def _device(token: str | None, kind: str, context: AppContext) -> Device:
+def _device(db: Session, token: str | None, kind: str) -> Device:
     if not token:
         raise NotSignedIn(f"this {kind} is not paired", remedy="Enter the code from the console.")
-    with context.database.reading() as db:
-        return device_of_token(db, token, kind)
+    return device_of_token(db, token, kind)
 
 
 SignedIn = Annotated[Caller, Depends(get_caller)]

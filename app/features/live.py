@@ -7,7 +7,7 @@ this; it is in the database before anything is published.
 
 import asyncio
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -58,6 +58,7 @@ class Hub:
     _headsets: dict[str, int] = field(default_factory=dict)
     _heard_s: dict[str, float] = field(default_factory=dict)
     _seen: dict[str, datetime] = field(default_factory=dict)
+    _signals: dict[str, Mapping[str, Any]] = field(default_factory=dict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def note_seen(self, device_id: str, now: datetime) -> None:
@@ -131,6 +132,18 @@ class Hub:
             else:
                 self._headsets.pop(session_id, None)
                 self._heard_s.pop(session_id, None)
+                self._signals.pop(session_id, None)
+
+    def note_signal(self, session_id: str, signal: Mapping[str, Any]) -> None:
+        """How good a connected headset's data are now, as the console's figures tell it."""
+        with self._lock:
+            if session_id in self._headsets:
+                self._signals[session_id] = signal
+
+    def signal(self, session_id: str) -> Mapping[str, Any] | None:
+        """The newest of these figures; None without a headset, or before its first look."""
+        with self._lock:
+            return self._signals.get(session_id)
 
     def note_frames(self, session_id: str, now_s: float) -> None:
         """Frames have come on one of the session's sockets, at this monotonic time."""

@@ -2,7 +2,8 @@
 
 uvicorn keeps a connection whose request never ends for as long as the client likes; a few hundred
 of those (a "slow loris", or tablets that left the room in mid-sentence) would hold sockets until
-none is left. The deadlines count from the first byte that was due, however many more drip in.
+none is left. The deadlines count from the first byte that was due, however many more drip in; a
+large body that somebody takes has the body's for every portion of it.
 Requests that are not all there are also counted: above `MOST_UNFINISHED` the oldest of whoever has
 most makes room, so that the slow are shut out before anybody else is.
 """
@@ -19,7 +20,8 @@ from uvicorn.server import ServerState
 
 HEAD_WITHIN_S = 10.0
 BODY_WITHIN_S = 30.0
-"""The largest body is 2 MiB: this asks for 70 kB/s of the slowest tablet."""
+PORTION_BYTES = 2 * 1024 * 1024
+"""Usual bodies have one portion at most: this asks for 70 kB/s of the slowest tablet."""
 MOST_HEAD_BYTES = 64 * 1024
 MOST_UNFINISHED = 256
 CLOSED_WITHIN_S = 2.0
@@ -66,8 +68,9 @@ class ReceivingProtocol(HttpToolsProtocol):
         self._heads = 0
         self._head_bytes = 0
         self._in_body = False
+        self._portion = 0
 
-    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]  # asyncio hands a Transport
         """The head is due from now on."""
         super().connection_made(transport)
         self._await_head()
@@ -98,8 +101,18 @@ class ReceivingProtocol(HttpToolsProtocol):
         """The head is there; the body is due."""
         self._settle()
         self._heads, self._head_bytes, self._in_body = self._heads + 1, 0, True
+        self._portion = 0
         self._await(BODY_WITHIN_S, self._body_is_late)
         super().on_headers_complete()
+
+    def on_body(self, body: bytes) -> None:
+        """A portion that came in time earns time for the next, unless it was answered already."""
+        super().on_body(body)
+        self._portion += len(body)
+        if self._portion >= PORTION_BYTES and self._answering:
+            self._portion = 0
+            self._settle()
+            self._await(BODY_WITHIN_S, self._body_is_late)
 
     def on_message_complete(self) -> None:
         """All of it is there."""

@@ -39,7 +39,7 @@ class LabServer(uvicorn.Server):
         self._doors, self._meanwhile = tuple(doors), meanwhile
         self._unfinished = Unfinished()
 
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:  # noqa: ARG002
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:  # noqa: ARG002 - uvicorn's signature
         """Start the application, then open every door."""
         await self.lifespan.startup()
         if self.lifespan.should_exit:

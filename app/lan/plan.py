@@ -95,6 +95,7 @@ def make_plan(settings: Settings, clock: Clock) -> Plan:
     if not settings.lan:
         return Plan("loopback", (_local(settings.host),), settings.port)
     certificates = _certificates(settings, clock)
+    _require_own_ports(settings)
     return Plan(
         mode="lan",
         local_hosts=(_local(settings.host),),
@@ -116,6 +117,22 @@ def _certificates(settings: Settings, clock: Clock) -> CertificateSource:
             remedy="Name both files, or neither to use the built-in authority",
         )
     return OwnFiles(certificate, key, clock)
+
+
+def _require_own_ports(settings: Settings) -> None:
+    """Two sockets may take one port as long as neither listens; then one of them answers nobody."""
+    options = {"--port": settings.port, "--lan-port": settings.lan_port}
+    if settings.certificate is None:
+        options["--help-port"] = settings.help_port
+    for number in options.values():
+        named = [option for option, port in options.items() if port == number != 0]
+        if len(named) > 1:
+            raise InvalidInput(
+                f"{' and '.join(named)} are both {number}",
+                value=number,
+                valid="a port of its own for each",
+                remedy=f"Give {named[-1]} another number, such as {number + 1}",
+            )
 
 
 def is_loopback(host: str) -> bool:

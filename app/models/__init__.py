@@ -2,8 +2,12 @@
 
 from app.models.accounts import Account, Invitation, LoginToken, StudyMember
 from app.models.audit import AuditEntry, AuditHead
+from app.models.avatars import Avatar, AvatarVersion
+from app.models.captures import CaptureContent, CapturePiece, CaptureRow, SavedJointMap
 from app.models.desk import Calibration, Suggestion
 from app.models.devices import Device, PairingCode
+from app.models.humanoids import HumanoidRow
+from app.models.imports import AnswerImport, ImportedForm
 from app.models.ledger import Ledger, LedgerSlot, Participant, SlotAttempt
 from app.models.quality import AlarmRow, PhaseLatency, PhaseQuality
 from app.models.questionnaires import Answer, ScoreValue, Submission
@@ -20,15 +24,22 @@ from app.models.telemetry import (
     TelemetryChunk,
     TelemetryStream,
 )
+from app.models.walking import WalkingModelRow, WalkingScene, WalkSetRow
 
 __all__ = [
     "Account",
     "AlarmRow",
     "Answer",
     "AnswerCorrection",
+    "AnswerImport",
     "AuditEntry",
     "AuditHead",
+    "Avatar",
+    "AvatarVersion",
     "Calibration",
+    "CaptureContent",
+    "CapturePiece",
+    "CaptureRow",
     "ClientReport",
     "ClockProbe",
     "Completion",
@@ -36,6 +47,8 @@ __all__ = [
     "CopyMade",
     "Device",
     "Erasure",
+    "HumanoidRow",
+    "ImportedForm",
     "InstrumentVersion",
     "Invitation",
     "JointErrorRow",
@@ -47,6 +60,7 @@ __all__ = [
     "Phase",
     "PhaseLatency",
     "PhaseQuality",
+    "SavedJointMap",
     "ScoreValue",
     "SessionContent",
     "SessionEvent",
@@ -60,4 +74,7 @@ __all__ = [
     "TelemetryBatch",
     "TelemetryChunk",
     "TelemetryStream",
+    "WalkSetRow",
+    "WalkingModelRow",
+    "WalkingScene",
 ]

@@ -15,7 +15,9 @@ class Submission(Base):
 
     `administration` names the step and attempt it answers ("block1.hand.karas2020#1").
     `request_hash` tells a repeated request from a different one under the same key. The event log
-    holds sha256(salt + answers) only.
+    holds sha256(salt + answers) only. `timings`: seconds from the opening of the form to the last
+    change of each item. `item_traces`: by item, `response_s` and `changes`, as `ItemTrace` in the
+    questionnaires' schemas says; None where the page that sent the form did not know them.
     """
 
     __tablename__ = "submissions"
@@ -40,6 +42,7 @@ class Submission(Base):
     item_seed: Mapped[int] = mapped_column(BigInteger)
     shown_order: Mapped[list[Any]] = mapped_column(JSON)
     timings: Mapped[dict[str, Any]] = mapped_column(JSON)
+    item_traces: Mapped[dict[str, Any] | None] = mapped_column(JSON)
     started_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
     submitted_at: Mapped[UtcTime]
 

@@ -20,7 +20,11 @@ from app.models.types import Id, UtcDateTime, UtcTime
 
 
 class StudySession(Base):
-    """One visit of one participant. `version` counts events; `snapshot` is the state after them."""
+    """One visit of one participant. `version` counts events; `snapshot` is the state after them.
+
+    `avatar_configuration_hash` names the content of the avatar's configuration that was used, if
+    the avatar has one (AvatarVersion).
+    """
 
     __tablename__ = "sessions"
     __table_args__ = (
@@ -34,6 +38,7 @@ class StudySession(Base):
     participant_id: Mapped[str] = mapped_column(ForeignKey("participants.id"), index=True)
     kind: Mapped[str] = mapped_column(String(20))
     avatar: Mapped[str] = mapped_column(String(40))
+    avatar_configuration_hash: Mapped[str | None] = mapped_column(String(64))
     language: Mapped[str] = mapped_column(String(8))
     time_scale: Mapped[float] = mapped_column(default=1.0)
     seed: Mapped[int] = mapped_column(BigInteger)

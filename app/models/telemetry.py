@@ -142,9 +142,10 @@ class Completion(Base):
 class JointErrorRow(Base):
     """How far a joint was from its target over the active time of a phase, per axis.
 
-    `reference` is `present` (against the participant's pose at that moment) or `command` (against
-    the delayed command, which tells how good the controller is). Radians; null where no sample
-    counts.
+    `reference` is `present` (against what was asked for at that moment) or `command` (against the
+    delayed command, which tells how good the controller is). Radians; null where no sample counts.
+    `clipped_share` is the share of the samples in which the limits of a physics avatar took
+    something from what was asked for; null without limits, or without a hinge that turns.
     """
 
     __tablename__ = "joint_errors"
@@ -161,6 +162,7 @@ class JointErrorRow(Base):
     rms_rad: Mapped[float | None]
     p95_rad: Mapped[float | None]
     max_rad: Mapped[float | None]
+    clipped_share: Mapped[float | None]
     samples: Mapped[int]
     excluded: Mapped[int]
 

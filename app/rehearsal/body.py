@@ -5,19 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
-from app.adapters.bvh import BvhError, read_bvh
+from app.rehearsal.captured import UnusableCapture, captured_movement
 from app.science.simulation import SimulatedParticipant, idle_movement
 from app.science.skeleton import Skeleton, SkeletonError, build_skeleton
 from app.science.skeleton.movement import Movement, loop, resample
-from app.science.skeleton.retarget import retarget
 
 FRAME_RATE_HZ = 90.0
-# CMU's captures; only proportions matter, since a capture is scaled to the stature.
-METRES_PER_BVH_UNIT = 0.056444
-
-
-class CaptureError(ValueError):
-    """The capture cannot be used as movement; says why and what to do."""
+CROSSFADE_S, SHORTEST_CROSSFADE_S = 0.4, 0.1
+SHORTEST_LOOP_S = 0.55
+"""A capture of a second still makes a loop, with a shorter cross-fade."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +29,7 @@ class Person:
 
 
 def make_person(rng: np.random.Generator, capture: Path | None) -> Person:
-    """A person moving like `capture`, or by movement made here; raises CaptureError."""
+    """A person moving like `capture`, or by movement made here; raises UnusableCapture."""
     stature_m = float(np.clip(rng.normal(1.72, 0.09), 1.52, 1.95))
     skeleton = build_skeleton(stature_m)
     movement = idle_movement(skeleton, rng) if capture is None else _looped(capture, skeleton)
@@ -49,8 +45,9 @@ def make_person(rng: np.random.Generator, capture: Path | None) -> Person:
 
 def _looped(capture: Path, skeleton: Skeleton) -> Movement:
     """The capture in place, scaled to the stature, looped with a cross-fade."""
+    movement = captured_movement(capture, skeleton)
     try:
-        clip = read_bvh(capture, metres_per_unit=METRES_PER_BVH_UNIT)
-        return loop(resample(retarget(clip, skeleton), FRAME_RATE_HZ))
-    except (BvhError, SkeletonError, OSError) as error:
-        raise CaptureError(f"{capture} cannot be used: {error}") from error
+        crossfade_s = min(CROSSFADE_S, (movement.duration_s - SHORTEST_LOOP_S) / 2.0)
+        return loop(resample(movement, FRAME_RATE_HZ), max(crossfade_s, SHORTEST_CROSSFADE_S))
+    except SkeletonError as error:
+        raise UnusableCapture(f"{capture} cannot be used: {error}") from error

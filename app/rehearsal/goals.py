@@ -13,17 +13,21 @@ from app.science.tasks import (
 
 _WAY_OUT_M = 0.12
 _STEP_CLEARANCE_M = 0.08
+_HALF_HAND_M = 0.05
 
 
-def goal_of(state: TaskState, leading_foot: Laterality) -> Goal | None:
-    """The goal of the present state; None once the phase is frozen."""
+def goal_of(state: TaskState, leading_foot: Laterality, *, solid: bool = False) -> Goal | None:
+    """The goal of the present state; None once the phase is frozen.
+
+    `solid`: the avatar cannot pass through the boxes, so the hand is aimed to fit between walls.
+    """
     key = current_goal(state)
     if key is None:
         return None
     layout = state.rules.layout
     surface = layout.by_key[key]
     if layout.limb is Limb.HAND:
-        return _reach(surface, state)
+        return _reach(surface, state, _HALF_HAND_M if solid else 0.0)
     if surface.kind is SurfaceKind.START:
         return Goal(
             GoalKind.WALK_TO, None, _on_floor(surface), 0.1, (0.0, _edge_height(state), 0.0)
@@ -31,7 +35,7 @@ def goal_of(state: TaskState, leading_foot: Laterality) -> Goal | None:
     return _step(surface, state, leading_foot)
 
 
-def _reach(surface: Surface, state: TaskState) -> Goal:
+def _reach(surface: Surface, state: TaskState, half_hand_m: float) -> Goal:
     x, y, z = surface.center_m
     half_depth = surface.half_size_m[2]
     out_m = _box_depth(surface, state) + _WAY_OUT_M
@@ -40,7 +44,7 @@ def _reach(surface: Surface, state: TaskState) -> Goal:
         f"{state.rules.writing_hand.value.capitalize()}Hand",
         # The face towards the participant.
         (x, y, z + half_depth),
-        max(0.02, min(surface.half_size_m[0], surface.half_size_m[1])),
+        max(0.02, min(surface.half_size_m[0], surface.half_size_m[1]) - half_hand_m),
         (0.0, 0.0, out_m),
     )
 

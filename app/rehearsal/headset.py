@@ -1,7 +1,8 @@
 """The scripted headset: moves a body, delays its copy, plays the tasks, streams everything.
 
-The remote avatar is the same movement with every joint but the hips delayed by the block's latency
-(`delayed_copy`); contacts come from its body parts against the boxes.
+The remote avatar is a delayed copy of the movement, or a body that follows it by forces, as the
+study says; contacts are what that avatar touches. One that is moved by physics is had from the
+server when the participant's stature is known and the T-pose is held.
 """
 
 import asyncio
@@ -13,14 +14,15 @@ from numpy.typing import NDArray
 
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
+from app.rehearsal.avatars import DelayedCopy, RemoteAvatar
 from app.rehearsal.body import Person
 from app.rehearsal.frame_clock import FrameClock
 from app.rehearsal.goals import goal_of
+from app.rehearsal.physics import AvatarSource
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
-from app.science.avatar.delay import DelayBuffer
-from app.science.skeleton import JOINT_NAMES, Pose, body_part_segments, forward_kinematics
-from app.science.tasks import Laterality, TaskRules
+from app.science.skeleton import JOINT_NAMES, Pose
+from app.science.tasks import Laterality, TaskLayout, TaskRules
 from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
 from app.wire.batch import ACTIVE
 from app.wire.messages import HeadsetState, MaterialisedReport, PhaseOrder, ReportBody
@@ -50,11 +52,17 @@ class Buffers:
 class Headset:
     """Runs until the session is over or recording ends with the debriefing.
 
-    `clock` is the one that the client shows in its probes, too.
+    `clock` is the one that the client shows in its probes, too. `physics` is where an avatar moved
+    by physics is had from; without it the avatar is a delayed copy.
     """
 
     def __init__(
-        self, client: TelemetryClient, person: Person, tasks: Tasks, clock: FrameClock
+        self,
+        client: TelemetryClient,
+        person: Person,
+        tasks: Tasks,
+        clock: FrameClock,
+        physics: AvatarSource | None = None,
     ) -> None:
         self.client = client
         self.frames_sent: dict[str, int] = {name.value: 0 for name in StreamName}
@@ -62,7 +70,8 @@ class Headset:
         self.contacts = 0
         self._person, self._clock = person, clock
         self._layouts = {"hand": tasks.hand.layout(), "foot": tasks.foot.layout()}
-        self._delay = DelayBuffer(0.0)
+        self._physics = physics
+        self._avatar: RemoteAvatar | None = None if physics else DelayedCopy(person.skeleton)
         self._run: TimedRun | None = None
         self._phase_id = 0
         self._buffers = Buffers()
@@ -106,8 +115,11 @@ class Headset:
 
     async def _follow(self, state: HeadsetState) -> None:
         """Converge to the session's state."""
+        if self._avatar is None and state.materialised:
+            # Another run of the client had taken it up.
+            await self._take_up(state)
         if state.step_kind == "materialise" and not state.materialised:
-            await self._materialise()
+            await self._materialise(state)
         order = state.phase
         if self._run is not None and order is not None:
             if self._run.order.phase_id == order.phase_id:
@@ -126,18 +138,25 @@ class Headset:
         """Whether the state is older than our own report that the phase has ended."""
         return self._run is None and order.phase_id <= self._phase_id
 
-    async def _materialise(self) -> None:
+    async def _materialise(self, state: HeadsetState) -> None:
         if self._t_pose_since_s is None:
             self._t_pose_since_s = self.t_s
         elif self.t_s - self._t_pose_since_s >= T_POSE_S and not self._materialised:
             self._materialised = True
+            await self._take_up(state)
             await self.client.report(MaterialisedReport(t_s=self.t_s))
+
+    async def _take_up(self, state: HeadsetState) -> None:
+        """Have the avatar that physics moves, for the stature that is on record."""
+        if self._physics is not None:
+            stature_m = state.participant.stature_m or self._person.stature_m
+            self._avatar = await self._physics.take_up(stature_m)
 
     async def _enter_phase(self, order: PhaseOrder) -> None:
         await self._flush()
         self._phase_id = order.phase_id
-        self._delay.set_delay(order.latency_ms / 1000.0)
-        self._person.participant.set_latency(order.latency_ms / 1000.0)
+        self._follow_later(order.latency_ms / 1000.0)
+        self._show_boxes(None if order.limb is None else self._layouts[order.limb])
         if order.limb is None:
             self._run = FreeRun(order, self.t_s)
         else:
@@ -148,8 +167,17 @@ class Headset:
     async def _leave_phase(self) -> None:
         await self._flush()
         self._run = None
-        self._delay.set_delay(0.0)
-        self._person.participant.set_latency(0.0)
+        self._follow_later(0.0)
+        self._show_boxes(None)
+
+    def _follow_later(self, latency_s: float) -> None:
+        if self._avatar is not None:
+            self._avatar.set_latency(latency_s)
+        self._person.participant.set_latency(latency_s)
+
+    def _show_boxes(self, layout: TaskLayout | None) -> None:
+        if self._avatar is not None:
+            self._avatar.show_boxes(layout)
 
     async def _draw(self, *, recording: bool) -> None:
         """One frame: the person's pose, the delayed avatar, its contacts, and the record."""
@@ -158,34 +186,30 @@ class Headset:
         goal = None
         if isinstance(run, BoxRun):
             foot = "right" if self._person.footedness == "both" else self._person.footedness
-            goal = goal_of(run.state, Laterality(foot))
+            solid = self._physics is not None
+            goal = goal_of(run.state, Laterality(foot), solid=solid)
         pose = self._person.participant.pose(t_s, goal)
-        avatar = self._delay.push(t_s, pose.rotations)
+        avatar = self._avatar
+        if avatar is None:
+            return
+        shown = avatar.frame(t_s, pose)
         if recording:
-            self._record(t_s, pose, avatar)
+            self._record(t_s, pose, shown)
         if run is not None:
-            skeleton = self._person.skeleton
-            world = forward_kinematics(skeleton, pose.root_position_m, avatar)
-            parts = body_part_segments(skeleton, world)
-            reports = run.frame(
-                t_s,
-                parts.axes_m,
-                parts.radii_m,
-                connected=self.client.connected or self._goes_on_alone,
-            )
-            await self._report(reports)
+            connected = self.client.connected or self._goes_on_alone
+            await self._report(run.frame(t_s, avatar.touches, connected=connected))
             if run.ended:
                 await self._leave_phase()
         if self._buffers.count == FRAMES_PER_BATCH:
             await self._flush()
 
-    def _record(self, t_s: float, pose: Pose, avatar: NDArray[np.float64]) -> None:
+    def _record(self, t_s: float, pose: Pose, shown: Pose) -> None:
         buffers, at = self._buffers, self._buffers.count
         buffers.times_s[at] = t_s
         buffers.flags[at] = ACTIVE if self._run is not None and self._run.clock_runs else 0
-        for values, rotations in ((buffers.target, pose.rotations), (buffers.actual, avatar)):
-            values[at, :3] = pose.root_position_m
-            values[at, 3:] = rotations.ravel()
+        for values, of in ((buffers.target, pose), (buffers.actual, shown)):
+            values[at, :3] = of.root_position_m
+            values[at, 3:] = of.rotations.ravel()
         buffers.count += 1
 
     async def _flush(self) -> None:

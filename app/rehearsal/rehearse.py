@@ -24,13 +24,20 @@ from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, perform
 from app.rehearsal.frame_clock import FrameClock
 from app.rehearsal.headset import Headset
+from app.rehearsal.physics import FromServer
+from app.rehearsal.variant import physics_variant
 
 Json = dict[str, Any]
+AVATARS = ("delayed_copy", "physics")
+"""What the scripted headset can show."""
 
 
 @dataclass(frozen=True)
 class RehearsalPlan:
-    """What to rehearse. `token` None logs in with `password`. `speed` 1 is real time."""
+    """What to rehearse. `token` None logs in with `password`. `speed` 1 is real time.
+
+    `physics`: with an avatar that is moved by physics, in a copy of the study where it has another.
+    """
 
     url: str
     study: str
@@ -41,6 +48,7 @@ class RehearsalPlan:
     password: str | None = None
     language: str = "en"
     participant_code: str | None = None
+    physics: bool = False
 
 
 @dataclass(frozen=True)
@@ -49,6 +57,8 @@ class RehearsalReport:
 
     session_id: str
     simulated: bool
+    avatar: str
+    avatar_configuration_hash: str | None
     frames_sent: dict[str, int]
     frames_stored: dict[str, int]
     streams: list[Json]
@@ -72,7 +82,7 @@ async def rehearse(
 ) -> RehearsalReport:
     """Run a whole session; `say` is told each step, `journal` is where the headset keeps frames.
 
-    Raises CaptureError, ServerRefusedError, UnreachableError or TelemetryError.
+    Raises UnusableCapture, NoVariantError, ServerRefusedError, UnreachableError or TelemetryError.
     """
     began_s = time.monotonic()
     async with assembled(plan, say, journal=journal) as cast:
@@ -100,15 +110,18 @@ async def assembled(
         await operator.pair("tablet", tablet_http, "rehearsal tablet")
         headset_http = await stack.enter_async_context(AsyncClient(base_url=plan.url, timeout=30))
         paired = await operator.pair("headset", headset_http, "rehearsal headset")
+        headset_http.headers["authorization"] = f"Bearer {paired['token']}"
         socket = TelemetryClient(
             url=f"{plan.url.replace('http', 'ws', 1)}/api/vr/stream",
             token=paired["token"],
             name="reembody rehearsal",
+            avatars=AVATARS,
             monotonic_s=clock.now_s,
             journal=journal if journal is not None else Journal(),
         )
         await stack.enter_async_context(socket)
-        headset = Headset(socket, person, tasks_of(socket), clock)
+        physics = FromServer(headset_http) if session["avatar"] == "physics" else None
+        headset = Headset(socket, person, tasks_of(socket), clock, physics)
         yield Cast(operator, Tablet(tablet_http), headset, person, rng, say)
 
 
@@ -130,10 +143,11 @@ async def _sign_in(http: AsyncClient, plan: RehearsalPlan) -> None:
 
 
 async def _join(http: AsyncClient, plan: RehearsalPlan) -> Json:
+    study = await physics_variant(http, plan.study) if plan.physics else plan.study
     session: Json = await call(
         http,
         "POST",
-        f"/api/studies/{plan.study}/sessions",
+        f"/api/studies/{study}/sessions",
         {
             "kind": "simulated",
             "language": plan.language,
@@ -158,6 +172,8 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
     return RehearsalReport(
         session_id=session_id,
         simulated=True,
+        avatar=view["avatar"],
+        avatar_configuration_hash=view["avatar_configuration_hash"],
         frames_sent=cast.headset.frames_sent,
         frames_stored=stored,
         streams=streams,

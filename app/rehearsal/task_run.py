@@ -3,24 +3,21 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from app.rehearsal.timed_run import FloatArray, TimedRun
+from app.rehearsal.timed_run import TimedRun, Touches
 from app.science.tasks import (
     ActiveClock,
     CommandKind,
     ContactInterval,
     EventKind,
-    SurfaceArrays,
     SurfaceKind,
     TaskEvent,
     TaskRules,
     TaskRun,
     TaskState,
     completions,
-    touching_and_near,
 )
 from app.wire.messages import CompletionReport, ContactReport, PhaseOrder, ReportBody
 
-RELEASE_MARGIN_M = 0.005
 _EFFECTS = {
     EventKind.PANEL_GREEN: "green",
     EventKind.OUT_OF_ORDER: "out_of_order",
@@ -42,7 +39,6 @@ class BoxRun(TimedRun):
             # Another run of the client has turned the order round already.
             state = self._run.state
             self._run.state = replace(state, order=state.order[::-1])
-        self._surfaces = SurfaceArrays.of(rules.layout)
         self._completed_before = order.completions
         self._told_events = 0
         self._told_intervals = 0
@@ -69,9 +65,9 @@ class BoxRun(TimedRun):
         """Start, pause, resume or freeze the task."""
         self._run.command(kind, t_s)
 
-    def touch(self, t_s: float, axes_m: FloatArray, radii_m: FloatArray) -> None:
+    def touch(self, t_s: float, touches: Touches) -> None:
         """Give the rules one frame of touches."""
-        touched, near = touching_and_near(self._surfaces, axes_m, radii_m, RELEASE_MARGIN_M)
+        touched, near = touches()
         self._run.frame(t_s, touched, near)
 
     def news(self, _t_s: float) -> list[ReportBody]:

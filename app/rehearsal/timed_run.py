@@ -6,6 +6,7 @@ connection is broken, so both sides agree on what counts.
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,9 @@ from numpy.typing import NDArray
 from app.science.tasks import ActiveClock, CommandKind
 from app.wire.messages import PhaseOrder, PhaseReport, ReportBody
 
-FloatArray = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+Touches = Callable[[], tuple[Bools, Bools]]
+"""Surfaces of the task by joints (S, P): what is touched, and what is near enough to hold it."""
 
 
 class TimedRun(ABC):
@@ -42,8 +45,8 @@ class TimedRun(ABC):
         """Start, pause, resume or freeze the clock."""
 
     @abstractmethod
-    def touch(self, t_s: float, axes_m: FloatArray, radii_m: FloatArray) -> None:
-        """Judge one frame of body parts: capsule axes (P, 2, 3) and radii (P,)."""
+    def touch(self, t_s: float, touches: Touches) -> None:
+        """Judge what the avatar touches in one frame."""
 
     @abstractmethod
     def news(self, t_s: float) -> list[ReportBody]:
@@ -90,10 +93,8 @@ class TimedRun(ABC):
             reports += [*self.news(t_s), self.report("resumed", t_s)]
         return reports
 
-    def frame(
-        self, t_s: float, axes_m: FloatArray, radii_m: FloatArray, *, connected: bool
-    ) -> list[ReportBody]:
-        """Go on by one frame; what to report of it."""
+    def frame(self, t_s: float, touches: Touches, *, connected: bool) -> list[ReportBody]:
+        """Go on by one frame; what to report of it. `touches` is asked while the clock may run."""
         if self._takes_over:
             self._takes_over = False
             return self._take_over(t_s)
@@ -111,7 +112,7 @@ class TimedRun(ABC):
             # The phase ends when its time is used up, not when the next frame is drawn.
             return [*reports, *self._freeze(max(end_s, self.clock.last_s or end_s))]
         if self.clock.last_s is not None:
-            self.touch(t_s, axes_m, radii_m)
+            self.touch(t_s, touches)
         reports += self.news(t_s)
         return [*reports, *self._freeze(t_s)] if self.has_enough else reports
 
@@ -182,7 +183,7 @@ class FreeRun(TimedRun):
             case _:
                 self._clock = self._clock.pause(t_s)
 
-    def touch(self, t_s: float, axes_m: FloatArray, radii_m: FloatArray) -> None:
+    def touch(self, t_s: float, touches: Touches) -> None:
         """Nothing to touch."""
 
     def news(self, _t_s: float) -> list[ReportBody]:

@@ -8,12 +8,19 @@ from app.wire.basis import Count, Epoch, Message, Name, Nanoseconds, Seconds, Se
 
 
 class Hello(Message):
-    """Opens a connection. `epoch` is null for a new run of the client."""
+    """Opens a connection. `epoch` is null for a new run of the client.
+
+    `avatars`: what the client can show. One that cannot show the session's avatar is refused: the
+    record would name another than the participant saw.
+    """
 
     type: Literal["hello"] = "hello"
     protocol: int
     client: Name = Field(max_length=120)
     epoch: Epoch | None = None
+    avatars: tuple[Annotated[Name, Field(max_length=40)], ...] = Field(
+        default=("delayed_copy",), max_length=10
+    )
 
 
 class PhaseReport(Message):

@@ -22,7 +22,9 @@ from schemathesis.specs.openapi.checks import (
 )
 
 from tests.faults.figures import note
+from tests.features.captures.files import walk_bvh
 from tests.features.lab import STUDY
+from tests.support.humanoid_files import humanoid_file
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 CHECKS = (
@@ -32,7 +34,7 @@ CHECKS = (
     response_headers_conformance,
     response_schema_conformance,
 )
-EXAMPLES, MANY_EXAMPLES = 4, 400
+EXAMPLES, MANY_EXAMPLES = 5, 400
 NOT_CALLED = ("/live", "/api/logout", "/api/me/password", "/logins")
 """Endless streams, and what would end the login that asks."""
 
@@ -44,6 +46,8 @@ class Bench:
     server: LiveServer
     token: str
     session_id: str
+    capture_id: str
+    humanoid: str
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +58,12 @@ def bench(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bench]:
         client.post("/api/login", json=credentials).raise_for_status()
         token = client.cookies["reembody_login"]
         joined = client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"})
-        yield Bench(server, token, joined.raise_for_status().json()["id"])
+        session_id = joined.raise_for_status().json()["id"]
+        capture = client.post("/api/captures?name=walk.bvh", content=walk_bvh())
+        capture_id = capture.raise_for_status().json()["id"]
+        humanoid = client.post("/api/humanoids?name=figure.glb", content=humanoid_file())
+        content_hash = humanoid.raise_for_status().json()["content_hash"]
+        yield Bench(server, token, session_id, capture_id, content_hash)
 
 
 def operations(bench: Bench) -> Iterator[Any]:
@@ -71,8 +80,14 @@ def known_objects(case: Any, bench: Bench, count: int) -> None:
     """Two times in three ask for what is there, or hardly anything behind an id would be met."""
     if count % 3 and case.path_parameters:
         known = {"key": STUDY, "session_id": bench.session_id, "number": 1}
+        known["content_hash"] = bench.humanoid
+        known["scene_key"] = "car-and-three-racks"
+        if case.method != "DELETE":
+            known["capture_id"] = bench.capture_id
         if case.path.startswith("/api/instruments"):
             known["key"] = "karas2020"
+        if case.path.startswith("/api/avatars"):
+            known["key"] = "standard"
         case.path_parameters.update(
             {name: value for name, value in known.items() if name in case.path_parameters}
         )

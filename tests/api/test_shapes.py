@@ -66,7 +66,7 @@ def test_what_breaks_inside_is_told_in_the_same_shape(
     monkeypatch.setattr(type(lab.database), "reading", lambda _: fail())
     client = lab.stranger()
     # The test client would raise what a server answers with a 500.
-    client._transport.raise_server_exceptions = False  # type: ignore[attr-defined]
+    client._transport.raise_server_exceptions = False  # type: ignore[attr-defined]  # Starlette's own
     answer = client.get("/api/health")
     refusal = error(answer, status, code)
     assert set(refusal) == SHAPE

@@ -21,7 +21,7 @@ from sqlalchemy import Connection, Engine, String, column, event, inspect, selec
 
 from app.database import open_database
 from app.schema_revisions import alembic_config
-from tests.support.filled import VERSION_TABLE, contents
+from tests.support.filled import VERSION_TABLE, contents, remembered, statements_of
 
 READING = {"SELECT", "PRAGMA", "SHOW", "SET", "BEGIN"}
 Step = tuple[str, str]
@@ -60,27 +60,41 @@ def found(url: str) -> Found:
     database = open_database(url)
     try:
         with database.engine.connect() as connection:
-            look = inspect(connection)
-            names = look.get_table_names()
-            schema = {name: _in_words(connection, name) for name in names}
+            schema = _schema_of(connection)
             version = select(column("version_num", String)).select_from(table(VERSION_TABLE))
-            revision = connection.scalar(version) if VERSION_TABLE in names else None
-        schema.pop(VERSION_TABLE, None)
-        return Found(revision, schema, contents(database.engine))
+            revision = connection.scalar(version) if VERSION_TABLE in schema else None
+        words = {name: told for name, told in schema.items() if name != VERSION_TABLE}
+        return Found(revision, words, contents(database.engine))
     finally:
         database.close()
 
 
-def _in_words(connection: Connection, name: str) -> dict[str, Any]:
+def _schema_of(connection: Connection) -> dict[str, Any]:
+    if connection.dialect.name == "sqlite":
+        return _remembered_words(statements_of(connection), connection)
+    return _in_words(connection)
+
+
+def _in_words(connection: Connection) -> dict[str, Any]:
+    """All tables at once: PostgreSQL answers each question about fifty as fast as about one."""
     look = inspect(connection)
+    columns, keys = look.get_multi_columns(), look.get_multi_pk_constraint()
+    references, unique = look.get_multi_foreign_keys(), look.get_multi_unique_constraints()
+    checks, indices = look.get_multi_check_constraints(), look.get_multi_indexes()
     return {
-        "columns": [{**one, "type": str(one["type"])} for one in look.get_columns(name)],
-        "key": look.get_pk_constraint(name),
-        "references": sorted(look.get_foreign_keys(name), key=str),
-        "unique": sorted(look.get_unique_constraints(name), key=str),
-        "checks": sorted(look.get_check_constraints(name), key=str),
-        "indices": sorted((_plain(index) for index in look.get_indexes(name)), key=str),
+        name: {
+            "columns": [{**one, "type": str(one["type"])} for one in columns[schema, name]],
+            "key": keys[schema, name],
+            "references": sorted(references[schema, name], key=str),
+            "unique": sorted(unique[schema, name], key=str),
+            "checks": sorted(checks[schema, name], key=str),
+            "indices": sorted((_plain(index) for index in indices[schema, name]), key=str),
+        }
+        for schema, name in columns
     }
+
+
+_remembered_words = remembered(_in_words)
 
 
 def _plain(index: Any) -> dict[str, Any]:

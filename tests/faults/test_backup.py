@@ -92,7 +92,7 @@ async def stream_and_back_up(server: LiveServer, ledger: LedgerJournal, to: Path
     ("origin", "target"),
     [
         pytest.param("sqlite", "sqlite", marks=pytest.mark.long),
-        pytest.param("postgresql", "sqlite", marks=pytest.mark.long),
+        ("postgresql", "sqlite"),
         ("sqlite", "postgresql"),
     ],
 )
@@ -154,8 +154,7 @@ def go_on(server: LiveServer, session_id: str) -> None:
         assert client.post("/api/devices/pair", json=pair).is_success
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("engine", ["sqlite", "postgresql"])
+@pytest.mark.parametrize("engine", ["sqlite", pytest.param("postgresql", marks=pytest.mark.long)])
 def test_a_running_server_goes_on_with_what_was_restored(tmp_path: Path, engine: str) -> None:
     """Not started anew: its logins, sessions and streams are those of the backup."""
     with installation(tmp_path / "live", engine) as server, server, server.client() as client:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx2
+import pytest
 
 from app.features.policy import POLICY
 from app.rehearsal.cast import Cast, perform
@@ -21,8 +22,12 @@ from tests.faults.short_study import KEY, PHASE_S, ROAM_S
 from tests.protocol.helpers import edited
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
-CANARIES = re.compile(rb"0?\.?137[.]?25|0?\.?262[.]?5|canary", re.IGNORECASE)
-"""Both latencies in ms and s, and what their conditions are called."""
+CANARIES = re.compile(rb"(?<![0-9a-f.])(?:0?\.?137[.]?25|0?\.?262[.]?5)|canary", re.IGNORECASE)
+"""Both latencies in ms and s, and what their conditions are called.
+
+A number begins where they begin: the microseconds of a time of day and the middle of an identifier
+hold every sequence of four digits sooner or later.
+"""
 LOOK_EVERY_S = 0.4
 SPEED = 16.0
 PAGES = ("/", "/tablet")
@@ -45,6 +50,11 @@ def canary_study() -> str:
     )
 
 
+def _around(match: re.Match[bytes]) -> str:
+    """The word, with what stands before and behind it."""
+    return match.string[max(0, match.start() - 60) : match.end() + 20].decode(errors="replace")
+
+
 @dataclass
 class Spy:
     """Somebody with a login who keeps everything they are sent."""
@@ -56,7 +66,7 @@ class Spy:
     def leaks(self) -> list[str]:
         """What they heard of the condition: where, and the word."""
         found = [(where, CANARIES.search(body)) for where, body in self.heard]
-        return [f"{where}: {match.group().decode()}" for where, match in found if match]
+        return [f"{where}: {_around(match)}" for where, match in found if match]
 
     async def look(self, session_id: str) -> None:
         """Ask for everything that the role may ask for."""
@@ -137,6 +147,25 @@ async def _run(server: LiveServer) -> tuple[Spy, Spy]:
     for spy in (operator, analyst):
         await spy.client.aclose()
     return operator, analyst
+
+
+@pytest.mark.parametrize(
+    ("sent", "tells"),
+    [
+        (b'"latency_ms":262.5,', True),
+        (b'"latency_ms": 137.250', True),
+        (b"added_latency_s=0.13725", True),
+        (b"-.2625 s", True),
+        (b"latency_262.5", True),
+        (b"hand.Canary_small", True),
+        (b'"at":"2026-01-01T12:00:39.262573Z"', False),
+        (b'"id":"7c426254f78d4f7e8e90f252d34f3e61"', False),
+        (b'"active_s":12.13725', False),
+    ],
+)
+def test_the_search_knows_a_condition_from_a_time_of_day(*, sent: bytes, tells: bool) -> None:
+    """Latencies are found in every unit and spelling; digits inside other numbers are not."""
+    assert bool(CANARIES.search(sent)) is tells
 
 
 def test_a_blinded_operator_cannot_find_the_condition(tmp_path: Path) -> None:

@@ -129,7 +129,6 @@ def test_an_outage_of_the_network_costs_no_active_time(live_server: LiveServer) 
     assert sound(live_server, outcome, ledger)
 
 
-@pytest.mark.long
 def test_a_headset_that_starts_again_goes_on_with_the_time_that_is_left(
     live_server: LiveServer,
 ) -> None:

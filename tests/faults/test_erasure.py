@@ -8,7 +8,8 @@ folder, in the server's log, and in a new export and a new backup.
 
 import shutil
 import sqlite3
-from collections.abc import Iterator
+import time
+from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -114,6 +115,15 @@ def refused_after_withdrawal(site: Site, visit: Visit) -> int:
     return sum(one["frames_stored"] for one in streams if one["epoch"] == headset.epoch)
 
 
+def settled(site: Site, visit: Visit, within_s: float = 30.0) -> Mapping[str, int]:
+    """Where a visit is found once its last movement has gone from batches into chunks."""
+    give_up_s = time.monotonic() + within_s
+    while "telemetry_batches.message" in (found := in_tables(visit, site.database.engine)):
+        assert time.monotonic() < give_up_s, found
+        time.sleep(0.1)
+    return found
+
+
 @pytest.mark.parametrize("engine", ["sqlite", "postgresql"])
 def test_no_byte_of_an_erased_participant_is_left(
     tmp_path: Path, elsewhere: Path, engine: str
@@ -125,7 +135,7 @@ def test_no_byte_of_an_erased_participant_is_left(
         before = search.residuals()
         taken = refused_after_withdrawal(site, visit)
         site.command(other.session_id, "abort", reason="the headset failed")
-        untouched = in_tables(other, site.database.engine)
+        untouched = settled(site, other)
         erased = erase(site, visit, "withdrawn")
         assert erased["overwritten"]
         residuals = search.residuals()

@@ -123,7 +123,7 @@ def test_a_headset_that_is_replaced_is_closed_with_the_reason(server: LiveServer
         token = other.post("/api/devices/pair", json=pair).raise_for_status().json()["token"]
         url = f"{server.url.replace('http', 'ws')}/api/vr/stream"
         offered = [SUBPROTOCOL, f"bearer.{token}"]
-        with connect(url, subprotocols=offered) as socket:  # type: ignore[arg-type]
+        with connect(url, subprotocols=offered) as socket:  # type: ignore[arg-type]  # a token is a plain str
             socket.send('{"type":"hello","protocol":1,"client":"test","epoch":null}')
             socket.recv(timeout=NOTICED_WITHIN_S)
             began_s = time.monotonic()

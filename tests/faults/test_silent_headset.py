@@ -5,7 +5,6 @@ from collections.abc import Coroutine
 from pathlib import Path
 from typing import Any
 
-import pytest
 from sqlalchemy import select
 
 from app.models import AlarmRow
@@ -24,7 +23,6 @@ NOTICED_WITHIN_S = 60.0
 """A server that hardly gets a processor takes its own standing still into account, and waits."""
 
 
-@pytest.mark.long
 def test_a_headset_that_falls_asleep_follows_the_pause_and_gets_its_whole_time(
     tmp_path: Path,
 ) -> None:
@@ -59,8 +57,8 @@ async def _hold_frames(headset: Headset, noticed: Coroutine[Any, Any, None]) -> 
         await awake.wait()
 
     # The simulated headset has no switch for this, and needs none outside of this test.
-    headset._sleep_until_due = sleep  # type: ignore[method-assign]
+    headset._sleep_until_due = sleep  # type: ignore[method-assign]  # it sleeps on purpose
     async with asyncio.timeout(NOTICED_WITHIN_S):
         await noticed
-    headset._sleep_until_due = due  # type: ignore[method-assign]
+    headset._sleep_until_due = due  # type: ignore[method-assign]  # it sleeps on purpose
     awake.set()

@@ -10,11 +10,17 @@ import httpx2
 import numpy as np
 import pytest
 
-from app.lan.deadlines import BODY_WITHIN_S, HEAD_WITHIN_S, MOST_HEAD_BYTES, MOST_UNFINISHED
+from app.lan.deadlines import (
+    BODY_WITHIN_S,
+    HEAD_WITHIN_S,
+    MOST_HEAD_BYTES,
+    MOST_UNFINISHED,
+    PORTION_BYTES,
+)
 from app.lan.listening import HANDSHAKE_WITHIN_S
 from tests.faults.figures import note
 from tests.support.lan import LanServer
-from tests.support.server import LiveServer
+from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 LORISES = 500
 MARGIN_S = 5.0
@@ -125,6 +131,28 @@ def test_whoever_owes_a_request_is_told_and_closed(lan: LanServer) -> None:
     answers = asyncio.run(_all_answers(cases))
     for name, (_, _, _, expected) in cases.items():
         assert answers[name][9:12] == expected, (name, answers[name])
+
+
+@pytest.mark.timeout(120)
+@pytest.mark.long
+def test_a_large_file_may_take_its_time(lan: LanServer) -> None:
+    """A capture that comes at 140 kB/s for longer than a usual body may is taken to its end."""
+    with lan.client() as client:
+        credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+        client.post("/api/login", json=credentials).raise_for_status()
+        slowly = client.post(
+            "/api/captures?name=none.bvh",
+            content=_in_pieces(BODY_WITHIN_S + MARGIN_S, 2 * PORTION_BYTES + 500_000),
+            timeout=90.0,
+        )
+    assert slowly.status_code == 422
+
+
+def _in_pieces(within_s: float, size: int) -> Iterator[bytes]:
+    pieces = 100
+    for _ in range(pieces):
+        time.sleep(within_s / pieces)
+        yield b" " * (size // pieces)
 
 
 async def _all_answers(

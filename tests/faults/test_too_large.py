@@ -18,6 +18,7 @@ from tests.faults.figures import note
 from tests.faults.streaming import pair_headsets
 from tests.faults.test_pressure import watched_memory
 from tests.support.lan import LanServer
+from tests.support.server import ADMIN_PASSWORD
 
 MOST_GROWTH_MIB = 64
 
@@ -56,17 +57,43 @@ def test_too_large_a_body_is_refused(lan: LanServer) -> None:
     note(22, "bodies", "refused above (bytes)", limit)
 
 
+def test_too_large_a_capture_is_refused(lan: LanServer) -> None:
+    """413 above its own, larger limit; whoever may not send any is refused at the door."""
+    most = Settings().max_capture_bytes
+    address = "/api/captures?name=walk.bvh"
+    with lan.client() as client:
+        with _bounded(lan, "63 MiB capture of a stranger"):
+            stranger = client.post(address, content=_blocks(63))
+        assert stranger.status_code == 401
+        credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+        client.post("/api/login", json=credentials).raise_for_status()
+        with _bounded(lan, "256 MiB capture, declared"):
+            declared = client.post(
+                address, content=_blocks(256), headers={"content-length": str(2**28)}
+            )
+        assert declared.status_code == 413
+        assert str(most) in declared.json()["error"]["valid"]
+        cookie = f"reembody_login={client.cookies['reembody_login']}"
+        with _bounded(lan, "256 MiB capture, in chunks"):
+            assert b"413" in _sent_in_chunks(lan.port, 256, address, cookie)
+        with _bounded(lan, "63 MiB capture that is none"):
+            unreadable = client.post(address, content=_blocks(63), timeout=120.0)
+        assert unreadable.status_code == 422
+    note(22, "captures", "refused above (bytes)", most)
+
+
 def _blocks(mebibytes: int) -> Iterator[bytes]:
     yield from (b" " * 2**20 for _ in range(mebibytes))
 
 
-def _sent_in_chunks(port: int, mebibytes: int) -> bytes:
+def _sent_in_chunks(
+    port: int, mebibytes: int, address: str = "/api/login", cookie: str = ""
+) -> bytes:
     """Send until the server answers, which it does long before the end."""
     with socket.create_connection(("127.0.0.1", port), timeout=30) as connection:
-        connection.sendall(
-            b"POST /api/login HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
-            b"Transfer-Encoding: chunked\r\n\r\n"
-        )
+        head = f"POST {address} HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+        head += f"Cookie: {cookie}\r\nTransfer-Encoding: chunked\r\n\r\n"
+        connection.sendall(head.encode())
         try:
             for block in _blocks(mebibytes):
                 connection.sendall(b"%x\r\n" % len(block) + block + b"\r\n")
@@ -89,7 +116,7 @@ def test_too_large_a_frame_is_refused(lan: LanServer) -> None:
 async def _closed_with(url: str, token: str, trust: ssl.SSLContext | None) -> int | None:
     async with connect(
         f"{url.replace('http', 'ws', 1)}/api/vr/stream",
-        subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]
+        subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]  # a token is a plain str
         ssl=trust,
     ) as connection:
         hello = f'{{"type": "hello", "protocol": {PROTOCOL_VERSION}, "client": "test"}}'

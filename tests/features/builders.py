@@ -11,6 +11,7 @@ from datetime import timedelta
 from sqlalchemy.orm import Session
 
 from app.clock import Clock
+from app.features.avatar.service import SHIPPED, version_of
 from app.features.participants.service import close_attempt, hold_slot, take_slot
 from app.features.sessions.contents import store_content
 from app.features.sessions.engine import events as e
@@ -30,7 +31,7 @@ from app.models import (
 from app.protocol.plan import Step, compile_plan
 from tests.features.session_filler import NOW, Filler, SessionSpec, stable_id
 
-__all__ = ["NOW", "STUDY", "SessionSpec", "build_session", "build_study"]
+__all__ = ["NOW", "STUDY", "SessionSpec", "as_physics", "build_session", "build_study"]
 STUDY = "reembodiment-latency"
 ENDED = ("completed", "aborted", "withdrawn")
 
@@ -81,6 +82,12 @@ def build_session(db: Session, spec: SessionSpec) -> StudySession:
     _log(db, session)
     db.flush()
     return session
+
+
+def as_physics(db: Session, session: StudySession) -> None:
+    """Give a session the product's own physics avatar instead of a delayed copy."""
+    session.avatar = "physics"
+    session.avatar_configuration_hash = version_of(db, SHIPPED, None).content_hash
 
 
 def _snapshot(plan: Sequence[Step], spec: SessionSpec) -> dict[str, object]:

@@ -38,10 +38,10 @@ def store_movement(
         (StreamName.TARGET, run.target_rotations),
         (StreamName.ACTUAL, actual),
     ):
-        _store(db, phase, stream, epoch, clock_s + times_s, rotations, before)
+        store_stream(db, phase, stream, epoch, clock_s + times_s, rotations, before)
 
 
-def _store(
+def store_stream(
     db: Session,
     phase: Phase,
     stream: StreamName,
@@ -50,6 +50,7 @@ def _store(
     rotations: NDArray[np.float64],
     before: int,
 ) -> None:
+    """Rotations (n, 22, 4) as stored: the first `before` frames without a phase, all active."""
     values = np.zeros((len(times_s), VALUES_PER_FRAME), np.float32)
     values[:, 3:] = rotations.reshape(len(times_s), -1)
     db.add(

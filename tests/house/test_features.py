@@ -23,15 +23,23 @@ ALSO = {
         "writer",  # the headset's socket hands its messages over here
         "outcome",  # and hears what became of them
         "live",  # the figures that do not wait for the commit
+        "hinges",  # what a physics avatar is asked for, moment by moment
     },
     "alarms": {
         "alarm",  # the writer stores changes of alarms
         "limits",  # the headset's socket is watched
         "watch",
     },
+    "captures": {
+        "contents",  # humanoid models are kept beside captures, once by their hash
+        "uploads",  # and taken in the same way
+        "downloads",
+        "binary",
+    },
     "analysis": {
         "tables",  # an export is the tables
         "codebook",  # and their columns
+        "clocks",  # where a run of the headset lies on the wall clock
     },
 }
 

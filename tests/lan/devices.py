@@ -24,8 +24,8 @@ async def greeted(url: str, token: str, **options: object) -> dict[str, object]:
     """Connect as a headset and take the welcome."""
     async with connect(
         f"{url.replace('http', 'ws', 1)}/api/vr/stream",
-        subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]
-        **options,  # type: ignore[arg-type]
+        subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]  # a token is a plain str
+        **options,  # type: ignore[arg-type]  # handed on
     ) as connection:
         await connection.send(
             json.dumps({"type": "hello", "protocol": PROTOCOL_VERSION, "client": "test"})

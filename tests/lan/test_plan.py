@@ -26,7 +26,7 @@ def test_this_machine_alone_needs_nothing(tmp_path: Path, host: str) -> None:
     assert (plan.mode, plan.lan_hosts, plan.certificates) == ("loopback", (), None)
 
 
-@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "labpc.local"])  # noqa: S104
+@pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "labpc.local"])  # noqa: S104 - as text
 def test_others_are_not_let_in_without_encryption(tmp_path: Path, host: str) -> None:
     """Refused with three ways out and the name of the flag that insists."""
     with pytest.raises(NotAllowed) as refused:
@@ -86,6 +86,20 @@ def test_half_a_wish_is_refused_with_the_other_half(tmp_path: Path, given: dict[
     with pytest.raises(InvalidInput) as refused:
         plan_for(tmp_path, **given)
     assert refused.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"lan_port": 8443, "help_port": 8443}, "--lan-port and --help-port are both 8443"),
+        ({"port": 8080, "help_port": 8080}, "--port and --help-port are both 8080"),
+        ({"port": 8443, "lan_port": 8443}, "--port and --lan-port are both 8443"),
+    ],
+)
+def test_each_door_has_a_port_of_its_own(tmp_path: Path, given: dict[str, int], named: str) -> None:
+    """Two doors on one port would start, and one of them would answer nobody."""
+    with pytest.raises(InvalidInput, match=named):
+        plan_for(tmp_path, lan=True, **given)
 
 
 @pytest.mark.parametrize(

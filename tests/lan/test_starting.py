@@ -39,7 +39,7 @@ def test_a_restart_and_a_renewal_leave_devices_paired(tmp_path: Path) -> None:
 def test_an_open_address_without_tls_is_refused(tmp_path: Path) -> None:
     """It ends before it listens or touches the data, and says three ways out."""
     result = subprocess.run(
-        [*REEMBODY, "serve", "--host", "0.0.0.0", "--port", str(free_port())],  # noqa: S104
+        [*REEMBODY, "serve", "--host", "0.0.0.0", "--port", str(free_port())],  # noqa: S104 - refused
         env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
         capture_output=True,
         text=True,

@@ -16,13 +16,7 @@ CAPTURE = Path("motion") / "cmu_bvh" / "02_01.bvh"
 SPEED = 20.0
 
 
-@pytest.fixture(
-    scope="module",
-    params=[
-        "sqlite, captured movement",
-        pytest.param("postgresql", marks=pytest.mark.long),
-    ],
-)
+@pytest.fixture(scope="module", params=["sqlite, captured movement", "postgresql"])
 def performed(request: pytest.FixtureRequest) -> Performed:
     """A finished rehearsal at high speed, on each database."""
     if request.param == "postgresql":

@@ -54,7 +54,7 @@ class LedgerJournal(Journal):
                 self.active_s.setdefault(key, []).append(reached)
         super().add(entry)
 
-    def acknowledge(self, positions: "Sequence[tuple[str, int, int]]") -> None:  # type: ignore[override]
+    def acknowledge(self, positions: "Sequence[tuple[str, int, int]]") -> None:  # type: ignore[override]  # a wider argument
         """Take note of what the server promised."""
         known = list(positions)
         for stream, epoch, next_seq in known:

@@ -3,8 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
+from app.rehearsal.avatars import no_touches
 from app.rehearsal.timed_run import FreeRun
 from app.wire import StreamName, decode_batch
 from app.wire.messages import HeadsetState, ParticipantInfo, PhaseOrder, PhaseReport, ReportBody
@@ -46,9 +45,7 @@ class Timeline:
         end_s = self.t_s + seconds
         while self.t_s + FRAME_S < end_s + 1e-9:
             self.t_s += FRAME_S
-            self.told += self.run.frame(
-                self.t_s, np.empty((0, 2, 3)), np.empty(0), connected=connected
-            )
+            self.told += self.run.frame(self.t_s, no_touches, connected=connected)
 
     def follow(self, told: PhaseOrder) -> None:
         """The server's newest order."""

@@ -35,6 +35,8 @@ ARGUMENTS = (
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--ignore-gpu-blocklist",
+    "--disable-gpu-compositing",
+    "--disable-gpu-rasterization",
 )
 
 
@@ -133,12 +135,23 @@ def take_screenshot(page: Page, folder: Path, name: str) -> Path:
     return path
 
 
-# A movement that was held, or that begins again and again, would be waited for in vain.
-MOVEMENTS_DONE = """() => Promise.race([
-    new Promise((resolve) => setTimeout(resolve, 3000)),
-    Promise.all(document.getAnimations()
-        .filter((one) => Number.isFinite(one.effect?.getComputedTiming().endTime))
-        .map((one) => one.finished.catch(() => undefined)))]).then(() => undefined)"""
+# A theme that changes, or a drawer that comes in, has begun to move a frame or two later, and is
+# done when nothing has moved for a few frames. A movement that was held, or that begins again and
+# again, would be waited for in vain.
+MOVEMENTS_DONE = """async () => {
+    const until = performance.now() + 3000;
+    let calm = 0;
+    while (calm < 4 && performance.now() < until) {
+        await new Promise((next) => requestAnimationFrame(next));
+        const moving = document.getAnimations().some((one) => one.playState === "running"
+            && Number.isFinite(one.effect?.getComputedTiming().endTime));
+        calm = moving ? 0 : calm + 1;
+    }
+}"""
+
+
+# No rule that is on by default asks for style sheets to be fetched once more.
+RUN_AXE = "axe.run(document, { resultTypes: ['violations'], preload: false })"
 
 
 def accessibility_violations(page: Page) -> list[str]:
@@ -147,7 +160,7 @@ def accessibility_violations(page: Page) -> list[str]:
     page.evaluate(MOVEMENTS_DONE)
     # Evaluated, not added as an element, so that the page's content security policy stays on.
     page.evaluate(axe_script().read_text(encoding="utf-8"))
-    result = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
+    result = page.evaluate(RUN_AXE)
     return [
         f"{violation['id']} ({violation['impact']}): {violation['help']}: "
         + "; ".join(" ".join(map(str, node["target"])) for node in violation["nodes"])

@@ -5,8 +5,10 @@ rows too without anybody thinking of it.
 """
 
 import re
+from collections import OrderedDict
+from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
-from typing import Any
+from typing import Any, TypeVar
 
 from sqlalchemy import (
     JSON,
@@ -22,9 +24,12 @@ from sqlalchemy import (
     MetaData,
     Table,
     inspect,
+    text,
 )
 
 ROWS = 3
+KEPT = 16
+T = TypeVar("T")
 VERSION_TABLE = "alembic_version"
 LISTED = re.compile(r"\(?\"?(\w+)\"?\)?(?:::\w+)? (?:IN \(|= ANY \()(.+)")
 QUOTED = re.compile(r"'(\w+)'")
@@ -32,9 +37,43 @@ QUOTED = re.compile(r"'(\w+)'")
 
 def tables_of(engine: Engine | Connection) -> list[Table]:
     """The product's tables as they are, those that are referred to first."""
+    if isinstance(engine, Connection) and engine.dialect.name == "sqlite":
+        return _tables_in(statements_of(engine), engine)
+    return _reflected(engine)
+
+
+def statements_of(connection: Connection) -> tuple[str, ...]:
+    """What made a SQLite database as it is, word by word: what it tells of itself follows from it.
+
+    So databases with the same statements need to be asked only once.
+    """
+    query = text("SELECT type || ' ' || name || ' ' || sql FROM sqlite_master WHERE sql > ''")
+    return tuple(sorted(connection.scalars(query)))
+
+
+def remembered(
+    ask: Callable[[Connection], T],
+) -> Callable[[tuple[str, ...], Connection], T]:
+    """Keep what a SQLite database told of its schema, by the statements that made it."""
+    told: OrderedDict[tuple[str, ...], T] = OrderedDict()
+
+    def tell(statements: tuple[str, ...], connection: Connection) -> T:
+        if statements not in told:
+            told[statements] = ask(connection)
+            while len(told) > KEPT:
+                told.popitem(last=False)
+        return told[statements]
+
+    return tell
+
+
+def _reflected(engine: Engine | Connection) -> list[Table]:
     metadata = MetaData()
     metadata.reflect(engine)
     return [table for table in metadata.sorted_tables if table.name != VERSION_TABLE]
+
+
+_tables_in = remembered(_reflected)
 
 
 def fill(engine: Engine, rows: int = ROWS) -> None:
@@ -92,8 +131,8 @@ def _value(column: Column[Any], words: list[str] | None, at: int) -> Any:
             return _number(column.type, at)
     if words:
         return words[at % len(words)]
-    text = f"{at}-{column.table.name[:8]}.{column.name[:12]}-naïve \U0001f9e0"
-    return text[: getattr(column.type, "length", None)]
+    written = f"{at}-{column.table.name[:8]}.{column.name[:12]}-naïve \U0001f9e0"
+    return written[: getattr(column.type, "length", None)]
 
 
 def _number(type_: Boolean | Float[Any] | Integer, at: int) -> bool | int | float:

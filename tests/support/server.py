@@ -1,26 +1,37 @@
 """The real server, as a process that tests can talk to, kill and start again.
 
-It is started as an operator starts it (`reembody serve`), so the tests go through argument parsing,
-settings, migrations and the network, and a `kill()` is the crash that it looks like.
+It runs what an operator runs (`reembody serve`): the tests go through argument parsing, settings,
+migrations and the network, and a `kill()` is the crash that it looks like. Only the imports were
+made before (tests/support/nursery.py).
 """
 
 import os
 import signal
 import socket
+import ssl
 import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from types import TracebackType
 from typing import Self
 
 import httpx2
 
+from tests.support.nursery import Child, Wish, nursery
+
 ADMIN_PASSWORD = "only-for-this-test-run"
 STARTS_WITHIN_S = 60.0
 STOPS_WITHIN_S = 20.0
 REEMBODY = (str(Path(sys.executable).with_name("reembody")),)
+
+
+@cache
+def _certificates() -> ssl.SSLContext:
+    """The system's, read once: to read them takes longer than most of a client's life."""
+    return ssl.create_default_context()
 
 
 class LiveServer:
@@ -42,8 +53,9 @@ class LiveServer:
         self.port = free_port()
         self._log_file = folder / "server.log"
         self._command = [*command, "serve", "--port", str(self.port), *arguments]
+        self._as_installed = tuple(command) == REEMBODY
         self._environment = dict(environment or {})
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: subprocess.Popen[bytes] | Child | None = None
 
     @property
     def url(self) -> str:
@@ -67,22 +79,30 @@ class LiveServer:
         if self._process is not None:
             raise RuntimeError(f"the server already runs as process {self._process.pid}")
         self.data_dir.mkdir(parents=True, exist_ok=True)
-        with self._log_file.open("ab") as log:
-            self._process = subprocess.Popen(
-                self._command,
-                env=self._full_environment(),
-                cwd=self.data_dir.parent,
-                stdin=subprocess.DEVNULL,
-                stdout=log,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-            )
+        self._process = self._begin()
         try:
             self._wait_until_it_answers(self._process)
         except BaseException:
             self.kill()
             raise
         return self
+
+    def _begin(self) -> "subprocess.Popen[bytes] | Child":
+        environment = self._full_environment()
+        folder = self.data_dir.parent
+        if self._as_installed:
+            wish = Wish(self._command[len(REEMBODY) :], environment, folder, self._log_file)
+            return nursery().start(wish)
+        with self._log_file.open("ab") as log:
+            return subprocess.Popen(
+                self._command,
+                env=environment,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
 
     def stop(self) -> None:
         """Ask it to end, as a service manager does; kill it if it does not."""
@@ -99,7 +119,7 @@ class LiveServer:
 
     def client(self) -> httpx2.Client:
         """A client of this server, not signed in; close it, or use it with `with`."""
-        return httpx2.Client(base_url=self.url, timeout=30.0)
+        return httpx2.Client(base_url=self.url, timeout=30.0, verify=_certificates())
 
     def __enter__(self) -> Self:
         return self.start()
@@ -124,7 +144,7 @@ class LiveServer:
             **self._environment,
         }
 
-    def _wait_until_it_answers(self, process: subprocess.Popen[bytes]) -> None:
+    def _wait_until_it_answers(self, process: "subprocess.Popen[bytes] | Child") -> None:
         deadline = time.monotonic() + STARTS_WITHIN_S
         with self.client() as client:
             while time.monotonic() < deadline:
@@ -157,8 +177,15 @@ class LiveServer:
 
 
 def free_port() -> int:
-    """A port of the loopback that nobody listens on now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-    return port
+    """A port of the loopback that nobody listens on now, and that was not given before."""
+    while True:
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port: int = probe.getsockname()[1]
+        if port not in _GIVEN:
+            _GIVEN.add(port)
+            return port
+
+
+# The system may name a port again as soon as it is let go: a server that opens two needs two.
+_GIVEN: set[int] = set()

@@ -64,6 +64,16 @@ FROM_CLIENT: list[tuple[str, Json]] = [
         {"type": "hello", "protocol": 1, "client": "Käthe's client 0.3", "epoch": None},
     ),
     ("hello_again", {"type": "hello", "protocol": 1, "client": "my client 0.3", "epoch": 7}),
+    (
+        "hello_of_one_that_simulates",
+        {
+            "type": "hello",
+            "protocol": 1,
+            "client": "my client 0.4",
+            "epoch": None,
+            "avatars": ["delayed_copy", "physics"],
+        },
+    ),
     ("materialised", report({"kind": "materialised", "t_s": 10.125})),
     ("phase_started", report(PHASE)),
     ("phase_paused", report({**PHASE, "what": "paused", "cause": "disconnected"})),
@@ -199,6 +209,10 @@ REFUSED_CLIENT: list[tuple[str, Json]] = [
     ("unknown_field", {**PRODUCED, "surprise": 1}),
     ("hello_with_epoch_zero", {"type": "hello", "protocol": 1, "client": "x", "epoch": 0}),
     ("hello_without_protocol", {"type": "hello", "client": "x", "epoch": None}),
+    (
+        "hello_with_too_many_avatars",
+        {"type": "hello", "protocol": 1, "client": "x", "epoch": None, "avatars": ["y"] * 11},
+    ),
     ("time_is_null", report({"kind": "materialised", "t_s": None})),
     ("time_is_negative", report({**CONTACT, "end_s": -1.0})),
     ("time_is_beyond_range", report({**PHASE, "t_s": 1.0e9 + 1.0})),

@@ -23,10 +23,12 @@ SEVERITIES: dict[str, Severity] = {
     "stop_rule_met": "critical",
     "stop_rule_near": "warning",
     "stop_rule_unknown": "warning",
+    "help_asked": "critical",
 }
-"""Every alarm there is. Critical: data are being lost, a phase stands, or somebody is unwell."""
+"""Every alarm there is. Critical: data are being lost, a phase stands, or somebody is unwell or
+calls."""
 
-STANDING = ("stop_rule_met", "stop_rule_near", "stop_rule_unknown")
+STANDING = ("stop_rule_met", "stop_rule_near", "stop_rule_unknown", "help_asked")
 """Alarms about the participant: they hold until a person or a form says otherwise, whatever becomes
 of the server and the headset in between."""
 

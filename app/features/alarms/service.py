@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Iterable
 from datetime import datetime, timedelta
 
-from sqlalchemy import Select, case, func, select
+from sqlalchemy import Select, bindparam, case, func, select
 from sqlalchemy.orm import Session
 
 from app.features.alarms.alarm import Change, Condition
@@ -13,6 +13,11 @@ from app.models import AlarmRow, StudySession
 
 MESSAGE_LENGTH = 400
 TICK = timedelta(microseconds=1)
+_NEWEST_FIRST = (
+    select(AlarmRow)
+    .where(AlarmRow.session_id == bindparam("session_id"))
+    .order_by(AlarmRow.at.desc())
+)
 
 
 def store_change(db: Session, session_id: str, change: Change) -> bool:
@@ -68,7 +73,7 @@ def sessions_with_open_alarms(db: Session) -> list[str]:
 def open_rows(db: Session, session_id: str) -> list[AlarmRow]:
     """What was raised and not cleared, the oldest first."""
     newest: dict[tuple[str, str | None], AlarmRow] = {}
-    for row in db.scalars(_rows(session_id)):
+    for row in db.scalars(_NEWEST_FIRST, {"session_id": session_id}):
         newest.setdefault((row.code, row.stream), row)
     return sorted((row for row in newest.values() if row.state == "raised"), key=lambda row: row.at)
 

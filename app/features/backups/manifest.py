@@ -61,13 +61,13 @@ def write_manifest(connection: sqlite3.Connection, manifest: Manifest) -> None:
     connection.execute(
         f"CREATE TABLE {MANIFEST_TABLE} (entry TEXT PRIMARY KEY, value TEXT NOT NULL)"
     )
-    connection.executemany(f"INSERT INTO {MANIFEST_TABLE} VALUES (?, ?)", entries.items())  # noqa: S608
+    connection.executemany(f"INSERT INTO {MANIFEST_TABLE} VALUES (?, ?)", entries.items())  # noqa: S608 - our own table
 
 
 def read_manifest(connection: sqlite3.Connection) -> Manifest:
     """The manifest of a backup; raises ManifestError, or sqlite3.Error where it is unreadable."""
     try:
-        rows = connection.execute(f"SELECT entry, value FROM {MANIFEST_TABLE}").fetchall()  # noqa: S608
+        rows = connection.execute(f"SELECT entry, value FROM {MANIFEST_TABLE}").fetchall()  # noqa: S608 - our own table
     except sqlite3.OperationalError as error:
         raise ManifestError("it holds no manifest") from error
     entries = {str(entry): str(value) for entry, value in rows}

@@ -72,7 +72,7 @@ def sqlite_insert(shape: TableShape) -> str:
     # The words are the schema's own, from our migrations.
     quoted = ", ".join(f'"{one.name}"' for one in shape.columns)
     marks = ", ".join("?" * len(shape.columns))
-    return f'INSERT INTO "{shape.name}" ({quoted}) VALUES ({marks})'  # noqa: S608
+    return f'INSERT INTO "{shape.name}" ({quoted}) VALUES ({marks})'  # noqa: S608 - names of our schema
 
 
 def _query(shape: TableShape, *, postgresql: bool) -> Select[Any]:

@@ -4,6 +4,7 @@ They are read from a SQLite file, not from the models: a backup keeps the schema
 with, and a later version of the product, whose models differ, must still be able to read it.
 """
 
+from collections import OrderedDict
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -21,6 +22,7 @@ from sqlalchemy import (
     String,
     Table,
     Time,
+    text,
 )
 from sqlalchemy.types import TypeEngine
 
@@ -79,6 +81,20 @@ def shapes_of(connection: Connection) -> tuple[TableShape, ...]:
 
     Raises ValueError for a column of a kind that cannot be copied exactly.
     """
+    # A backup asks several times for one schema, and the words that made it tell all of it.
+    words = tuple(connection.scalars(text("SELECT sql FROM sqlite_master ORDER BY type, name")))
+    if words not in _known:
+        _known[words] = _read(connection)
+        while len(_known) > _KEPT:
+            _known.popitem(last=False)
+    return _known[words]
+
+
+_KEPT = 16
+_known: OrderedDict[tuple[str | None, ...], tuple[TableShape, ...]] = OrderedDict()
+
+
+def _read(connection: Connection) -> tuple[TableShape, ...]:
     metadata = MetaData()
     metadata.reflect(connection)
     return tuple(

@@ -4,7 +4,7 @@ import secrets
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from sqlalchemy import select, update
+from sqlalchemy import bindparam, select, update
 from sqlalchemy.orm import Session
 
 from app.errors import Gone, NotFound, NotSignedIn
@@ -14,6 +14,10 @@ from app.models import Device, PairingCode
 # No vowels (no words), no 0/O, 1/I/L, 2/Z, 5/S, 8/B: read aloud and typed without doubt.
 CODE_ALPHABET = "3467CDFGHJKMNPQRTVWXY9"
 CODE_LENGTH = 6
+TABLET_SILENT_AFTER_S = 30.0
+"""A tablet is told every 10 s that the server is there; after three misses it counts as away."""
+
+_BY_TOKEN = select(Device).where(Device.token_hash == bindparam("token_hash"))
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,7 @@ def pair(db: Session, *, code: str, name: str, now: datetime) -> Paired:
 
 def device_of_token(db: Session, token: str, kind: str) -> Device:
     """The device that holds this token; raises NotSignedIn when it is unknown or was revoked."""
-    device = db.scalar(select(Device).where(Device.token_hash == hash_token(token)))
+    device = db.scalar(_BY_TOKEN, {"token_hash": hash_token(token)})
     if device is None or device.kind != kind or device.revoked_at is not None:
         raise NotSignedIn(
             f"this {kind} is not paired any more", remedy="Enter a new code from the console."

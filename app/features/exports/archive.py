@@ -41,7 +41,7 @@ class _Sink(io.RawIOBase):
 
     def write(self, data: object) -> int:
         """Keep the bytes until they are taken."""
-        part = bytes(data)  # type: ignore[call-overload]
+        part = bytes(data)  # type: ignore[call-overload]  # any buffer
         self._parts.append(part)
         self.waiting += len(part)
         return len(part)

@@ -36,6 +36,7 @@ from app.features.exports.cells import csv_pieces
 from app.features.exports.names import receipt_path, samples_path
 from app.features.exports.readme import FileCount, Origin, readme_text
 from app.features.exports.samples import SampleFile
+from app.features.imports.service import import_files
 from app.features.receipts.service import receipt_of
 from app.features.studies.service import study_by_key
 from app.models import StudyVersion
@@ -56,7 +57,7 @@ TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "clock_mapping": clock_mapping_table,
 }
 README = "README.txt"
-FOLDERS = {"samples": ".csv", "receipts": ".json"}
+FOLDERS = {"samples": ".csv", "receipts": ".json", "imported": ".csv"}
 """The folders of an export, and how their files end."""
 TOP_LEVEL = frozenset(
     {*(f"{name}.csv" for name in (*TABLE_FILES, "calibrations", "codebook")), README}
@@ -101,6 +102,10 @@ class Contents:
             samples = SampleFile(self.db, session_id, bool(simulated), avatar)
             yield self._member(samples_path(code, session_id), samples.pieces())
             yield self._member(receipt_path(code, session_id), self._receipt(session_id))
+        # Apart from every table, since nothing here ran them; a person's own copy is of sessions.
+        if self.kind in ("people", "all") and self.only is None:
+            for name, body in import_files(self.db, study_by_key(self.db, self.study_key)):
+                yield self._member(f"imported/{name}", iter([body]))
         yield Member(README, iter([self._readme(sessions).encode()]))
 
     def _table(self, table: Callable[[Session, str, Kind], pd.DataFrame]) -> pd.DataFrame:

@@ -51,7 +51,7 @@ def get_export(
         now=now,
     )
     pieces = study_archive(context.database, study.key, kind, now=now)
-    name = archive_name(study.key, kind)
+    name = archive_name(study.key, kind, now.date())
     return StreamingResponse(
         _sent(pieces),
         media_type="application/zip",

@@ -1,6 +1,7 @@
 """File names of an export, made by us: nothing that a person typed can leave the folder."""
 
 import re
+from datetime import date
 
 _UNSAFE = re.compile(r"[^A-Za-z0-9_-]")
 MOST_CHARACTERS = 60
@@ -21,6 +22,6 @@ def receipt_path(participant_code: str, session_id: str) -> str:
     return f"receipts/{safe_name(participant_code)}_{safe_name(session_id)}.json"
 
 
-def archive_name(study_key: str, kind: str) -> str:
-    """The file name of an export as one file."""
-    return f"reembody_{safe_name(study_key)}_{safe_name(kind)}.zip"
+def archive_name(study_key: str, what: str, day: date) -> str:
+    """The file name of an export as one file: study, what of it, and the day it shows."""
+    return f"reembody_{safe_name(study_key)}_{safe_name(what)}_{day.isoformat()}.zip"

@@ -23,6 +23,8 @@ Reading the files
   receipts/ holds one file per session that says how many frames were made, stored and are missing,
   whether the event log was changed, whether the completions follow from the contacts, and which
   latency the avatar really had. "complete": true means that nothing is missing.
+  imported/, where it is there, holds answers that were collected elsewhere: one file per import,
+  one row per form, origin = imported. They are in no table; do not pool them with the sessions.
   The hips carry no latency. latency_ms is what was added to the delay of the equipment, which
   calibrations.csv tells as far as it was measured.
   consent_given and consent_at_utc in sessions.csv say that and when consent was given. The signed

@@ -20,6 +20,7 @@ from app.features.headset.parsing import parse_message
 from app.features.headset.service import headset_state, welcome
 from app.features.live import Subscription
 from app.features.sessions.service import session_by_id
+from app.features.telemetry.live import LiveTelemetry, live_telemetry
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.writer import (
     Arrival,
@@ -124,15 +125,19 @@ class HeadsetConnection:
                 valid={"type": "hello", "protocol": PROTOCOL_VERSION},
                 remedy="Update the client.",
             )
-        answer = await asyncio.to_thread(self._welcome, hello.epoch)
+        answer, live = await asyncio.to_thread(self._welcome, hello)
         self.epoch = answer.epoch
-        self.lookout = Lookout(self.context, self.session_id, self._submit, answer)
+        self.lookout = Lookout(self.context, self.session_id, self._submit, answer, live)
         await self._send(answer)
 
-    def _welcome(self, epoch: int | None) -> Welcome:
+    def _welcome(self, hello: Hello) -> tuple[Welcome, LiveTelemetry]:
         now = self.context.clock.utc_now()
         with self.context.database.writing() as db:
-            return welcome(db, self.session_id, epoch, now)
+            answer = welcome(db, self.session_id, hello, now)
+        # For an avatar of physics this loads compiled code: neither in the writing turn nor in the
+        # event loop.
+        with self.context.database.reading() as db:
+            return answer, live_telemetry(db, self.session_id)
 
     async def _read(self) -> None:
         while True:

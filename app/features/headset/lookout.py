@@ -13,6 +13,7 @@ from app.features.alarms.alarm import Alarm, Change, Condition, Moment
 from app.features.alarms.limits import WatchLimits
 from app.features.alarms.watch import QualityWatch
 from app.features.context import AppContext
+from app.features.poses.service import PoseFeed
 from app.features.telemetry.live import LiveTelemetry
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.writer import AlarmContent, Content, LossContent
@@ -31,10 +32,12 @@ class Lookout:
     submit: Callable[[Content], None]
     welcome: Welcome
     live: LiveTelemetry = field(default_factory=LiveTelemetry)
+    poses: PoseFeed = field(init=False)
     watch: QualityWatch = field(init=False)
     _told_s: float = 0.0
 
     def __post_init__(self) -> None:
+        self.poses = PoseFeed(self.context.hub, self.session_id)
         limits = WatchLimits(silent_s=self.context.settings.headset_silent_s)
         self.watch = QualityWatch.of(self.welcome, limits, self._now())
         back = Condition("disconnected", "the headset is back")
@@ -48,6 +51,7 @@ class Lookout:
         """Frames have come and were handed over to the writer."""
         now = self._now()
         self.context.hub.note_frames(self.session_id, now.monotonic_s)
+        self.poses.take(batch, now.monotonic_s)
         self.live.take(batch)
         changes = self.watch.batch(batch, now)
         self._store(changes)
@@ -59,6 +63,7 @@ class Lookout:
     def report(self, report: Report) -> None:
         """A report has come."""
         self.live.count(report)
+        self.poses.report(report)
 
     def probed(self, reading: Probed) -> None:
         """A reading of the clocks has come."""
@@ -91,6 +96,7 @@ class Lookout:
         self._store(look.changes)
         if look.phase_is_lost:
             self.submit(LossContent("headset_silent"))
+        self.context.hub.note_signal(self.session_id, self.watch.signal(now))
         due = now.monotonic_s - self._told_s >= NEWS_EVERY_S
         if (look.changes or due) and self._has_listeners():
             self._tell({}, now)

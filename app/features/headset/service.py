@@ -5,6 +5,7 @@ from datetime import datetime
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from app.errors import Conflict
 from app.features.questionnaires.service import answers_of
 from app.features.sessions.capture import require_capture
 from app.features.sessions.contents import content_body, contents_of
@@ -17,6 +18,7 @@ from app.protocol.plan import Step
 from app.wire.messages import (
     PROTOCOL_VERSION,
     HeadsetState,
+    Hello,
     ParticipantInfo,
     PhaseOrder,
     Welcome,
@@ -25,15 +27,19 @@ from app.wire.messages import (
 CENTIMETRES_PER_METRE = 100.0
 
 
-def welcome(db: Session, session_id: str, epoch: int | None, now: datetime) -> Welcome:
-    """The answer to a hello; `epoch` None takes the next one."""
+def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcome:
+    """The answer to a hello; one without an epoch takes the next.
+
+    Raises Conflict where the client cannot show the session's avatar.
+    """
     session = session_by_id(db, session_id, lock=True)
     require_capture(db, session_id)
+    _require_avatar(session, hello)
     protocol = protocol_of(db.get_one(StudyVersion, session.study_version_id))
     return Welcome(
         protocol=PROTOCOL_VERSION,
         session_id=session.id,
-        epoch=epoch or take_epoch(db, session_id, now),
+        epoch=hello.epoch or take_epoch(db, session_id, now),
         time_scale=session.time_scale,
         language=session.language,
         avatar=session.avatar,
@@ -47,6 +53,16 @@ def welcome(db: Session, session_id: str, epoch: int | None, now: datetime) -> W
         positions=positions_of(db, session_id),
         state=headset_state(db, session),
     )
+
+
+def _require_avatar(session: StudySession, hello: Hello) -> None:
+    if session.avatar not in hello.avatars:
+        raise Conflict(
+            f"{hello.client} cannot show the avatar {session.avatar!r} of this session",
+            value=session.avatar,
+            valid=list(hello.avatars),
+            remedy="Use a client that can, or a version of the study with another avatar.",
+        )
 
 
 def headset_state(db: Session, session: StudySession) -> HeadsetState:

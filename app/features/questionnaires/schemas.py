@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field, FiniteFloat
 
 Whole = Annotated[int, Field(ge=-(2**53), le=2**53)]
+ItemKey = Annotated[str, Field(max_length=80)]
 AnswerValue = bool | Whole | FiniteFloat | str | None
 
 
@@ -21,8 +22,26 @@ class Administration(BaseModel):
     languages: list[str]
 
 
+class ItemTrace(BaseModel):
+    """How one item was answered.
+
+    `response_s`: seconds from when the item was the next to be answered (its page was shown, or
+    another item of the page was answered) to its first answer, where one was given; of typed
+    answers to the end of the first writing. `changes`: how often the answer was changed afterwards;
+    typed answers count each return to the field once.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    response_s: FiniteFloat = Field(ge=0.0, le=1e6)
+    changes: int = Field(ge=0, le=100_000)
+
+
 class SubmissionRequest(BaseModel):
-    """A filled-in form. The same `idempotency_key` may be sent any number of times."""
+    """A filled-in form. The same `idempotency_key` may be sent any number of times.
+
+    `timings`: seconds from the opening of the form to the last change of each answer.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
@@ -34,6 +53,7 @@ class SubmissionRequest(BaseModel):
     language: str = Field(max_length=8)
     started_at_utc: AwareDatetime | None = None
     timings: dict[str, FiniteFloat] = Field(default_factory=dict, max_length=200)
+    item_traces: dict[ItemKey, ItemTrace] | None = Field(default=None, max_length=200)
 
 
 class Receipt(BaseModel):
@@ -54,6 +74,19 @@ class ScoreView(BaseModel):
     maximum: float | None
 
 
+class AnswerHint(BaseModel):
+    """Something about a form's answers that the operator may want to know; see `hints`.
+
+    alike: `items` ratings on one scale are all `value`. fast: half of the `items` ratings took less
+    than `seconds` each. left_out: `items` questions have no answer.
+    """
+
+    kind: Literal["alike", "fast", "left_out"]
+    items: int
+    value: float | None = None
+    seconds: float | None = None
+
+
 class StoredScores(BaseModel):
     """The scores of one stored form: as numbers by key, and as a page shows them."""
 
@@ -63,6 +96,7 @@ class StoredScores(BaseModel):
     mode: Literal["tablet", "operator"]
     scores: dict[str, float | None]
     score_views: list[ScoreView]
+    hints: list[AnswerHint] = []
 
 
 class CorrectionView(BaseModel):

@@ -1,80 +1,47 @@
-"""Forms: which one is due, storing it once, scoring it."""
+"""Forms: storing one once, scoring it, moving the session on."""
 
 import hashlib
-import json
 import secrets
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, cast
 
-import numpy as np
-from sqlalchemy import select
+from sqlalchemy import Table, bindparam, insert, select
 from sqlalchemy.orm import Session
 
-from app.errors import InvalidInput, NotNow
+from app.errors import NotNow
 from app.features.context import AppContext
+from app.features.questionnaires.checks import check_answers
+from app.features.questionnaires.due import DueForm, due_form
+from app.features.questionnaires.due import current_administration as current_administration
 from app.features.questionnaires.refused import keep_refused, request_hash
-from app.features.questionnaires.schemas import (
-    Administration,
-    AnswerValue,
-    SubmissionRequest,
-)
+from app.features.questionnaires.schemas import AnswerValue, Receipt, SubmissionRequest
 from app.features.questionnaires.stop_rules import judge, tell
-from app.features.questionnaires.stored import (
-    answers_of,
-    correct_answer,
-    newest_corrections,
-    stored_answers,
-    stored_scores,
-)
-from app.features.sessions.capture import require_capture
-from app.features.sessions.engine import SessionState
+from app.features.questionnaires.stored import answers_of as answers_of
+from app.features.questionnaires.stored import correct_answer as correct_answer
+from app.features.questionnaires.stored import newest_corrections as newest_corrections
+from app.features.questionnaires.stored import stored_answers as stored_answers
+from app.features.questionnaires.stored import stored_scores as stored_scores
+from app.features.sessions.capture import require_capture_of
 from app.features.sessions.engine.commands import SubmitForm
 from app.features.sessions.journal import canonical
-from app.features.sessions.service import apply_command, plan_of, state_of
-from app.features.studies.service import instrument_for, instrument_of
-from app.models import Answer, InstrumentVersion, ScoreValue, StudySession, StudyVersion, Submission
+from app.features.sessions.service import apply_command
+from app.models import Answer, ScoreValue, StudySession, Submission
 from app.models.types import new_id
-from app.protocol.plan import Step
-from app.science.instruments import Instrument, item_order, score_answers, validate_answers
+from app.rows import insert_rows
+from app.science.instruments import Instrument, score_answers
 
-__all__ = [
-    "administration_key",
-    "answers_of",
-    "correct_answer",
-    "current_administration",
-    "newest_corrections",
-    "stored_answers",
-    "stored_scores",
-    "submit",
-]
-FORM_KINDS = ("form", "questionnaire")
-
-
-def administration_key(step: Step, state: SessionState) -> str:
-    """The name of one filling-in of a step: doing the step over makes another."""
-    return f"{step.key}#{state.steps[step.index].attempt}"
-
-
-def current_administration(db: Session, session: StudySession) -> Administration | None:
-    """The form that is due now, or None."""
-    state = state_of(session)
-    if state.current is None:
-        return None
-    step = plan_of(db, session)[state.current]
-    if step.kind not in FORM_KINDS or step.instrument is None:
-        return None
-    row = _instrument_version(db, session, step.instrument)
-    instrument = instrument_of(row)
-    seed = _item_seed(session, step, state)
-    return Administration(
-        key=administration_key(step, state),
-        step_index=step.index,
-        instrument=_as_json(row),
-        item_order=list(item_order(instrument, seed)),
-        seed=seed,
-        language=session.language,
-        languages=list(instrument.languages),
+Row = dict[str, Any]
+ANSWERS = cast("Table", Answer.__table__)
+SCORES = cast("Table", ScoreValue.__table__)
+_STORED = (
+    select(Submission)
+    .where(
+        Submission.session_id == bindparam("session_id"),
+        (Submission.idempotency_key == bindparam("idempotency_key"))
+        | (Submission.administration == bindparam("administration")),
     )
+    .limit(1)
+)
 
 
 def submit(
@@ -85,21 +52,21 @@ def submit(
     *,
     mode: str,
     actor: str,
-) -> tuple[Submission, bool]:
-    """Store a form and move the session on; the submission and whether it was stored before.
+) -> Receipt:
+    """Store a form and move the session on; its receipt, the first one if it was stored before.
 
     `session` must be locked. Raises InvalidInput with every answer that does not fit, NotNow when
     this form is not due, KeptConflict when other answers are stored already; these are then kept
     beside them.
     """
-    require_capture(db, session.id)
+    require_capture_of(db, session)
     hash_ = request_hash(request)
     known = _stored(db, session, request)
     if known is not None:
         if known.idempotency_key == request.idempotency_key and known.request_hash == hash_:
-            return known, True
+            return Receipt(receipt_id=known.id, stored_at=known.submitted_at, duplicate=True)
         keep_refused(db, context, session, request, stands=known, actor=actor)
-    due = current_administration(db, session)
+    due = due_form(db, session)
     if due is None or due.key != request.administration:
         raise NotNow(
             f"the form {request.administration!r} is not due now",
@@ -107,141 +74,88 @@ def submit(
             valid=due.key if due else None,
             remedy="The answers are still on this device; tell the experimenter.",
         )
-    state = state_of(session)
-    step = plan_of(db, session)[due.step_index]
-    row = _instrument_version(db, session, step.instrument or "")
-    instrument = instrument_of(row)
-    _check_answers(instrument, request, allow_missing=mode == "operator")
-    now = context.clock.utc_now()
-    salt = secrets.token_hex(32)
-    submission = Submission(
-        id=new_id(),
-        session_id=session.id,
-        administration=due.key,
-        step_index=step.index,
-        attempt=state.steps[step.index].attempt,
-        instrument_version_id=row.id,
-        instrument=instrument.key,
-        idempotency_key=request.idempotency_key,
-        request_hash=hash_,
-        salt=salt,
-        mode=mode,
-        entered_by=actor,
-        language=request.language,
-        item_seed=request.seed,
-        shown_order=request.shown_order,
-        timings=request.timings,
-        started_at=request.started_at_utc,
-        submitted_at=now,
+    instrument = due.used.instrument
+    check_answers(instrument, request, allow_missing=mode == "operator")
+    id_, salt, now = new_id(), secrets.token_hex(32), context.clock.utc_now()
+    _store(
+        db,
+        _submission_row(due, request)
+        | {"id": id_, "session_id": session.id, "request_hash": hash_, "salt": salt}
+        | {"mode": mode, "entered_by": actor, "submitted_at": now},
+        _answer_rows(id_, instrument, request),
+        _score_rows(id_, instrument, request.answers),
     )
-    db.add(submission)
-    db.flush()
-    db.add_all(_answer_rows(submission, instrument, request.answers))
-    db.add_all(_score_rows(submission, instrument, request.answers))
-    db.flush()
-    judgement = judge(db, session, submission)
+    judgement = judge(db, session, instrument.key)
     tell(db, session, judgement, now)
     digest = hashlib.sha256(f"{salt}{canonical(request.answers)}".encode()).hexdigest()
-    apply_command(
-        db,
-        context,
-        session,
-        SubmitForm(
-            step=step.index,
-            submission_id=submission.id,
-            content_hash=digest,
-            rules_met=judgement.met,
-        ),
-        actor=actor,
+    command = SubmitForm(
+        step=due.step.index, submission_id=id_, content_hash=digest, rules_met=judgement.met
     )
-    return submission, False
+    apply_command(db, context, session, command, actor=actor)
+    return Receipt(receipt_id=id_, stored_at=now, duplicate=False)
 
 
 def _stored(db: Session, session: StudySession, request: SubmissionRequest) -> Submission | None:
-    same_key = Submission.idempotency_key == request.idempotency_key
-    same_form = Submission.administration == request.administration
-    return db.scalar(
-        select(Submission).where(Submission.session_id == session.id, same_key | same_form).limit(1)
-    )
+    wanted = {
+        "session_id": session.id,
+        "idempotency_key": request.idempotency_key,
+        "administration": request.administration,
+    }
+    return db.scalar(_STORED, wanted)
 
 
-def _check_answers(
-    instrument: Instrument, request: SubmissionRequest, *, allow_missing: bool
-) -> None:
-    problems = [
-        problem
-        for problem in validate_answers(instrument, request.answers)
-        if not (allow_missing and problem.value is None)
-    ]
-    if problems:
-        raise InvalidInput(
-            f"{len(problems)} answer{'s do' if len(problems) != 1 else ' does'} not fit",
-            value=[problem.item for problem in problems],
-            remedy="Mend the answers named below; nothing was stored.",
-            details=[
-                {
-                    "item": problem.item,
-                    "message": problem.message,
-                    "value": problem.value,
-                    "valid": problem.valid,
-                    "remedy": problem.remedy,
-                }
-                for problem in problems
-            ],
-        )
-    if sorted(request.shown_order) != sorted(instrument.by_key):
-        raise InvalidInput(
-            "shown_order must name every item once",
-            value=request.shown_order,
-            valid=sorted(instrument.by_key),
-        )
-    if request.language not in instrument.languages:
-        raise InvalidInput(
-            f"the form is not written in {request.language!r}",
-            value=request.language,
-            valid=list(instrument.languages),
-        )
+def _store(db: Session, submission: Row, answers: list[Row], scores: list[Row]) -> None:
+    """A form with its answers and scores, a statement for each table."""
+    db.connection().execute(insert(Submission), submission)
+    insert_rows(db, ANSWERS, answers)
+    if scores:
+        insert_rows(db, SCORES, scores)
 
 
-def _answer_rows(
-    submission: Submission, instrument: Instrument, answers: Mapping[str, AnswerValue]
-) -> Sequence[Answer]:
-    shown = {item: at for at, item in enumerate(submission.shown_order)}
+def _submission_row(due: DueForm, request: SubmissionRequest) -> Row:
+    """What the form and the request say of a submission."""
+    return {
+        "administration": due.key,
+        "step_index": due.step.index,
+        "attempt": due.attempt,
+        "instrument_version_id": due.used.version_id,
+        "instrument": due.used.instrument.key,
+        "idempotency_key": request.idempotency_key,
+        "language": request.language,
+        "item_seed": request.seed,
+        "shown_order": request.shown_order,
+        "timings": request.timings,
+        "item_traces": _as_stored(request),
+        "started_at": request.started_at_utc,
+    }
+
+
+def _as_stored(request: SubmissionRequest) -> dict[str, Any] | None:
+    traces = request.item_traces
+    return None if traces is None else {item: one.model_dump() for item, one in traces.items()}
+
+
+def _answer_rows(id_: str, instrument: Instrument, request: SubmissionRequest) -> list[Row]:
+    shown = {item: at for at, item in enumerate(request.shown_order)}
     rows = []
     for item in instrument.items:
-        value = answers.get(item.key)
+        value = request.answers.get(item.key)
         text = value.strip() if isinstance(value, str) else None
         number = float(value) if isinstance(value, bool | int | float) else None
         rows.append(
-            Answer(
-                submission_id=submission.id,
-                item=item.key,
-                position=shown[item.key],
-                value_number=number,
-                value_text=text or None,
-            )
+            {
+                "submission_id": id_,
+                "item": item.key,
+                "position": shown[item.key],
+                "value_number": number,
+                "value_text": text or None,
+            }
         )
     return rows
 
 
-def _score_rows(
-    submission: Submission, instrument: Instrument, answers: Mapping[str, AnswerValue]
-) -> Sequence[ScoreValue]:
+def _score_rows(id_: str, instrument: Instrument, answers: Mapping[str, AnswerValue]) -> list[Row]:
     return [
-        ScoreValue(submission_id=submission.id, score=key, value=value)
+        {"submission_id": id_, "score": key, "value": value}
         for key, value in score_answers(instrument, answers).items()
     ]
-
-
-def _item_seed(session: StudySession, step: Step, state: SessionState) -> int:
-    sequence = np.random.SeedSequence([session.seed, step.index, state.steps[step.index].attempt])
-    return int(sequence.generate_state(1)[0])
-
-
-def _instrument_version(db: Session, session: StudySession, key: str) -> InstrumentVersion:
-    return instrument_for(db, db.get_one(StudyVersion, session.study_version_id), key)
-
-
-def _as_json(row: InstrumentVersion) -> dict[str, Any]:
-    loaded: dict[str, Any] = json.loads(row.canonical_json)
-    return loaded

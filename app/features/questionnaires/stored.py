@@ -12,6 +12,7 @@ from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
+from app.features.questionnaires.hints import hints_of
 from app.features.questionnaires.schemas import (
     AnswerValue,
     CorrectionView,
@@ -44,11 +45,11 @@ def stored_answers(db: Session, session: StudySession) -> list[StoredAnswers]:
 
 
 def stored_scores(db: Session, session: StudySession) -> list[StoredScores]:
-    """The scores of every stored form that has any."""
+    """The scores of every stored form that has any, and the hints on every form."""
     return [
         StoredScores(**answers.model_dump(include=set(StoredScores.model_fields)))
         for answers in stored_answers(db, session)
-        if answers.scores
+        if answers.scores or answers.hints
     ]
 
 
@@ -162,6 +163,8 @@ def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
     rows = db.scalars(select(ScoreValue).where(ScoreValue.submission_id == submission.id))
     scores = {row.score: row.value for row in rows}
     version = db.get_one(InstrumentVersion, submission.instrument_version_id)
+    instrument = instrument_of(version)
+    answers = answers_of(db, submission.id)
     own = select(Submission.id).where(Submission.id == submission.id)
     return StoredAnswers(
         submission_id=submission.id,
@@ -172,7 +175,7 @@ def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
         language=submission.language,
         shown_order=submission.shown_order,
         submitted_at=submission.submitted_at,
-        answers=_as_sent(answers_of(db, submission.id)),
+        answers=_as_sent(answers),
         corrections=[_correction_view(row) for row in _corrections(db, own)],
         definition=json.loads(version.canonical_json),
         scores=scores,
@@ -184,8 +187,9 @@ def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
                 minimum=score.minimum,
                 maximum=score.maximum,
             )
-            for score in instrument_of(version).scores
+            for score in instrument.scores
         ],
+        hints=hints_of(instrument, submission, answers),
     )
 
 

@@ -65,6 +65,8 @@ async def post_erasure(
             )
 
         await run_in_threadpool(in_transaction)
+    # Files that wait to be fetched may hold what was erased.
+    await run_in_threadpool(context.exports.forget_study, key)
     return await run_in_threadpool(_finished, context, participant_id)
 
 

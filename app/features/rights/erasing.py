@@ -10,11 +10,12 @@ from sqlalchemy.orm import Session
 from app.errors import Conflict, InvalidInput, NotFound, NotNow
 from app.features.audit.service import record
 from app.features.context import AppContext
+from app.features.imports.service import forget_participant
 from app.features.rights.copies import copies_holding, register_found
 from app.features.rights.traces import remove_traces
 from app.features.sessions.engine.commands import EraseData
 from app.features.sessions.service import apply_command
-from app.models import CopyMade, Erasure, Participant, Study, StudySession
+from app.models import CopyMade, Erasure, ImportedForm, Participant, Study, StudySession
 from app.models.types import new_id
 
 
@@ -117,6 +118,10 @@ def erase_now(
     for session in sessions:
         command = EraseData(erasure_id=erasure_id, reason_code=why, even_though_active=True)
         apply_command(db, context, session, command, actor=by)
+    if participant.kind == "people":
+        # What a file said of the same person, known by the same code.
+        imported = forget_participant(db, participant.study_id, participant.code)
+        removed |= {ImportedForm.__tablename__: imported} if imported else {}
     # Nothing of the old code is in the new one.
     participant.code = f"erased-{erasure_id[:8].upper()}"
     register_found(db, context.settings, now)

@@ -22,7 +22,7 @@ from sqlalchemy.exc import DBAPIError
 from app.database import Database
 from app.features.opening.service import backups_of
 from app.features.rights.traces import TOUCHED
-from app.models import Participant, StudySession
+from app.models import ImportedForm, Participant, StudySession
 from app.settings import Settings
 
 log = logging.getLogger(__name__)
@@ -122,7 +122,7 @@ def _has_room(database: Database) -> bool:
 
 def _postgresql(database: Database) -> bool:
     with database.engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
-        for table in (*TOUCHED, Participant.__tablename__):
+        for table in (*TOUCHED, ImportedForm.__tablename__, Participant.__tablename__):
             connection.exec_driver_sql(f'VACUUM "{table}"')
     return True
 

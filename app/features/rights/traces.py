@@ -83,7 +83,7 @@ def _empty_forms(db: Session, session_ids: Sequence[str]) -> int:
         row.idempotency_key = row.id
         row.request_hash = ""
         row.salt = None
-        row.shown_order, row.timings = [], {}
+        row.shown_order, row.timings, row.item_traces = [], {}, None
         row.started_at = None
         row.item_seed = 0
     db.flush()

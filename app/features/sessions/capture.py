@@ -66,6 +66,13 @@ def require_capture(db: Session, session_id: str) -> None:
         raise refusal()
 
 
+def require_capture_of(db: Session, session: StudySession) -> None:
+    """The same for a session that this transaction has locked."""
+    erased = session.status not in RUNS and erased_session(db, session.id)
+    if session.status == "withdrawn" or erased:
+        raise refusal()
+
+
 def refusal() -> Withdrawn:
     """What a device is told that brings data all the same."""
     return Withdrawn(

@@ -138,10 +138,7 @@ def post_submission(
 ) -> Receipt:
     """Store a form that the operator filled in from what the participant said."""
     session = session_by_id(db, session_id, lock=True)
-    submission, duplicate = submit(
-        db, context, session, request, mode="operator", actor=caller.actor
-    )
-    return Receipt(receipt_id=submission.id, stored_at=submission.submitted_at, duplicate=duplicate)
+    return submit(db, context, session, request, mode="operator", actor=caller.actor)
 
 
 @router.get("/sessions/{session_id}/streams")

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from sqlalchemy import select
+from sqlalchemy import bindparam, insert, select
 from sqlalchemy.orm import Session
 
 from app.clock import Clock
@@ -18,6 +18,10 @@ from app.features.sessions.engine import Event, event_from_json, event_to_json
 from app.models import SessionEvent
 
 FIRST_HASH = "0" * 64
+_APPENDED = insert(SessionEvent)
+_HASH_AT = select(SessionEvent.hash).where(
+    SessionEvent.session_id == bindparam("session_id"), SessionEvent.seq == bindparam("seq")
+)
 
 
 @dataclass(frozen=True)
@@ -45,21 +49,22 @@ def append_events(
     """
     previous = _last_hash(db, session_id, version)
     now, monotonic_ns = clock.utc_now(), clock.monotonic_ns()
+    rows = []
     for offset, event in enumerate(events, start=1):
-        row = SessionEvent(
-            session_id=session_id,
-            seq=version + offset,
-            type=event.type,
-            payload=canonical(event_to_json(event)),
-            actor=actor,
-            command_id=command_id,
-            recorded_at=now,
-            monotonic_ns=monotonic_ns,
-            previous_hash=previous,
-        )
-        row.hash = previous = _hash(row)
-        db.add(row)
-    db.flush()
+        row = {
+            "session_id": session_id,
+            "seq": version + offset,
+            "type": event.type,
+            "payload": canonical(event_to_json(event)),
+            "actor": actor,
+            "command_id": command_id,
+            "recorded_at": now,
+            "monotonic_ns": monotonic_ns,
+            "previous_hash": previous,
+        }
+        previous = _hash(SessionEvent(**row))
+        rows.append({**row, "hash": previous})
+    db.connection().execute(_APPENDED, rows)
 
 
 def events_of(db: Session, session_id: str) -> list[SessionEvent]:
@@ -102,10 +107,10 @@ def canonical(value: object) -> str:
 def _last_hash(db: Session, session_id: str, version: int) -> str:
     if version == 0:
         return FIRST_HASH
-    row = db.get(SessionEvent, (session_id, version))
-    if row is None:
+    last = db.scalar(_HASH_AT, {"session_id": session_id, "seq": version})
+    if last is None:
         raise LookupError(f"session {session_id} has no event {version}")
-    return row.hash
+    return last
 
 
 def _hash(row: SessionEvent) -> str:

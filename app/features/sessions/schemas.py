@@ -205,6 +205,7 @@ class SessionView(SessionSummary):
     study_key: str
     study_title: str
     avatar: str
+    avatar_configuration_hash: str | None
     language: str
     version: int
     time_scale: float

@@ -3,17 +3,16 @@
 import json
 import secrets
 from dataclasses import dataclass
-from functools import lru_cache
 
-from sqlalchemy import select
+from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound, NotNow, StaleVersion
+from app.features.avatar.service import version_of
 from app.features.context import AppContext
 from app.features.participants.service import (
     find_or_add_participant,
     hold_slot,
-    slot_of,
     take_slot,
 )
 from app.features.sessions.engine import (
@@ -27,20 +26,23 @@ from app.features.sessions.engine import (
     state_to_json,
 )
 from app.features.sessions.journal import append_events
+from app.features.sessions.plans import plan_of as plan_of
 from app.features.sessions.projection import project
 from app.features.studies.service import (
     newest_version,
     protocol_of,
     require_open,
     study_by_key,
+    version_content,
 )
-from app.models import SessionContent, SessionEvent, StudySession, StudyVersion
+from app.models import SessionContent, SessionEvent, StudySession
 from app.models.ledger import KINDS
 from app.models.types import new_id
-from app.protocol import StudyProtocol, parse_study_json
-from app.protocol.plan import Step, compile_plan
+from app.protocol import StudyProtocol
 
 MAX_TIME_SCALE = 100.0
+_BY_ID = select(StudySession).where(StudySession.id == bindparam("session_id"))
+_LOCKED_BY_ID = _BY_ID.with_for_update(key_share=True)
 
 
 @dataclass(frozen=True)
@@ -52,21 +54,9 @@ class Applied:
     events: tuple[object, ...]
 
 
-def plan_of(db: Session, session: StudySession) -> tuple[Step, ...]:
-    """The procedure of this session: its protocol in its own order of conditions."""
-    version = db.get_one(StudyVersion, session.study_version_id)
-    slot = slot_of(db, session)
-    return _compiled(version.canonical_json, tuple(slot.sequence), slot.position % 2 == 1)
-
-
-@lru_cache(maxsize=256)
-def _compiled(canonical_json: str, sequence: tuple[str, ...], flip: bool) -> tuple[Step, ...]:  # noqa: FBT001 - a cache key
-    return compile_plan(parse_study_json(canonical_json), sequence, block_limb_flip=flip)
-
-
 def protocol_of_session(db: Session, session: StudySession) -> StudyProtocol:
     """The protocol of the study version that this session follows."""
-    return protocol_of(db.get_one(StudyVersion, session.study_version_id))
+    return version_content(db, session.study_version_id).protocol
 
 
 def state_of(session: StudySession) -> SessionState:
@@ -76,8 +66,7 @@ def state_of(session: StudySession) -> SessionState:
 
 def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudySession:
     """The session; `lock` makes writers of the same session queue. Raises NotFound."""
-    query = select(StudySession).where(StudySession.id == session_id)
-    session = db.scalar(query.with_for_update(key_share=True) if lock else query)
+    session = db.scalar(_LOCKED_BY_ID if lock else _BY_ID, {"session_id": session_id})
     if session is None:
         raise NotFound("there is no such session", value=session_id)
     return session
@@ -117,6 +106,7 @@ def join(
         participant_id=participant.id,
         kind=kind,
         avatar=protocol.avatar,
+        avatar_configuration_hash=_avatar_hash(db, protocol),
         language=language,
         time_scale=time_scale,
         seed=secrets.randbits(48),
@@ -131,6 +121,12 @@ def join(
     session.snapshot = state_to_json(initial_state(len(plan_of(db, session))))
     db.flush()
     return session
+
+
+def _avatar_hash(db: Session, protocol: StudyProtocol) -> str | None:
+    """Which content the avatar's configuration has; versions are never edited."""
+    chosen = protocol.avatar_configuration
+    return None if chosen is None else version_of(db, chosen.key, chosen.version).content_hash
 
 
 def _check_join(protocol: StudyProtocol, kind: str, language: str, time_scale: float) -> None:

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session, defer
 from app.features.access import Caller, is_blind
 from app.features.alarms.service import open_alarms
 from app.features.context import AppContext
-from app.features.devices.service import devices_of_session
+from app.features.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
 from app.features.participants.service import slot_of
 from app.features.questionnaires.service import stored_scores
 from app.features.sessions.consent import consent_form
@@ -53,6 +53,7 @@ def session_view(
         study_key=protocol.key,
         study_title=_text(protocol.title, "en"),
         avatar=session.avatar,
+        avatar_configuration_hash=session.avatar_configuration_hash,
         language=session.language,
         version=session.version,
         time_scale=session.time_scale,
@@ -211,10 +212,6 @@ def _devices(db: Session, context: AppContext, session: StudySession) -> list[De
             )
         )
     return views
-
-
-TABLET_SILENT_AFTER_S = 30.0
-"""A tablet is told every 10 s that the server is there; after three misses it counts as away."""
 
 
 def _notes(db: Session, session: StudySession) -> list[NoteView]:

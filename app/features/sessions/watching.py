@@ -96,16 +96,15 @@ async def get_live(
                     return
                 yield event
             if "telemetry" in news:
-                yield ServerSentEvent(
-                    data=figures_for(news["telemetry"], reader), event="telemetry"
-                )
+                figures = live_figures(news["telemetry"], blinded=reader.blinded)
+                yield ServerSentEvent(data=figures, event="telemetry")
             news = await subscription.next(HEARTBEAT_S)
             if not news:
                 yield ServerSentEvent(comment="still here")
 
 
-def figures_for(figures: dict[str, Any], reader: Reader) -> dict[str, Any]:
-    """Live figures; joint errors grow with the latency, so they would tell the condition."""
-    if not reader.blinded:
+def live_figures(figures: dict[str, Any], *, blinded: bool) -> dict[str, Any]:
+    """What a reader sees; joint errors grow with the latency, so they would tell the condition."""
+    if not blinded:
         return figures
     return {name: value for name, value in figures.items() if name != "joint_error_deg"}

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
+from app.features.avatar.service import newest_numbers
 from app.features.config_problems import invalid_config, problem_views
 from app.features.instruments.service import parsed_instruments
 from app.features.studies.draft_schemas import (
@@ -44,7 +45,7 @@ def check(db: Session, text: str) -> CheckResult:
     instruments = parsed_instruments(db)
     tree, lines = _tree(text)
     try:
-        loaded = load_study(text, instruments=instruments)
+        loaded = load_study(text, instruments=instruments, avatars=newest_numbers(db))
     except ConfigError as error:
         return CheckResult(ok=False, problems=problem_views(error), tree=tree, lines=lines)
     protocol = loaded.protocol

@@ -9,10 +9,14 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
+from app.features.avatar.service import newest_numbers
 from app.features.config_problems import invalid_config
 from app.features.instruments.service import instrument_of as instrument_of  # read with studies
 from app.features.instruments.service import newest_instruments as newest_instruments
 from app.features.instruments.service import parsed_instruments, save_instrument
+from app.features.studies.versions import UsedInstrument as UsedInstrument
+from app.features.studies.versions import used_instrument as used_instrument
+from app.features.studies.versions import version_content as version_content
 from app.models import InstrumentVersion, Study, StudySession, StudyVersion
 from app.protocol import ConfigError, LoadedStudy, StudyProtocol, load_study, parse_study_json
 from app.resources import study_configs_dir
@@ -45,8 +49,14 @@ def _parse_study(_content_hash: str, canonical_json: str) -> StudyProtocol:
 
 
 def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVersion:
-    """The wording of instrument `key` that this study version uses."""
+    """The wording of instrument `key` that this study version uses.
+
+    Kept as long as the transaction: versions are never edited.
+    """
     content_hash = version.instruments.get(key)
+    known = db.info.get(("instrument", key, content_hash))
+    if isinstance(known, InstrumentVersion):
+        return known
     row = db.scalar(
         select(InstrumentVersion).where(
             InstrumentVersion.key == key, InstrumentVersion.content_hash == content_hash
@@ -56,13 +66,14 @@ def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVe
         raise NotFound(
             f"the study uses no instrument {key!r}", value=key, valid=sorted(version.instruments)
         )
+    db.info["instrument", key, content_hash] = row
     return row
 
 
 def check_study(db: Session, text: str) -> LoadedStudy:
-    """Load a study file against the instruments at hand; InvalidConfig has every problem."""
+    """Load a study file against what the lab has; InvalidConfig has every problem."""
     try:
-        return load_study(text, instruments=parsed_instruments(db))
+        return load_study(text, instruments=parsed_instruments(db), avatars=newest_numbers(db))
     except ConfigError as error:
         raise invalid_config("study", error) from error
 

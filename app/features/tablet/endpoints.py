@@ -3,13 +3,13 @@
 import asyncio
 from collections.abc import AsyncIterator
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request, Response
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.context import AppContext
-from app.features.dependencies import Context, PairedTablet, Reading, Writing
+from app.features.dependencies import Context, PairedTablet, Writing, tablet_in, write
 from app.features.questionnaires.schemas import Receipt, SubmissionRequest
 from app.features.questionnaires.service import submit
 from app.features.sessions.consent import ConsentDesk
@@ -17,7 +17,8 @@ from app.features.sessions.consent_schemas import ConsentGiven
 from app.features.sessions.engine.commands import CompleteStep
 from app.features.sessions.service import apply_command, plan_of, session_by_id, state_of
 from app.features.studies.service import protocol_of
-from app.features.tablet.schemas import Acknowledgement, LanguageChoice, TabletState
+from app.features.tablet.help import may_ask, note_help
+from app.features.tablet.schemas import Acknowledgement, HelpWish, LanguageChoice, TabletState
 from app.features.tablet.service import tablet_state
 from app.models import Device, StudySession, StudyVersion
 from app.protocol import Step
@@ -26,10 +27,14 @@ router = APIRouter(prefix="/tablet", tags=["tablet"])
 HEARTBEAT_S = 10.0
 
 
-@router.get("/state")
-def get_state(db: Reading, tablet: PairedTablet) -> TabletState:
+@router.get("/state", response_model=TabletState)
+def get_state(request: Request, context: Context) -> Response:
     """What to show now."""
-    return tablet_state(db, session_by_id(db, tablet.session_id))
+    with context.database.reading() as db:
+        tablet = tablet_in(db, request, context)
+        state = tablet_state(db, session_by_id(db, tablet.session_id))
+    # Written out here, once: the event loop would check it again first.
+    return Response(state.model_dump_json(), media_type="application/json")
 
 
 @router.put("/language")
@@ -47,6 +52,15 @@ def put_language(
         )
     session.language = choice.language
     context.hub.publish_after_commit(db, session.id)
+    return tablet_state(db, session)
+
+
+@router.put("/help")
+def put_help(wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet) -> TabletState:
+    """Call the experimenter, or take the call back; doing so twice does no harm."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    if may_ask(state_of(session)):
+        note_help(db, context, session, "asked" if wish.asked else "taken_back")
     return tablet_state(db, session)
 
 
@@ -105,15 +119,18 @@ def _complete(
 
 
 @router.post("/submissions")
-def post_submission(
-    request: SubmissionRequest, db: Writing, context: Context, tablet: PairedTablet
+async def post_submission(
+    request: Request, form: SubmissionRequest, context: Context, _: PairedTablet
 ) -> Receipt:
     """Store a filled-in form; the same form under the same key may come any number of times."""
-    session = session_by_id(db, tablet.session_id, lock=True)
-    submission, duplicate = submit(
-        db, context, session, request, mode="tablet", actor=f"tablet:{tablet.id}"
-    )
-    return Receipt(receipt_id=submission.id, stored_at=submission.submitted_at, duplicate=duplicate)
+
+    def store(db: Session) -> Receipt:
+        # Asked again: it may have been unpaired while the form waited for its turn.
+        tablet = tablet_in(db, request, context)
+        session = session_by_id(db, tablet.session_id, lock=True)
+        return submit(db, context, session, form, mode="tablet", actor=f"tablet:{tablet.id}")
+
+    return await write(context, store)
 
 
 @router.get("/live", response_class=EventSourceResponse)

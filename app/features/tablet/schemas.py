@@ -14,6 +14,7 @@ class TabletState(BaseModel):
     """What the tablet shows now; `next` says what comes next, in the participant's language.
 
     `held`: the participant waits for the experimenter, and nothing on the tablet goes on.
+    `help_asked`: the experimenter was called and has not come yet.
     """
 
     session_id: str
@@ -28,6 +29,7 @@ class TabletState(BaseModel):
     next: str | None
     administration: Administration | None
     consent: ConsentForm | None = None
+    help_asked: bool = False
 
 
 class Acknowledgement(BaseModel):
@@ -44,3 +46,11 @@ class LanguageChoice(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     language: str = Field(max_length=8)
+
+
+class HelpWish(BaseModel):
+    """Whether the experimenter is wanted."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    asked: bool

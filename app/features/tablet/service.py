@@ -7,10 +7,10 @@ from sqlalchemy.orm import Session
 from app.features.questionnaires.service import current_administration
 from app.features.sessions.consent import consent_form
 from app.features.sessions.engine import SessionState
-from app.features.sessions.service import plan_of, state_of
-from app.features.studies.service import protocol_of
+from app.features.sessions.service import plan_of, protocol_of_session, state_of
+from app.features.tablet.help import help_asked
 from app.features.tablet.schemas import Screen, TabletState
-from app.models import StudySession, StudyVersion
+from app.models import StudySession
 from app.protocol import StudyProtocol
 from app.protocol.plan import Step
 
@@ -24,7 +24,7 @@ _SCREENS: dict[str, Screen] = {
 
 def tablet_state(db: Session, session: StudySession) -> TabletState:
     """The screen of this session's tablet."""
-    protocol = protocol_of(db.get_one(StudyVersion, session.study_version_id))
+    protocol = protocol_of_session(db, session)
     plan, state = plan_of(db, session), state_of(session)
     step = None if state.current is None else plan[state.current]
     ended = state.status in ("completed", "aborted", "withdrawn")
@@ -43,6 +43,7 @@ def tablet_state(db: Session, session: StudySession) -> TabletState:
         next=None if screen == "held" else _next(plan, state, language),
         administration=current_administration(db, session) if screen == "form" else None,
         consent=consent_form(step, language) if step and screen == "consent" else None,
+        help_asked=help_asked(db, session.id),
     )
 
 

@@ -16,8 +16,8 @@ from app.features.context import AppContext
 from app.features.telemetry.checkpoints import Checkpointer
 from app.features.telemetry.due import BATCHES, DUE_AFTER, KEY, Chunks, due_chunks
 from app.features.telemetry.encoder import Encoder
-from app.features.telemetry.rows import insert_rows
 from app.models import TelemetryChunk
+from app.rows import insert_rows
 
 log = logging.getLogger(__name__)
 TURN_S = 0.2

@@ -25,9 +25,9 @@ from app.features.sessions.service import (
 )
 from app.features.telemetry.outcome import Outcome
 from app.features.telemetry.positions import Positions, certain_active_s
-from app.features.telemetry.rows import insert_rows
 from app.models import ClockProbe, Phase, TelemetryBatch
 from app.models.types import new_id
+from app.rows import insert_rows
 from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
 from app.wire.messages import Flag, Probed, Produced, Resend
 

@@ -43,7 +43,7 @@ def measure(phase: Phase, runs: Sequence[Run]) -> AchievedLatency:
     pairs = [
         StreamPair(
             run.target.times_s,
-            run.target.rotations,
+            run.asked.rotations,
             run.actual.times_s,
             run.actual.rotations,
             run.actual.active,

@@ -4,8 +4,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from sqlalchemy.orm import Session
 
-from app.science.skeleton import JOINT_NAMES
+from app.features.telemetry.hinges import hinges_of
+from app.science.avatar.hinge_reference import HingeReference
+from app.science.rotations import identity
+from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 from app.science.tasks import side_unit
 from app.wire import Batch, StreamName
 from app.wire.messages import CompletionReport, ContactReport, Report
@@ -18,8 +22,12 @@ class LiveTelemetry:
     """Folds the messages of one connection into a few figures, at most five times a second.
 
     Counting costs next to nothing and always goes on; figures are made only for somebody who looks.
+
+    `hinges` of an avatar that is moved by physics: its errors are then those that are stored, from
+    what the hinges are asked for. None for a delayed copy.
     """
 
+    hinges: HingeReference | None = None
     _newest: dict[StreamName, Batch] = field(default_factory=dict)
     _told_at_s: float = 0.0
     _frames: int = 0
@@ -84,20 +92,36 @@ class LiveTelemetry:
             "completions": self._completions,
             "side_contacts": self._side_contacts,
             "frames_flagged": self._flagged,
-            "joint_error_deg": _errors_deg(target, actual) if target is not None else {},
+            "joint_error_deg": {} if target is None else _errors_deg(target, actual, self.hinges),
         }
 
 
-def _errors_deg(target: Batch, actual: Batch) -> dict[str, float | None]:
+def live_telemetry(db: Session, session_id: str) -> LiveTelemetry:
+    """For a session's connection.
+
+    What a physics avatar needs is loaded here, which can take a second: not on the event loop.
+    Raises NotFound where there is no such session.
+    """
+    hinges = hinges_of(db, session_id)
+    if hinges is not None:
+        hinges.pose(identity(JOINT_COUNT))
+    return LiveTelemetry(hinges)
+
+
+def _errors_deg(
+    target: Batch, actual: Batch, hinges: HingeReference | None
+) -> dict[str, float | None]:
     """The angle between both poses at the newest seq that both have, per joint but the hips."""
     end = min(target.header.seq_end, actual.header.seq_end)
     first = max(target.header.seq_first, actual.header.seq_first)
     if end <= first:
         return {}
-    wanted = target.values[end - 1 - target.header.seq_first, 3:].reshape(-1, 4)
     is_ = actual.values[end - 1 - actual.header.seq_first, 3:].reshape(-1, 4)
     with np.errstate(invalid="ignore"):
-        cosine = np.abs(np.einsum("jk,jk->j", wanted.astype(float), is_.astype(float)))
+        wanted = target.values[end - 1 - target.header.seq_first, 3:].reshape(-1, 4).astype(float)
+        if hinges is not None:
+            wanted = hinges.pose(wanted)
+        cosine = np.abs(np.einsum("jk,jk->j", wanted, is_.astype(float)))
         angle_deg = np.degrees(2.0 * np.arccos(np.clip(cosine, 0.0, 1.0)))
     return {
         name: _number(angle)

@@ -8,13 +8,17 @@ avatar does at the start of a phase was asked for before it.
 import logging
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from sqlalchemy.orm import Session
 
 from app.features.telemetry.encoding import DamagedChunkError, Frames
 from app.features.telemetry.frames import concatenate, decode_piece, iter_pieces, phase_frames
+from app.features.telemetry.hinges import hinges_of
 from app.models import TelemetryChunk
+from app.science.avatar.hinge_reference import HingeReference
+from app.science.recorded_error import Asked
 from app.wire import StreamName
 
 log = logging.getLogger(__name__)
@@ -22,17 +26,30 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True)
 class Run:
-    """Both streams of one run of the client; times in s of its clock."""
+    """Both streams of one run of the client; times in s of its clock.
+
+    `hinges` of an avatar that is moved by physics; None for a delayed copy.
+    """
 
     epoch: int
     target: Frames
     actual: Frames
+    hinges: HingeReference | None = None
+
+    @cached_property
+    def asked(self) -> Asked:
+        """What the avatar was asked for in each target frame."""
+        rotations = self.target.rotations
+        if self.hinges is None:
+            return Asked(rotations)
+        return self.hinges.recording(self.target.times_s, rotations)
 
 
 def phase_runs(db: Session, session_id: str, phase_id: int, *, history_s: float) -> list[Run]:
     """The runs of a phase, with target frames from `history_s` before its first frame on."""
+    hinges = hinges_of(db, session_id)
     return [
-        Run(epoch, _target(db, session_id, epoch, actual, history_s), actual)
+        Run(epoch, _target(db, session_id, epoch, actual, history_s), actual, hinges)
         for epoch, actual in phase_frames(db, session_id, StreamName.ACTUAL, phase_id)
     ]
 

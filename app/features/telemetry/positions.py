@@ -8,8 +8,8 @@ from typing import Any, cast
 from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
-from app.features.telemetry.rows import insert_rows
 from app.models import TelemetryStream
+from app.rows import insert_rows
 from app.wire.messages import REPORT_STREAM, StreamPosition
 
 Key = tuple[str, str, int]

@@ -54,7 +54,7 @@ def test_closing_clears_everything_and_says_why() -> None:
 
 
 def test_every_alarm_has_a_severity() -> None:
-    """Only silence, loss and a person who is unwell are critical: then a phase stands."""
+    """Only silence, loss, and a person who is unwell or calls are critical: all cannot wait."""
     critical = {code for code, severity in SEVERITIES.items() if severity == "critical"}
-    assert critical == {"silent", "disconnected", "storage", "stop_rule_met"}
+    assert critical == {"silent", "disconnected", "storage", "stop_rule_met", "help_asked"}
     assert GAP.severity == "warning"

@@ -75,7 +75,7 @@ def test_an_alarm_says_what_and_where() -> None:
 
 
 @pytest.mark.parametrize(("from_hz", "to_hz", "raised"), [(90, 72, False), (90, 60, True)])
-def test_a_display_rate_is_not_a_low_frame_rate(from_hz: int, to_hz: int, raised: bool) -> None:  # noqa: FBT001
+def test_a_display_rate_is_not_a_low_frame_rate(from_hz: int, to_hz: int, raised: bool) -> None:  # noqa: FBT001 - by name
     """72 of 90 Hz may be meant; 60 of 90 Hz is not what the study began with."""
     slow = MINUTE.copy()
     slow.times_s[:2000] = np.arange(2000) / from_hz

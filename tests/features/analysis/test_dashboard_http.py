@@ -29,12 +29,53 @@ def test_a_dashboard_has_its_shape(client: TestClient) -> None:
     """Kind, counts, avatars, and figures with words for people and a figure for plotly.js."""
     view = client.get(f"/api/studies/{STUDY}/dashboard", params={"kind": "simulated"}).json()
     about = {"kind", "simulated", "n_sessions", "n_completed", "avatar", "drawn_at", "current"}
-    assert set(view) == about | {"figures"}
+    assert set(view) == about | {"figures", "filter", "choices"}
     assert (view["kind"], view["simulated"], view["n_completed"]) == ("simulated", True, 2)
     for entry in view["figures"]:
-        assert set(entry) == {"key", "title", "caption", "figure", "empty", "n"}
+        words = {"key", "title", "caption", "empty", "n", "group", "wide"}
+        assert set(entry) == words | {"figure"}
         assert (entry["figure"] is None) != (entry["empty"] is None)
-        assert set(entry["figure"]) == {"data", "layout"}
+        assert entry["figure"] is None or set(entry["figure"]) == {"data", "layout"}
+
+
+def test_filter_rows_and_statistics_go_by_one_process(client: TestClient) -> None:
+    """The filter is in the address; rows are a copy on record; tests are kept like drawings."""
+    path = f"/api/studies/{STUDY}/dashboard"
+    asked = {"kind": "simulated", "participant": ["SIM-0002"], "limb": "hand"}
+    view = client.get(path, params=asked).json()
+    assert (view["n_sessions"], view["filter"]["participant"]) == (1, ["SIM-0002"])
+    assert client.get(path, params=asked).json()["drawn_at"] == view["drawn_at"]
+    assert client.get(path, params={"limbs": "hand"}).status_code == 422
+    assert client.get(path, params={"since": "yesterday"}).status_code == 422
+
+    rows = client.get(f"{path}/completions/rows", params=asked)
+    assert rows.headers["content-type"] == "text/csv; charset=utf-8"
+    assert "_completions_simulated_" in rows.headers["content-disposition"]
+    assert b"SIMULATED DATA" in rows.content
+    assert b"SIM-0002" in rows.content
+    assert b"SIM-0001" not in rows.content
+    copies = client.get(f"/api/studies/{STUDY}/copies").json()
+    assert any("rows of the figure completions" in copy["place"] for copy in copies)
+    refused = client.get(f"{path}/nothing/rows", params=asked)
+    assert refused.status_code == 404
+    assert "completions" in refused.text
+
+    tested = f"/api/studies/{STUDY}/statistics"
+    found = client.get(tested, params={"kind": "simulated"}).json()
+    assert (found["simulated"], found["n_completed"], found["declared"]) == (True, 2, False)
+    assert {"karas2020_agency", "contact_time"} <= {one["key"] for one in found["measures"]}
+    assert client.get(tested, params={"kind": "simulated"}).json()["drawn_at"] == found["drawn_at"]
+
+
+def test_one_group_of_figures_can_be_asked_for(client: TestClient) -> None:
+    """With the same words about the whole; an unknown group is refused."""
+    path = f"/api/studies/{STUDY}/dashboard"
+    asked = {"kind": "simulated", "group": "tasks"}
+    view = client.get(path, params=asked).json()
+    assert {one["group"] for one in view["figures"]} == {"tasks"}
+    assert (view["n_sessions"], view["filter"]["limb"]) == (2, None)
+    assert view["choices"]["limbs"] == ["hand", "foot"]
+    assert client.get(path, params={**asked, "group": "colours"}).status_code == 422
 
 
 def test_people_are_the_usual_kind_and_all_is_no_kind_of_a_dashboard(client: TestClient) -> None:
@@ -55,7 +96,7 @@ def test_a_page_gets_what_was_drawn_last_while_newer_data_are_drawn(client: Test
     """The old figures come at once and say so; soon the new ones are there."""
     path, people = f"/api/studies/{STUDY}/dashboard", {"kind": "people"}
     assert client.get(path, params=people).json()["current"] is True
-    with client.app.state.context.database.writing() as db:  # type: ignore[attr-defined]
+    with client.app.state.context.database.writing() as db:  # type: ignore[attr-defined]  # ours
         build_session(db, SessionSpec("P-0001"))
     older = client.get(path, params=people).json()
     deadline = time.monotonic() + 60.0

@@ -58,6 +58,7 @@ def _errors(angle_deg: float, code: str, latency: float, **changes: object) -> l
         "axis": "angle",
         "latency_ms": latency,
         "mean_deg": angle_deg,
+        "clipped_share": None,
     }
     return [{**row, "joint": joint, **changes} for joint in ERROR_JOINTS]
 
@@ -151,8 +152,30 @@ def test_joint_errors_are_those_of_the_whole_angle_against_the_present_pose() ->
     figure = joint_error_map_drawing(pd.DataFrame(rows)).as_json()
     assert figure is not None
     (heat,) = figure["data"]
-    assert heat["y"] == list(JOINTS_BY_PART)
-    assert heat["z"] == [[15.0]] * 21
+    assert (heat["x"], heat["y"]) == (list(JOINTS_BY_PART), ["125"])
+    assert heat["z"] == [[15.0] * 21]
+    assert heat["customdata"] == [[""] * 21]
+
+
+def test_the_map_of_joint_errors_tells_what_limits_took() -> None:
+    """Beside each joint's error, and the worst joint in words; of physics avatars only."""
+    rows = [
+        {**row, "clipped_share": share if row["joint"] == "Head" else 0.0}
+        for code, share in (("P-1", 0.1), ("P-2", 0.32))
+        for row in _errors(10.0, code, 125.0)
+        if "Shoulder" not in row["joint"]
+    ]
+    drawing = joint_error_map_drawing(pd.DataFrame(rows))
+    figure = drawing.as_json()
+    assert figure is not None
+    (heat,) = figure["data"]
+    told = dict(zip(heat["x"], heat["customdata"][0], strict=True))
+    assert told["Head"] == "<br>clipped in 21.0 % of samples"
+    assert told["Neck"] == "<br>clipped in 0.0 % of samples"
+    assert "in 1.1 % of the samples, Head most often (21.0 %)" in drawing.caption
+    assert "before their limits" in joint_error_drawing(pd.DataFrame(rows)).caption
+    plain = joint_error_map_drawing(pd.DataFrame(_errors(10.0, "P-1", 125.0)))
+    assert "limit" not in plain.caption
 
 
 def test_red_time_is_a_union_and_parts_stand_beside_it() -> None:
@@ -198,7 +221,9 @@ def test_progress_shows_every_order_also_one_nobody_had() -> None:
     (completed,), (opened,) = _traces(drawing, "completed"), _traces(drawing, "open")
     (withdrawn,) = _traces(drawing, "withdrawn or aborted")
     assert completed["x"] == ["0 → 125 → 350", "125 → 0 → 350", "350 → 125 → 0"]
-    assert (completed["y"], opened["y"], withdrawn["y"]) == ([1, 0, 0], [0, 0, 1], [1, 0, 0])
+    nobody = None
+    assert completed["y"] == [1, nobody, nobody]
+    assert (opened["y"], withdrawn["y"]) == ([nobody, nobody, 1], [1, nobody, nobody])
 
 
 def test_the_confounding_of_limb_and_time_is_said_where_it_is_there() -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import pandas as pd
 import pytest
+from sqlalchemy import update
 from sqlalchemy.orm import Session
 
 from app.database import Database
@@ -12,6 +13,7 @@ from app.errors import NotFound
 from app.features.analysis import tables
 from app.features.analysis.codebook import columns_of
 from app.features.analysis.schemas import Kind
+from app.models import JointErrorRow
 from tests.features.builders import STUDY, SessionSpec, build_session
 
 Table = Callable[[Session, str, Kind], pd.DataFrame]
@@ -138,6 +140,19 @@ def test_joint_errors_are_in_degrees(database: Database) -> None:
     rows = _read(database, "joint_errors")
     present = rows[rows["reference"] == "present"]
     assert present["mean_deg"].tolist() == pytest.approx([90.0] * len(present))
+
+
+def test_what_limits_took_stands_beside_the_errors(database: Database) -> None:
+    """As it is stored; empty where nothing is."""
+    _build(database, SessionSpec("P-0001"))
+    assert _read(database, "joint_errors")["clipped_share"].isna().all()
+    head = (JointErrorRow.joint == "Head") & (JointErrorRow.axis == "x")
+    with database.writing() as db:
+        db.execute(update(JointErrorRow).where(head).values(clipped_share=0.25))
+    rows = _read(database, "joint_errors")
+    known = rows["clipped_share"].notna()
+    assert known.equals(rows["joint"].eq("Head") & rows["axis"].eq("x"))
+    assert set(rows["clipped_share"][known]) == {0.25}
 
 
 def test_answers_stand_as_given_and_scores_follow_from_them(database: Database) -> None:

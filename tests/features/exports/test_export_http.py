@@ -1,6 +1,7 @@
 """Exports and the codebook over HTTP."""
 
 import io
+import re
 import zipfile
 from collections.abc import Iterator
 
@@ -33,8 +34,9 @@ def test_the_export_is_a_zip_of_csv(client: TestClient) -> None:
     answer = client.get(f"/api/studies/{STUDY}/export")
     assert answer.status_code == 200
     assert answer.headers["content-type"] == "application/zip"
-    name = f"reembody_{STUDY}_people.zip"
-    assert answer.headers["content-disposition"] == f'attachment; filename="{name}"'
+    name = rf"reembody_{STUDY}_people_\d{{4}}-\d\d-\d\d\.zip"
+    disposition = answer.headers["content-disposition"]
+    assert re.fullmatch(f'attachment; filename="{name}"', disposition)
     with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
         assert archive.testzip() is None
         assert archive.read("sessions.csv").count(b"\n") == 3

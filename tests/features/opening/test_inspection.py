@@ -24,7 +24,7 @@ def file(tmp_path: Path) -> Path:
     return filled(tmp_path / "reembody.sqlite")
 
 
-def overwritten(file: Path, noise: bool) -> Iterator[tuple[int, str | None]]:  # noqa: FBT001
+def overwritten(file: Path, noise: bool) -> Iterator[tuple[int, str | None]]:  # noqa: FBT001 - by name
     """What is said of the file with one page after the other overwritten."""
     rng = np.random.default_rng(6)
     data = file.read_bytes()

@@ -9,6 +9,7 @@ from sqlalchemy import func, select
 
 from app.features.sessions.engine.commands import Report
 from app.features.sessions.service import apply_command, session_by_id
+from app.features.sessions.watching import live_figures
 from app.models import SessionContent, StudySession
 from tests.features.lab import STUDY, Json, Lab, error, ok
 
@@ -223,6 +224,9 @@ def test_a_blinded_operator_sees_no_latency_anywhere(fresh_lab: Lab) -> None:
     assert {slot["sequence"] for slot in ledger["slots"]} == {None}
     receipt = ok(fresh_lab.operator.get(f"/api/sessions/{view['id']}/receipt"))
     assert receipt["achieved_latency"] == []
+    figures = {"fps": 90.0, "joint_error_deg": {"Head": 5.0}}
+    assert live_figures(figures, blinded=True) == {"fps": 90.0}
+    assert live_figures(figures, blinded=False) == figures
 
 
 def _stored(lab: Lab, session_id: str) -> str:

@@ -43,6 +43,7 @@ ANYTHING: st.SearchStrategy[Command] = st.one_of(
         rules_met=st.sampled_from([(), (), (0,), (1, 2)]),
     ),
     st.just(c.OverrideStop(content=WORDS)),
+    st.just(c.OverrideCheck(check="disk", content=WORDS)),
     st.builds(c.Materialise, by=st.just("headset"), client_t_s=st.just(1.0)),
     st.builds(c.BeginPhase, headset_connected=st.booleans()),
     st.builds(c.Pause, content=st.none() | st.just(WORDS)),

@@ -77,3 +77,33 @@ def test_no_screen_tells_the_condition(lab: Lab) -> None:
             assert "latency" not in shown.lower()
             assert "125" not in shown
         view = lab.command(view, "skip", reason="not in this test")
+
+
+def test_a_call_stands_until_it_is_answered(lab: Lab) -> None:
+    """The operator sees an alarm once, the tablet that it has arrived and that somebody came."""
+    view = lab.join()
+    tablet = lab.tablet(view["id"])
+    assert state(tablet)["help_asked"] is False
+    for _ in range(2):
+        assert ok(tablet.put("/api/tablet/help", json={"asked": True}))["help_asked"] is True
+    (alarm,) = lab.view(view["id"])["alarms"]
+    assert (alarm["code"], alarm["severity"]) == ("help_asked", "critical")
+    ok(lab.operator.post(f"/api/sessions/{view['id']}/help/answered"))
+    assert lab.view(view["id"])["alarms"] == []
+    assert state(tablet)["help_asked"] is False
+    (record,) = ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))
+    assert record["cleared_at"] is not None
+    assert record["outcome"] == "The experimenter went to the participant."
+
+
+def test_a_call_can_be_taken_back(lab: Lab) -> None:
+    """Both are on record; an ended session has nobody to call."""
+    view = lab.join()
+    tablet = lab.tablet(view["id"])
+    ok(tablet.put("/api/tablet/help", json={"asked": True}))
+    assert ok(tablet.put("/api/tablet/help", json={"asked": False}))["help_asked"] is False
+    (record,) = ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))
+    assert record["outcome"] == "The participant no longer needs help."
+    lab.command(lab.command(view, "start"), "abort", reason="enough")
+    assert ok(tablet.put("/api/tablet/help", json={"asked": True}))["help_asked"] is False
+    assert len(ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))) == 1

@@ -13,13 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from app.adapters.bvh import read_bvh
 from app.features.telemetry.encodings.columns import Columns
-from app.rehearsal.body import FRAME_RATE_HZ, METRES_PER_BVH_UNIT
+from app.rehearsal.body import FRAME_RATE_HZ
+from app.rehearsal.captured import captured_movement as on_skeleton
 from app.science.rotations import normalise
 from app.science.skeleton import build_skeleton
 from app.science.skeleton.movement import Movement, continuous, resample
-from app.science.skeleton.retarget import retarget
 
 RATE_HZ = FRAME_RATE_HZ
 LATENCY_S = 0.125
@@ -83,8 +82,7 @@ def made_movement(
 
 def captured_movement(capture: Path) -> Movement:
     """A capture on our skeleton at 90 Hz, as the rehearsal takes it, but not looped."""
-    clip = read_bvh(capture, metres_per_unit=METRES_PER_BVH_UNIT)
-    return resample(retarget(clip, build_skeleton(STATURE_M)), RATE_HZ)
+    return resample(on_skeleton(capture, build_skeleton(STATURE_M)), RATE_HZ)
 
 
 def noisy(

@@ -7,7 +7,7 @@ from sqlalchemy import event, select
 from sqlalchemy.exc import IntegrityError
 
 from app.features.telemetry.positions import TABLE
-from app.features.telemetry.rows import insert_rows
+from app.rows import insert_rows
 from tests.features.lab import Lab
 
 

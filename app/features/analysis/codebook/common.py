@@ -13,7 +13,11 @@ def session_columns(table: str) -> tuple[Column, ...]:
         ),
         of.text("kind", "Who took part.", "people, simulated, test"),
         of.boolean("simulated", "Whether a simulation made the data."),
-        of.text("avatar", "How the body that the participant saw was moved.", "delayed_copy"),
+        of.text(
+            "avatar",
+            "How the body that the participant saw was moved.",
+            "delayed_copy, physics",
+        ),
         of.text("participant_code", "Pseudonym, unique within the study and kind."),
         of.text("session_id", "The visit."),
     )

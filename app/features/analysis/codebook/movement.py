@@ -57,11 +57,16 @@ JOINT_ERRORS: tuple[Column, ...] = (
     *phase_columns("joint_errors"),
     _J.text(
         "reference",
-        "What the body is compared with: the participant's pose at that moment, or the delayed "
-        "command.",
+        "What the body is compared with: what it was asked for at that moment, or the delayed "
+        "command. A delayed copy is asked for the participant's pose; an avatar moved by physics "
+        "for what its hinges can make of it, before their limits take anything away.",
         "present, command",
     ),
-    _J.text("joint", "The joint, by its Unity HumanBodyBones name; the hips carry no delay."),
+    _J.text(
+        "joint",
+        "The joint, by its Unity HumanBodyBones name; the hips carry no delay. A joint without a "
+        "hinge, such as a physics avatar's shoulder, is asked for nothing: its figures are empty.",
+    ),
     _J.text(
         "axis",
         "The whole angle, or a part of the signed rotation vector along an axis of the joint's "
@@ -74,6 +79,15 @@ JOINT_ERRORS: tuple[Column, ...] = (
     _J.number("rms_deg", "Root of the mean square.", "deg", "0 to 180"),
     _J.number("p95_deg", "95th percentile of the absolute value.", "deg", "0 to 180"),
     _J.number("max_deg", "Largest absolute value.", "deg", "0 to 180"),
+    _J.number(
+        "clipped_share",
+        "Share of the samples in which the limits of the joint's hinges took something from what "
+        "was asked for: of the hinge that lies along this axis in the T-pose, or for the angle of "
+        "any of them. What they took is part of the error. Empty for a delayed copy, and where no "
+        "hinge turns, as in a locked limb.",
+        "1",
+        "0 to 1",
+    ),
     _J.integer("samples", "Samples that count.", levels="0 and up"),
     _J.integer("excluded", "Samples left out because they were not usable.", levels="0 and up"),
 )
@@ -101,7 +115,7 @@ def _stream_columns(stream: str, what: str) -> tuple[Column, ...]:
 
 SAMPLES: tuple[Column, ...] = (
     _M.boolean("simulated", "Whether a simulation made the data."),
-    _M.text("avatar", "How the body that the participant saw was moved.", "delayed_copy"),
+    _M.text("avatar", "How the body that the participant saw was moved.", "delayed_copy, physics"),
     _M.integer("epoch", "Run of the client: a restart takes a new one."),
     _M.integer("seq", "Frame within the epoch; both streams of a moment carry the same."),
     _M.integer("phase_id", "The phase; 0 outside phases.", levels="0 and up"),

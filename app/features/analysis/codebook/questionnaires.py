@@ -46,7 +46,22 @@ ANSWERS: tuple[Column, ...] = (
     ),
     _A.text("value_text", "The answer to an open question, or the key of the choice."),
     _A.boolean("corrected", "Whether the answer was corrected; corrections.csv has what it was."),
-    _A.number("response_s", "Time at the item, as the tablet reported it.", "s"),
+    _A.number(
+        "response_s",
+        "Response time: from when the item was the next to be answered (its page was shown, or "
+        "another item of the page was answered) to its first answer; of typed answers to the end "
+        "of the first writing. Empty if not answered, or from a version that did not measure it.",
+        "s",
+    ),
+    _A.integer(
+        "changes",
+        "How often the answer was changed after it was given first; of typed answers, how often "
+        "the field was returned to. Empty like response_s.",
+        levels="0 and up",
+    ),
+    _A.number(
+        "answered_after_s", "From the opening of the form to the last change of the answer.", "s"
+    ),
     _A.time("started_at_utc", "When the form was opened, by the tablet's clock."),
     _A.time("submitted_at_utc", "When it was stored."),
 )

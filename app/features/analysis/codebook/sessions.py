@@ -30,6 +30,11 @@ SESSIONS: tuple[Column, ...] = (
     ),
     _S.time("consent_at_utc", "When the last of them was given."),
     _S.text("study_content_hash", "SHA-256 of the study version's content."),
+    _S.text(
+        "avatar_configuration_hash",
+        "SHA-256 of the avatar's configuration: gains, limits, masses, locked groups; empty where "
+        "it has none.",
+    ),
     _S.time("created_at_utc", "When the session joined the study."),
     _S.time("started_at_utc", "When it was started."),
     _S.time("ended_at_utc", "When it was completed, aborted or withdrawn."),

@@ -1,19 +1,23 @@
 """What a figure builder gives."""
 
 import json
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
 
 import pandas as pd
 import plotly.graph_objects as go
 
 FEWEST_PARTICIPANTS = 1
 """One participant's own line is worth seeing; an interval needs two."""
+Group = Literal["progress", "embodiment", "answers", "tasks", "movement", "quality"]
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure with its words, or the sentence that stands in its place; `n` participants."""
+    """A figure with its words, or the sentence that stands in its place; `n` participants.
+
+    `data`: the rows that were drawn, for a file. `wide`: it needs the width of the page.
+    """
 
     key: str
     title: str
@@ -21,6 +25,9 @@ class Drawing:
     n: int
     figure: go.Figure | None = None
     empty: str | None = None
+    data: pd.DataFrame = field(default_factory=pd.DataFrame)
+    group: Group = "tasks"
+    wide: bool = False
 
     def as_json(self) -> dict[str, Any] | None:
         """The figure as plotly.js reads it."""
@@ -29,6 +36,14 @@ class Drawing:
         loaded: dict[str, Any] = json.loads(self.figure.to_json())
         return loaded
 
+    def among_chosen(self) -> "Drawing":
+        """The same where only some sessions are looked at: others may have what is missing."""
+        if self.empty is None:
+            return self
+        return replace(
+            self, empty=f"Among what was chosen: {self.empty[0].lower()}{self.empty[1:]}"
+        )
+
     def marked(self, prefix: str, note: str) -> "Drawing":
         """The same with words in front of the title, in the figure too, and behind the caption."""
         title = f"{prefix}{self.title}"
@@ -36,11 +51,17 @@ class Drawing:
             self.figure.update_layout(title_text=title)
         return replace(self, title=title, caption=f"{self.caption} {note}".strip())
 
+    def of_group(self, group: Group, *, wide: bool = False) -> "Drawing":
+        """The same in a group of the page."""
+        return replace(self, group=group, wide=wide)
 
-def drawn(key: str, title: str, caption: str, n: int, figure: go.Figure) -> Drawing:
-    """A drawing with a figure, which gets the title too."""
+
+def drawn(
+    key: str, title: str, caption: str, n: int, figure: go.Figure, data: pd.DataFrame
+) -> Drawing:
+    """A drawing with a figure, which gets the title too, and the rows that are in it."""
     figure.update_layout(title_text=title)
-    return Drawing(key, title, " ".join(caption.split()), n, figure=figure)
+    return Drawing(key, title, " ".join(caption.split()), n, figure=figure, data=data)
 
 
 def too_few(key: str, title: str, caption: str, n: int, what: str) -> Drawing:

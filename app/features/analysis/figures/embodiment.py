@@ -4,7 +4,12 @@ from collections.abc import Iterator, Mapping
 
 import pandas as pd
 
-from app.features.analysis.figures.by_latency import MEANS, latency_figure, per_participant
+from app.features.analysis.figures.by_latency import (
+    MEANS,
+    drawn_rows,
+    latency_figure,
+    per_participant,
+)
 from app.features.analysis.figures.drawing import (
     FEWEST_PARTICIPANTS,
     Drawing,
@@ -27,7 +32,7 @@ def embodiment_drawings(scores: pd.DataFrame) -> Iterator[Drawing]:
     """One drawing a component, from valid rows of the table of scores."""
     for score, (title, axis) in COMPONENTS.items():
         rows = scores[scores["score"] == score].dropna(subset=["limb", "value"])
-        yield _component(score, title, axis, rows)
+        yield _component(score, title, axis, rows).of_group("embodiment")
 
 
 def _component(score: str, title: str, axis: str, rows: pd.DataFrame) -> Drawing:
@@ -37,12 +42,13 @@ def _component(score: str, title: str, axis: str, rows: pd.DataFrame) -> Drawing
         return too_few(key, title, MEANS, n, "a complete questionnaire")
     low, high = float(rows["minimum"].min()), float(rows["maximum"].max())
     bounded = pd.notna(low) and pd.notna(high)
+    values = per_participant(rows, "value")
     figure = latency_figure(
-        per_participant(rows, "value"),
+        values,
         axis=f"{axis} (points)",
         unit="points",
         limits=(low, high) if bounded else None,
     )
     possible = f"Possible scores run from {low:g} to {high:g}." if bounded else ""
     caption = f"{MEANS} {count_note(n)} {possible} {limb_note(rows)}"
-    return drawn(key, title, caption, n, figure)
+    return drawn(key, title, caption, n, figure, drawn_rows(values, "points"))

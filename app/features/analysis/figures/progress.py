@@ -6,10 +6,11 @@ import pandas as pd
 import plotly.graph_objects as go
 
 from app.features.analysis.figures.drawing import Drawing, drawn, participants
-from app.features.analysis.figures.theme import BLUE, ORANGE, VERMILLION, new_figure
+from app.features.analysis.figures.theme import BLUE, ORANGE, VERMILLION, hatched, new_figure
 
 FEW = 10
 KEY, TITLE = "progress", "Sessions by order of latencies"
+TIME_KEY, TIME_TITLE = "progress_time", "Completed sessions over time"
 _STATES = {
     "completed": (("completed",), BLUE, ""),
     "open": (("planned", "active"), ORANGE, "/"),
@@ -35,9 +36,10 @@ def progress_drawing(
         figure.add_trace(
             go.Bar(
                 x=[name.replace(" ", " → ") if not blinded else name for name in names],
-                y=[int(counts.get(name, 0)) for name in names],
+                # Bars of nothing would still draw their edges.
+                y=[int(counts.get(name, 0)) or None for name in names],
                 name=state,
-                marker={"color": colour, "pattern": {"shape": pattern}},
+                marker=hatched(colour, pattern),
                 hovertemplate=f"%{{x}} ms: %{{y}} {state}<extra></extra>",
             )
         )
@@ -50,7 +52,49 @@ def progress_drawing(
     caption = f"n = {n} participant{'s' if n != 1 else ''}. Balance counts completed sessions only."
     if blinded:
         caption += " The study is blinded, so orders are not told apart."
-    return drawn(KEY, TITLE, caption, n, figure)
+    table = own.rename("order").to_frame().assign(status=sessions["status"])
+    keys = ["order", "status"]
+    rows = table.groupby(keys).size().rename("sessions").reset_index().sort_values(keys)
+    return drawn(KEY, TITLE, caption, n, figure, rows)
+
+
+def progress_time_drawing(sessions: pd.DataFrame, planned: int) -> Drawing:
+    """Completed sessions over the days, and how many the design asks for (`planned`)."""
+    done = sessions[sessions["status"] == "completed"].dropna(subset=["ended_at_utc"])
+    n = participants(done)
+    if done.empty:
+        return Drawing(TIME_KEY, TIME_TITLE, "", 0, empty="No session is completed yet.")
+    days = done["ended_at_utc"].dt.date.value_counts().sort_index()
+    rows = days.rename_axis("day_utc").rename("completed").reset_index()
+    rows["together"] = rows["completed"].cumsum()
+    x = [day.isoformat() for day in rows["day_utc"]]
+    figure = new_figure()
+    figure.add_trace(
+        go.Scatter(
+            x=x,
+            y=rows["together"].tolist(),
+            mode="lines+markers",
+            name="completed",
+            line={"color": BLUE, "width": 3, "shape": "hv"},
+            marker={"symbol": "circle", "size": 8},
+            hovertemplate="%{x}: %{y} completed<extra></extra>",
+        )
+    )
+    figure.add_trace(
+        go.Scatter(
+            x=[x[0], x[-1]],
+            y=[planned, planned],
+            mode="lines+markers",
+            name="planned",
+            line={"color": VERMILLION, "width": 2, "dash": "dash"},
+            marker={"symbol": "square-open", "size": 7},
+            hovertemplate=f"{planned} planned<extra></extra>",
+        )
+    )
+    figure.update_xaxes(title_text="day (UTC)", type="category" if len(x) <= FEW else "date")
+    figure.update_yaxes(title_text="sessions (count)", rangemode="tozero")
+    caption = f"Completed sessions together, of {planned} that the design plans. n = {n}."
+    return drawn(TIME_KEY, TIME_TITLE, caption, n, figure, rows)
 
 
 def _as_numbers(order: str) -> tuple[float, ...]:

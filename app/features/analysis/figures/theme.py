@@ -11,6 +11,7 @@ BLUE, VERMILLION, GREEN = "#0072B2", "#D55E00", "#009E73"
 ORANGE, PURPLE, SKY = "#E69F00", "#CC79A7", "#56B4E9"
 COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY)
 QUIET = "rgba(128, 128, 128, 0.55)"
+CALM = "rgba(128, 128, 128, 0.18)"
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x", "star")
 PATTERNS = ("", "/", "x", "-", ".", "+")
 _CLEAR = "rgba(0, 0, 0, 0)"
@@ -47,12 +48,27 @@ def new_figure(*, rows: int = 1, titles: tuple[str, ...] = ("",), **options: obj
     return figure
 
 
+def hatched(colour: str, pattern: str) -> dict[str, object]:
+    """How a bar looks: its colour, a pattern that tells it apart without, and an edge."""
+    return {
+        "color": colour,
+        "pattern": {"shape": pattern},
+        "line": {"color": colour, "width": 1.2},
+    }
+
+
+def quiet(lines: int) -> str:
+    """The grey of so many lines over each other: the more, the fainter each."""
+    return f"rgba(128, 128, 128, {max(0.06, min(0.55, 12.0 / max(lines, 1))):.2f})"
+
+
 def latency_axis(figure: go.Figure, latencies_ms: list[float]) -> None:
     """Label the x axes with the study's latencies, a little room at both ends."""
-    room = max(10.0, 0.08 * (latencies_ms[-1] - latencies_ms[0]))
+    room = 0.08 * (latencies_ms[-1] - latencies_ms[0]) or 10.0
     figure.update_xaxes(
         title_text="added latency (ms)",
         tickvals=latencies_ms,
         ticktext=[f"{latency:g}" for latency in latencies_ms],
-        range=[latencies_ms[0] - room, latencies_ms[-1] + room],
+        range=[latencies_ms[0] - room, latencies_ms[-1] + 1.6 * room],
+        zeroline=False,
     )

@@ -18,7 +18,11 @@ from app.features.analysis.tables.phases import phases_table
 from app.features.analysis.tables.quality import alarms_table, quality_table
 from app.features.analysis.tables.questionnaires import answers_table, scores_table
 from app.features.analysis.tables.sessions import sessions_table
-from app.features.analysis.tables.tasks import completions_table, contacts_table
+from app.features.analysis.tables.tasks import (
+    completions_table,
+    contact_spans_table,
+    contacts_table,
+)
 
 __all__ = [
     "KINDS",
@@ -29,6 +33,7 @@ __all__ = [
     "clock_mapping_table",
     "clock_probes_table",
     "completions_table",
+    "contact_spans_table",
     "contacts_table",
     "corrections_table",
     "events_table",

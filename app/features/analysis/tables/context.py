@@ -1,8 +1,12 @@
 """What rows are joined with: whose they are, where in the design, and whether they count."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import wraps
 from typing import Any, get_args
 
+import numpy as np
 import pandas as pd
 from sqlalchemy import ColumnElement, Select, and_, select
 from sqlalchemy.orm import Session
@@ -16,6 +20,38 @@ from app.protocol.plan import Step
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 BROKEN_OFF = ("aborted", "withdrawn")
+Context = Callable[[Session, str, Kind], pd.DataFrame]
+Contexts = dict[tuple[str, str, Kind], pd.DataFrame]
+_shared: ContextVar[Contexts | None] = ContextVar("shared_contexts", default=None)
+
+
+@contextmanager
+def shared_contexts(kept: Contexts) -> Iterator[None]:
+    """Within it, what several tables are joined with is read once and put into `kept`.
+
+    Only for tables of one database whose data stand still for as long as `kept` is used.
+    """
+    token = _shared.set(kept)
+    try:
+        yield
+    finally:
+        _shared.reset(token)
+
+
+def _once(context: Context) -> Context:
+    """Read a context only once where contexts are shared."""
+
+    @wraps(context)
+    def read_once(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+        kept = _shared.get()
+        if kept is None:
+            return context(db, study_key, kind)
+        name = (context.__name__, study_key, kind)
+        if name not in kept:
+            kept[name] = context(db, study_key, kind)
+        return kept[name].copy(deep=False)
+
+    return read_once
 
 
 def of_kind(study: Study, kind: Kind) -> ColumnElement[bool]:
@@ -50,8 +86,10 @@ def _cast(values: "pd.Series[Any]", kind: ColumnType) -> "pd.Series[Any]":
         case "time":
             return pd.to_datetime(values, utc=True).astype("datetime64[us, UTC]")
         case "integer":
-            whole = [None if pd.isna(value) else int(value) for value in values]
-            return pd.Series(pd.array(whole, dtype="Int64"))
+            missing = values.isna().to_numpy(dtype=np.bool_)
+            whole = np.zeros(len(values), np.int64)
+            whole[~missing] = values.to_numpy(dtype=object)[~missing].astype(np.int64)
+            return pd.Series(pd.arrays.IntegerArray(whole, missing))
         case "number":
             return values.astype("float64")
         case "boolean":
@@ -63,6 +101,7 @@ def _cast(values: "pd.Series[Any]", kind: ColumnType) -> "pd.Series[Any]":
             return values.astype("object").where(values.notna(), None)
 
 
+@_once
 def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """One row per session, oldest first: the columns that every table begins with, and status."""
     study = study_by_key(db, study_key)
@@ -87,6 +126,7 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     return frame
 
 
+@_once
 def steps_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """One row per step of every session: its place in the design and the attempt that counts."""
     study = study_by_key(db, study_key)
@@ -130,6 +170,7 @@ STEP_COLUMNS = (
 )
 
 
+@_once
 def phases_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """One row per phase: whose, where in the design, and whether it counts."""
     sessions = sessions_context(db, study_key, kind)
@@ -158,6 +199,17 @@ def phases_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     )
     frame["valid"] = (frame["status"] == "done") & ~frame["session_status"].isin(BROKEN_OFF)
     return frame
+
+
+def phase_limbs(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per session and limb of its phases."""
+    query = (
+        select(Phase.session_id, Phase.limb)
+        .join(StudySession, StudySession.id == Phase.session_id)
+        .where(of_kind(study_by_key(db, study_key), kind))
+        .distinct()
+    )
+    return read(db, query, ("session_id", "limb"))
 
 
 def _positions(plan: Sequence[Step]) -> dict[tuple[int | None, str | None], int]:

@@ -44,6 +44,7 @@ def _table(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool])
             JointErrorRow.rms_rad,
             JointErrorRow.p95_rad,
             JointErrorRow.max_rad,
+            JointErrorRow.clipped_share,
             JointErrorRow.samples,
             JointErrorRow.excluded,
         )
@@ -51,7 +52,9 @@ def _table(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool])
         .where(of_kind(study_by_key(db, study_key), kind), wanted)
     )
     names = ("reference", "joint", "axis", *(f"{name}_rad" for name in _FIGURES))
-    errors = read(db, query, (*_KEYS, *names, "samples", "excluded"))
+    errors = read(db, query, (*_KEYS, *names, "clipped_share", "samples", "excluded"))
+    # Without a single number, the column would not be one of numbers.
+    errors["clipped_share"] = errors["clipped_share"].astype("float64")
     places = _places()
     keys = zip(errors["reference"], errors["joint"], errors["axis"], strict=True)
     errors["place"] = [places.get(key, len(places)) for key in keys]

@@ -50,11 +50,24 @@ def answers_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     ]
     frame["item_type"] = [item.type for item in items]
     frame["shown_position"] = frame["shown_position"] + 1
-    frame["response_s"] = [
-        (timings or {}).get(item)
-        for timings, item in zip(frame["timings"], frame["item"], strict=True)
-    ]
+    _put_times(frame)
     return finished(frame, "answers")
+
+
+def _put_times(frame: pd.DataFrame) -> None:
+    """When and how long each item was answered; numbers throughout, also where nothing is known."""
+    timed = list(zip(frame["timings"], frame["item"], strict=True))
+    traced = [
+        traces.get(item, {}) if isinstance(traces, dict) else {}
+        for traces, item in zip(frame["item_traces"], frame["item"], strict=True)
+    ]
+    columns = {
+        "response_s": [trace.get("response_s") for trace in traced],
+        "changes": [trace.get("changes") for trace in traced],
+        "answered_after_s": [(timings or {}).get(item) for timings, item in timed],
+    }
+    for name, values in columns.items():
+        frame[name] = values
 
 
 def _put_corrections(
@@ -119,6 +132,7 @@ def _forms(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
             Submission.mode,
             Submission.language,
             Submission.timings,
+            Submission.item_traces,
             Submission.started_at,
             Submission.submitted_at,
         )
@@ -127,7 +141,7 @@ def _forms(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
         .order_by(Submission.submitted_at, Submission.id)
     )
     names = ("session_id", "submission_id", "administration", "instrument", "instrument_version_id")
-    more = ("step_index", "attempt", "mode", "language", "timings")
+    more = ("step_index", "attempt", "mode", "language", "timings", "item_traces")
     forms = read(db, query, (*names, *more, "started_at_utc", "submitted_at_utc"))
     frame = (
         sessions_context(db, study.key, kind)

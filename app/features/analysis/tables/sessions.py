@@ -1,6 +1,7 @@
 """The table of sessions."""
 
 import json
+from datetime import datetime
 
 import pandas as pd
 from sqlalchemy import select
@@ -54,6 +55,7 @@ def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
             StudySession.started_at,
             StudySession.ended_at,
             StudyVersion.content_hash,
+            StudySession.avatar_configuration_hash,
             LedgerSlot.position,
             LedgerSlot.block,
             LedgerSlot.replicate,
@@ -65,10 +67,10 @@ def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
         .where(of_kind(study, kind))
     )
     names = ("session_id", "language", "time_scale")
-    times = ("created_at_utc", "started_at_utc", "ended_at_utc", "study_content_hash")
-    return read(
-        db, query, (*names, *times, "slot_index", "slot_block", "slot_replicate", "sequence")
-    )
+    times = ("created_at_utc", "started_at_utc", "ended_at_utc")
+    hashes = ("study_content_hash", "avatar_configuration_hash")
+    slot = ("slot_index", "slot_block", "slot_replicate", "sequence")
+    return read(db, query, (*names, *times, *hashes, *slot))
 
 
 def _heights(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
@@ -91,6 +93,15 @@ def _heights(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
 
 def _consents(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
     """Whether and when consent was given, from the steps and the event log: yes or no, no words."""
+    events = db.execute(
+        select(SessionEvent.session_id, SessionEvent.payload, SessionEvent.recorded_at)
+        .join(StudySession, StudySession.id == SessionEvent.session_id)
+        .where(of_kind(study, kind), SessionEvent.type == "step_completed")
+        .order_by(SessionEvent.session_id, SessionEvent.seq)
+    )
+    completed: dict[str, list[tuple[int | None, datetime]]] = {}
+    for session_id, payload, at in events:
+        completed.setdefault(session_id, []).append((json.loads(payload).get("step"), at))
     rows = []
     for session in db.scalars(select(StudySession).where(of_kind(study, kind))):
         consents = {step.index for step in plan_of(db, session) if step.kind == "consent"}
@@ -98,12 +109,7 @@ def _consents(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
             continue
         steps = state_of(session).steps
         given = all(steps[index].status == "done" for index in consents)
-        events = db.execute(
-            select(SessionEvent.payload, SessionEvent.recorded_at)
-            .where(SessionEvent.session_id == session.id, SessionEvent.type == "step_completed")
-            .order_by(SessionEvent.seq)
-        )
-        times = [at for payload, at in events if json.loads(payload).get("step") in consents]
+        times = [at for step, at in completed.get(session.id, ()) if step in consents]
         rows.append((session.id, given, times[-1] if given and times else None))
     columns = ["session_id", "consent_given", "consent_at_utc"]
     return pd.DataFrame(rows, columns=columns, dtype=object)

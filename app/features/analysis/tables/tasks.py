@@ -1,5 +1,6 @@
 """The tables of contacts and completed tasks."""
 
+import numpy as np
 import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -13,8 +14,17 @@ from app.models import Completion, Contact, StudySession
 _KEYS = ["session_id", "phase_id"]
 
 
+def contact_spans_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """The same without UTC, which costs the most and which no figure shows."""
+    return _contacts(db, study_key, kind, in_utc=False)
+
+
 def contacts_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """One row per contact interval, by phase and begin."""
+    return _contacts(db, study_key, kind, in_utc=True)
+
+
+def _contacts(db: Session, study_key: str, kind: Kind, *, in_utc: bool) -> pd.DataFrame:
     query = (
         select(
             Contact.session_id,
@@ -38,7 +48,11 @@ def contacts_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     names = ("surface", "surface_kind", "box", "side", "body_part", "effect")
     times = ("begin_s", "end_s", "begin_active_s", "end_active_s")
     contacts = read(db, query, (*_KEYS, "epoch", *names, *times))
-    add_utc(db, contacts, "begin_s", "begin_utc")
+    if in_utc:
+        add_utc(db, contacts, "begin_s", "begin_utc")
+    else:
+        unplaced = pd.Series(pd.NaT, index=contacts.index, dtype="datetime64[ns, UTC]")
+        contacts = contacts.assign(begin_utc=unplaced, clock_uncertainty_ms=np.nan)
     frame = phases_context(db, study_key, kind).merge(contacts, on=_KEYS)
     frame["duration_s"] = frame["end_active_s"] - frame["begin_active_s"]
     return finished(frame, "contacts")

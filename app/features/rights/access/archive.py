@@ -10,12 +10,13 @@ from sqlalchemy.orm import Session
 
 from app.database import Database
 from app.features.exports.service import Member, person_archive, safe_name
+from app.features.imports.service import told_of
 from app.features.rights.access.page import page_of
 from app.features.rights.access.summary import visits_of
 from app.features.sessions.contents import content_body, contents_of
 from app.models import Participant, StudySession
 
-PAGE, WORDS = "your-data.html", "words.json"
+PAGE, WORDS, IMPORTED = "your-data.html", "words.json", "imported.json"
 
 
 def access_name(code: str) -> str:
@@ -40,6 +41,11 @@ def _members(db: Session, participant: Participant, now: datetime) -> Iterator[M
     page = page_of(participant.code, visits_of(db, participant), now)
     yield Member(PAGE, iter([page.encode()]))
     yield Member(WORDS, iter([_words(db, participant).encode()]))
+    imported = told_of(db, participant.study_id, participant.code)
+    if imported and participant.kind == "people":
+        # Answers from another tool under the same code.
+        text = json.dumps(imported, ensure_ascii=False, indent=2) + "\n"
+        yield Member(IMPORTED, iter([text.encode()]))
 
 
 def _words(db: Session, participant: Participant) -> str:

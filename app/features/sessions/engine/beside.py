@@ -25,6 +25,10 @@ def decide_beside(state: SessionState, command: c.Command) -> list[e.Event] | No
             return [e.NoteAdded(**_ref(content))]
         case c.LiftBlinding(content=content):
             return [e.BlindingLifted(**_ref(content))]
+        case c.RecordAvatar(configuration_hash=configuration_hash, content=content):
+            return [e.AvatarBuilt(configuration_hash=configuration_hash, **_ref(content))]
+        case c.OverrideCheck(check=check, content=content):
+            return [e.CheckOverridden(check=check, **_ref(content))]
         case c.KeepRefusedForm(submission_id=submission_id, content=content):
             return [e.FormRefused(submission_id=submission_id, **_ref(content))]
         case c.CorrectAnswers(submission_id=submission_id, content=content):

@@ -120,6 +120,22 @@ class AddNote(Command):
 
 
 @dataclass(frozen=True, kw_only=True)
+class RecordAvatar(Command):
+    """The headset takes up a physics avatar; `content` holds its model."""
+
+    configuration_hash: str
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
+class OverrideCheck(Command):
+    """Go on although the pre-flight's check is not green; `content` holds reason and finding."""
+
+    check: str
+    content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
 class KeepRefusedForm(Command):
     """Other answers came for a form that is stored; `submission_id` is the one that stands."""
 

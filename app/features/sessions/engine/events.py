@@ -11,7 +11,9 @@ from pydantic import TypeAdapter
 
 from app.features.sessions.engine.event import Event as Event
 from app.features.sessions.engine.events_beside import AnswersCorrected as AnswersCorrected
+from app.features.sessions.engine.events_beside import AvatarBuilt as AvatarBuilt
 from app.features.sessions.engine.events_beside import BlindingLifted as BlindingLifted
+from app.features.sessions.engine.events_beside import CheckOverridden as CheckOverridden
 from app.features.sessions.engine.events_beside import DataErased as DataErased
 from app.features.sessions.engine.events_beside import FormRefused as FormRefused
 from app.features.sessions.engine.events_beside import NoteAdded as NoteAdded
@@ -221,7 +223,9 @@ EVENT_TYPES: dict[str, type[Event]] = {
         PhaseFrozen,
         PhaseEnded,
         PhaseVoided,
+        AvatarBuilt,
         BlindingLifted,
+        CheckOverridden,
         NoteAdded,
         FormRefused,
         AnswersCorrected,

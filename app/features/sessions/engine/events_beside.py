@@ -1,4 +1,4 @@
-"""Events that do not move a session on: words, corrections, an erasure."""
+"""Events that do not move a session on: words, the avatar's model, corrections, an erasure."""
 
 from dataclasses import dataclass
 
@@ -19,6 +19,32 @@ class NoteAdded(Event):
     """The operator wrote a note."""
 
     type = "note_added"
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class AvatarBuilt(Event):
+    """The headset took up a physics avatar: how it behaves, by the hash of its configuration.
+
+    The content holds the stature it was built for and the model itself.
+    """
+
+    type = "avatar_built"
+    configuration_hash: str
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckOverridden(Event):
+    """Somebody goes on although the pre-flight's check `check` was not green.
+
+    The content holds the reason, and what the check had found.
+    """
+
+    type = "check_overridden"
+    check: str
     content_id: str
     content_hash: str
 

@@ -63,7 +63,7 @@ def _from_arrays(table: Table, names: Names, moving: Names) -> str:
     dialect = postgresql.dialect()  # type: ignore[no-untyped-call]  # SQLAlchemy has no type for it
     types = (table.c[name].type.compile(dialect) for name in names)
     arrays = ", ".join(f"%b::{type_}[]" for type_ in types)
-    return _statement(table, names, moving, f"SELECT * FROM unnest({arrays})")  # noqa: S608
+    return _statement(table, names, moving, f"SELECT * FROM unnest({arrays})")  # noqa: S608 - names of our schema
 
 
 def _statement(table: Table, names: Names, moving: Names, source: str) -> str:

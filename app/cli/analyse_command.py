@@ -1,0 +1,39 @@
+"""The command `analyse`: parse, call, print."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.failing import fail
+
+
+def analyse(
+    table: Annotated[Path, typer.Argument(help="Tidy CSV: one row an observation.")],
+    subject: Annotated[str, typer.Option(help="Column that names the subject.")],
+    within: Annotated[
+        list[str], typer.Option(help="Column of a within-subject factor; once or twice.")
+    ],
+    measure: Annotated[str, typer.Option(help="Column of what was measured.")],
+    reference: Annotated[
+        str | None,
+        typer.Option(help="Level of the first factor that every other is compared with."),
+    ] = None,
+    art: Annotated[
+        bool, typer.Option("--art", help="Also the aligned rank transform, which is contested.")
+    ] = False,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the bootstrap intervals.")] = 1,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Compare within-subject conditions: Friedman, Wilcoxon with Holm, Page, repeated ANOVA."""
+    from app.cli import analyse_texts as texts
+    from app.cli.analyse_json import as_json as told
+    from app.cli.analysing import AnalyseOrder, carry_out
+
+    order = AnalyseOrder(table, subject, within, measure, reference, seed, art)
+    try:
+        done = carry_out(order)
+    except (ValueError, OSError) as error:
+        fail(str(error))
+    print(json.dumps(told(done), allow_nan=False) if as_json else texts.as_text(done))

@@ -1,0 +1,132 @@
+"""The families of tests of `reembody analyse`: each factor, and one at the levels of another."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import TypeVar
+
+import numpy as np
+
+from app.science.statistics import (
+    AgainstReference,
+    Cells,
+    Comparison,
+    Friedman,
+    Interval,
+    PageTrend,
+    StatisticsError,
+    against_reference,
+    bootstrap_interval,
+    friedman,
+    mean_of,
+    page_trend,
+    pairwise,
+)
+from app.science.statistics.arrays import FloatArray, complete_rows
+from app.science.statistics.levels import place_of
+
+T = TypeVar("T")
+_MOST_FACTORS = 2
+_TWO = 2
+
+
+@dataclass(frozen=True)
+class Question:
+    """What is compared: the levels of one factor, over or at a level of the other.
+
+    Attributes:
+        averaged_over: factors that each subject's values are averaged over.
+        at: levels of the other factors that the values are of.
+    """
+
+    factor: str
+    levels: tuple[str, ...]
+    averaged_over: tuple[str, ...] = ()
+    at: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Family:
+    """Tests that belong together; Holm's rule goes over its pairs.
+
+    Attributes:
+        page: of three levels or more.
+        intervals: of each pair's mean difference, in the order of `pairs`.
+        planned: each level against the reference, if one was named; its own use of Holm's rule.
+    """
+
+    question: Question
+    friedman: Friedman | None
+    page: PageTrend | None
+    pairs: tuple[Comparison, ...]
+    intervals: tuple[Interval | None, ...]
+    planned: AgainstReference | None
+
+
+def families_of(
+    cells: Cells, reference: str | None, rng: np.random.Generator, warnings: list[str]
+) -> list[Family]:
+    """Each factor averaged over the other; then the first at each level of the second.
+
+    A reference is a level of the first factor, and raises StatisticsError if it is none.
+    """
+    names = cells.factors
+    if reference is not None:
+        place_of(cells.levels[0], reference)
+    found = []
+    for axis, (factor, levels) in enumerate(zip(names, cells.levels, strict=True), start=1):
+        over = tuple(name for name in names if name != factor)
+        question = Question(factor, levels, averaged_over=over)
+        against = reference if axis == 1 else None
+        found.append(_family_of(question, cells.of_factor(axis), against, rng, warnings))
+    if len(names) == _MOST_FACTORS:
+        for place, level in enumerate(cells.levels[1]):
+            question = Question(names[0], cells.levels[0], at={names[1]: level})
+            values = cells.values[:, :, place]
+            found.append(_family_of(question, values, reference, rng, warnings))
+    return found
+
+
+def _family_of(
+    question: Question,
+    values: FloatArray,
+    reference: str | None,
+    rng: np.random.Generator,
+    warnings: list[str],
+) -> Family:
+    """Pairs take who has both levels, the others who has all."""
+    at = "".join(f" at {factor} {level}" for factor, level in question.at.items())
+    where = f"{question.factor}{at}: "
+    levels = question.levels
+    whole, _ = complete_rows(values)
+    ranked = tried(lambda: friedman(whole), warnings, where)
+    if ranked is not None and ranked.note:
+        warnings.append(f"{where}p of Friedman's test is {ranked.note}")
+    pairs = tried(lambda: pairwise(values, levels), warnings, where) or ()
+    columns = combinations(values.T, 2)
+    return Family(
+        question=question,
+        friedman=ranked,
+        page=tried(lambda: page_trend(whole), warnings, where) if len(levels) > _TWO else None,
+        pairs=pairs,
+        intervals=tuple(mean_interval(complete_rows(a - b)[0], rng) for a, b in columns)
+        if pairs
+        else (),
+        planned=tried(lambda: against_reference(values, levels, reference), warnings, where)
+        if reference is not None
+        else None,
+    )
+
+
+def tried(compute: Callable[[], T], warnings: list[str], where: str = "") -> T | None:
+    """What can be computed; what cannot is said among the warnings."""
+    try:
+        return compute()
+    except StatisticsError as error:
+        warnings.append(f"{where}{error}")
+        return None
+
+
+def mean_interval(values: FloatArray, rng: np.random.Generator) -> Interval | None:
+    """Of the mean; none for fewer than two values."""
+    return bootstrap_interval(values, mean_of, rng=rng) if values.size > 1 else None

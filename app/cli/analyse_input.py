@@ -1,0 +1,134 @@
+"""A CSV file as rows of a tidy table, each with the line it stands in.
+
+Separators are commas, semicolons or tabs, found by the header; where ; separates, numbers may have
+a decimal comma. What cannot be understood is refused with its line and column.
+"""
+
+import csv
+import io
+import re
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import mode
+
+from app.science.statistics import UnusableTable
+
+_SEPARATORS = (",", ";", "\t")
+_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+")
+_SHOWN = 60
+
+
+@dataclass(frozen=True)
+class TidyInput:
+    """Columns by name, as text, and the line of each row.
+
+    Attributes:
+        subjects, measure: one entry a row.
+        within: each factor's column, in the order asked for.
+        lines: of the file, from 1; the header is line 1.
+        replicates: whole rows that stand there more than once, where cells have several rows.
+    """
+
+    subjects: list[str]
+    within: dict[str, list[str]]
+    measure: list[str]
+    lines: list[int]
+    replicates: int
+
+
+@dataclass(frozen=True)
+class _Row:
+    line: int
+    cells: list[str]
+
+
+def read_tidy(path: Path, subject: str, within: list[str], measure: str) -> TidyInput:
+    """Read the columns named.
+
+    Raises OSError where the file cannot be read, UnusableTable for what is not a table, lacks a
+    column, or has a row twice where every other cell has one row.
+    """
+    separator, header, rows = _table(path)
+    asked = [subject, *within, measure]
+    if len(set(asked)) != len(asked):
+        raise UnusableTable(f"The columns asked for must all be different: {', '.join(asked)}.")
+    for name in asked:
+        _check_column(name, header)
+    for row in rows:
+        if len(row.cells) != len(header):
+            raise UnusableTable(
+                f"Line {row.line} has {len(row.cells)} cells, but the header has {len(header)}."
+                " Give every row one cell for each column, and put text with separators in quotes."
+            )
+    columns = {
+        name: [_pointed(row.cells[header.index(name)], separator) for row in rows] for name in asked
+    }
+    keys = list(zip(*(columns[name] for name in [subject, *within]), strict=True))
+    return TidyInput(
+        subjects=columns[subject],
+        within={name: columns[name] for name in within},
+        measure=columns[measure],
+        lines=[row.line for row in rows],
+        replicates=_repeated(rows, keys),
+    )
+
+
+def _table(path: Path) -> tuple[str, list[str], list[_Row]]:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise UnusableTable(f"{path} is not UTF-8 text; save it as CSV UTF-8.") from error
+    first = next((line for line in text.splitlines() if line.strip()), "")
+    if not first:
+        raise UnusableTable(f"{path} is empty; its first line must name the columns.")
+    separator = max(_SEPARATORS, key=first.count)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    rows: list[_Row] = []
+    try:
+        rows.extend(
+            _Row(reader.line_num, [cell.strip() for cell in cells])
+            for cells in reader
+            if any(cell.strip() for cell in cells)
+        )
+    except csv.Error as error:
+        raise UnusableTable(
+            f"Line {reader.line_num} of {path} cannot be read: {error}. Close every quote."
+        ) from error
+    if not rows:
+        raise UnusableTable(f"{path} has only empty cells; its first line must name the columns.")
+    return separator, rows[0].cells, rows[1:]
+
+
+def _check_column(name: str, header: list[str]) -> None:
+    times = header.count(name)
+    if times == 0:
+        raise UnusableTable(f"There is no column {name!r}; there are: {', '.join(header)}.")
+    if times > 1:
+        raise UnusableTable(f"Column {name!r} stands {times} times in the header; rename one.")
+
+
+def _pointed(cell: str, separator: str) -> str:
+    if separator == ";" and _DECIMAL_COMMA.fullmatch(cell):
+        return cell.replace(",", ".")
+    return cell
+
+
+def _repeated(rows: list[_Row], keys: list[tuple[str, ...]]) -> int:
+    """How many rows repeat an earlier one whole; refused unless cells usually have several rows."""
+    seen: dict[tuple[str, ...], int] = {}
+    repeated = 0
+    usual = mode(Counter(keys).values()) if keys else 1
+    for row in rows:
+        cells = tuple(row.cells)
+        if cells in seen:
+            if usual == 1:
+                told = ", ".join(cells)
+                shown = told if len(told) <= _SHOWN else told[:_SHOWN] + " ..."
+                raise UnusableTable(
+                    f"Line {row.line} repeats line {seen[cells]} in every column ({shown}). Remove"
+                    " one, or add a column that tells the two observations apart."
+                )
+            repeated += 1
+        seen.setdefault(cells, row.line)
+    return repeated

@@ -1,0 +1,164 @@
+"""What `reembody analyse --json` says; what could not be computed is null."""
+
+import math
+from typing import Any
+
+from app.cli.analyse_families import Family
+from app.cli.analysing import Analysis, CellMean
+from app.science.statistics import (
+    AgainstReference,
+    Comparison,
+    Effect,
+    Friedman,
+    Interval,
+    PageTrend,
+)
+
+
+def as_json(done: Analysis) -> dict[str, Any]:
+    """The result for scripts; p values and effects unrounded.
+
+    `friedman`, `pairwise` and `page` are those of the first factor, averaged over the second where
+    there is one; `families` has them for every factor, and at each level of the second.
+    """
+    first = _family_json(done.families[0])
+    art = done.aligned
+    told: dict[str, Any] = {
+        "n": len(done.complete.subjects),
+        "design": _design(done),
+        "means": [_mean(one) for one in done.means],
+        "friedman": first["friedman"],
+        "pairwise": first["pairwise"],
+        "page": first["page"],
+        "against_reference": first["against_reference"],
+        "rm_anova": [_effect(one) for one in done.rm_anova.effects] if done.rm_anova else [],
+        "families": [_family_json(one) for one in done.families],
+        "aligned_ranks": {"effects": [_effect(one) for one in art.effects], "caution": art.caution}
+        if art
+        else None,
+        "missing": {
+            "cells": done.cells.n_missing,
+            "empty_rows": done.cells.n_empty,
+            "averaged_cells": done.cells.n_averaged,
+            "left_out_listwise": list(done.complete.left_out),
+            "rule": "listwise for Friedman, Page and ANOVA; pairwise for Wilcoxon; none imputed",
+        },
+        "warnings": done.warnings,
+        "seed": done.order.seed,
+    }
+    return {key: _finite(one) for key, one in told.items()}
+
+
+def _design(done: Analysis) -> dict[str, Any]:
+    return {
+        "subject": done.order.subject,
+        "measure": done.order.measure,
+        "within": [
+            {"factor": factor, "levels": list(levels)}
+            for factor, levels in zip(done.cells.factors, done.cells.levels, strict=True)
+        ],
+        "subjects": len(done.cells.subjects),
+        "complete_subjects": len(done.complete.subjects),
+    }
+
+
+def _mean(one: CellMean) -> dict[str, Any]:
+    return {
+        "levels": one.levels,
+        "n": one.n,
+        "mean": one.mean,
+        "sd": one.sd,
+        "median": one.median,
+        "ci": _interval(one.interval),
+    }
+
+
+def _family_json(family: Family) -> dict[str, Any]:
+    return {
+        "factor": family.question.factor,
+        "levels": list(family.question.levels),
+        "averaged_over": list(family.question.averaged_over),
+        "at": family.question.at,
+        "friedman": _friedman(family.friedman),
+        "pairwise": [
+            _pair(one, interval)
+            for one, interval in zip(family.pairs, family.intervals, strict=True)
+        ],
+        "page": _page(family.page),
+        "against_reference": _planned(family.planned),
+    }
+
+
+def _friedman(test: Friedman | None) -> dict[str, Any] | None:
+    if test is None:
+        return None
+    named = ("statistic", "df", "p", "p_asymptotic", "kendall_w", "method", "n")
+    return {**_values(test, *named), "mean_ranks": list(test.mean_ranks)}
+
+
+def _pair(one: Comparison, interval: Interval | None) -> dict[str, Any]:
+    return {
+        **_tested(one),
+        "mean_difference": None if interval is None else interval.estimate,
+        "mean_difference_ci": _interval(interval),
+    }
+
+
+def _tested(one: Comparison) -> dict[str, Any]:
+    sizes = ("n", "n_zero", "n_left_out", "zeros")
+    return {
+        **_values(one, "a", "b"),
+        **_values(one.test, "w", "p"),
+        **_values(one, "p_holm"),
+        **_values(one.test, "rank_biserial", "p_asymptotic", "method", *sizes),
+        **_values(one, "median_difference"),
+    }
+
+
+def _planned(planned: AgainstReference | None) -> dict[str, Any] | None:
+    if planned is None:
+        return None
+    return {
+        "reference": planned.reference,
+        "first_that_differs": planned.first_that_differs,
+        "alpha": planned.alpha,
+        "comparisons": [_tested(one) for one in planned.comparisons],
+    }
+
+
+def _page(test: PageTrend | None) -> dict[str, Any] | None:
+    if test is None:
+        return None
+    p_values = ("p", "p_falling", "p_given_ties", "p_asymptotic")
+    return _values(test, "statistic", *p_values, "method", "n")
+
+
+def _effect(one: Effect) -> dict[str, Any]:
+    test = ("f", "df", "df_error", "p", "epsilon", "p_gg")
+    sizes = ("partial_eta_squared", "generalised_eta_squared")
+    return {
+        "effect": one.name,
+        **_values(one, *test, *sizes, "mauchly_w", "mauchly_p", "ss", "ss_error"),
+    }
+
+
+def _interval(one: Interval | None) -> dict[str, Any] | None:
+    if one is None:
+        return None
+    return _values(one, "low", "high", "confidence", "method")
+
+
+def _values(one: object, *names: str) -> dict[str, Any]:
+    """Some values of a result, under their own names."""
+    return {name: getattr(one, name) for name in names}
+
+
+def _finite(value: object) -> object:
+    """JSON has no NaN."""
+    if isinstance(value, dict):
+        return {key: _finite(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_finite(one) for one in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

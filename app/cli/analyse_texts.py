@@ -1,0 +1,146 @@
+"""What `reembody analyse` says to people: tables of figures, then what to mind."""
+
+import math
+from collections.abc import Iterator
+
+from app.cli.analyse_families import Family
+from app.cli.analysing import Analysis
+from app.science.statistics import AgainstReference, AlignedRanks, Interval, RmAnova
+
+_NONE = "-"
+_LEAST_P = 0.0001
+_WIDTH = 18
+_LEGEND = (
+    "Holm: over the pairs of one table. r: matched rank-biserial, positive if the first is larger.",
+    "CI: 95 %, bootstrap over subjects (BCa), seed {seed}.",
+)
+_NARROW = "With few subjects it is too narrow: at a dozen it holds the truth about 9 times in 10."
+_MANY = 30
+
+
+def as_text(done: Analysis) -> str:
+    """The result for people; rounded, see --json for every digit."""
+    order, cells = done.order, done.cells
+    factors = " x ".join(
+        f"{name} ({', '.join(levels)})"
+        for name, levels in zip(cells.factors, cells.levels, strict=True)
+    )
+    complete = f"{len(done.complete.subjects)} of {len(cells.subjects)} subjects complete"
+    lines = [f"{order.measure} by {factors}: {complete}.", "", *_means(done)]
+    for family in done.families:
+        lines += ["", *_family(family)]
+    if done.rm_anova is not None:
+        lines += ["", *_anova(done.rm_anova)]
+    if done.aligned is not None:
+        lines += ["", *_aligned(done.aligned)]
+    lines += ["", *(line.format(seed=order.seed) for line in _LEGEND)]
+    if len(cells.subjects) < _MANY:
+        lines.append(_NARROW)
+    lines += [f"Note: {warning}." for warning in (one.rstrip(".") for one in done.warnings)]
+    return "\n".join(lines)
+
+
+def _means(done: Analysis) -> Iterator[str]:
+    width = max(
+        _WIDTH,
+        2 + max(len(" ".join(one.levels.values())) for one in done.means),
+        2 + len(" ".join(done.cells.factors)),
+    )
+    heads = " ".join(done.cells.factors)
+    yield f"{heads:<{width}}{'n':>4}{'mean':>11}{'SD':>11}{'median':>11}{'CI of mean':>24}"
+    for one in done.means:
+        name = " ".join(one.levels.values())
+        yield (
+            f"{name:<{width}}{one.n:>4}{_figure(one.mean):>11}{_figure(one.sd):>11}"
+            f"{_figure(one.median):>11}{_ends(one.interval):>24}"
+        )
+
+
+def _family(family: Family) -> Iterator[str]:
+    asked = family.question
+    over = f", averaged over {', '.join(asked.averaged_over)}" if asked.averaged_over else ""
+    at = "".join(f", {factor} {level}" for factor, level in asked.at.items())
+    yield f"{asked.factor}{over}{at}"
+    friedman, page = family.friedman, family.page
+    if friedman is not None:
+        exact = f"{_p(friedman.p)} exact, " if friedman.method == "exact" else ""
+        yield (
+            f"  Friedman  chi2({friedman.df}) = {friedman.statistic:.3f},"
+            f" {exact}{_p(friedman.p_asymptotic)} asymptotic;"
+            f" Kendall's W = {friedman.kendall_w:.3f}; n = {friedman.n}"
+        )
+    if page is not None:
+        yield (
+            f"  Page      L = {page.statistic:g}, one-sided {_p(page.p)} that it rises,"
+            f" {_p(page.p_falling)} that it falls, {page.method}"
+        )
+    if family.pairs:
+        yield from _pairs(family)
+    if family.planned is not None:
+        yield from _planned(family.planned)
+
+
+def _pairs(family: Family) -> Iterator[str]:
+    width = max(_WIDTH - 2, 2 + max(len(f"{one.a} - {one.b}") for one in family.pairs))
+    yield (
+        f"  {'Wilcoxon':<{width}}{'n':>4}{'W':>8}{'p':>9}{'p Holm':>9}{'r':>8}"
+        f"{'mean diff':>12}{'CI':>24}"
+    )
+    for one, interval in zip(family.pairs, family.intervals, strict=True):
+        mean = _NONE if interval is None else _figure(interval.estimate)
+        yield (
+            f"  {f'{one.a} - {one.b}':<{width}}{one.test.n:>4}{one.test.w:>8g}"
+            f"{_bare(one.test.p):>9}{_bare(one.p_holm):>9}{one.test.rank_biserial:>8.3f}"
+            f"{mean:>12}{_ends(interval):>24}"
+        )
+
+
+def _planned(found: AgainstReference) -> Iterator[str]:
+    told = ", ".join(f"{one.a} {_p(one.p_holm)}" for one in found.comparisons)
+    first = found.first_that_differs
+    yield f"  Against {found.reference}, Holm over these: {told}"
+    yield (
+        f"  First level that differs from {found.reference}: {first}"
+        if first
+        else f"  No level differs from {found.reference} at {found.alpha:g}"
+    )
+
+
+def _anova(found: RmAnova) -> Iterator[str]:
+    width = max(_WIDTH, 2 + max(len(one.name) for one in found.effects))
+    yield (
+        f"{'rm ANOVA':<{width}}{'df':>9}{'F':>10}{'p':>9}{'GG eps':>9}{'p GG':>9}"
+        f"{'part. eta2':>12}{'gen. eta2':>11}"
+    )
+    for one in found.effects:
+        df = f"{one.df:g}, {one.df_error:g}"
+        yield (
+            f"{one.name:<{width}}{df:>9}{one.f:>10.3f}{_bare(one.p):>9}{one.epsilon:>9.3f}"
+            f"{_bare(one.p_gg):>9}{one.partial_eta_squared:>12.3f}"
+            f"{one.generalised_eta_squared:>11.3f}"
+        )
+
+
+def _aligned(found: AlignedRanks) -> Iterator[str]:
+    width = max(_WIDTH, 2 + max(len(one.name) for one in found.effects))
+    yield f"{'aligned ranks':<{width}}{'df':>9}{'F':>10}{'p':>9}{'p GG':>9}"
+    for one in found.effects:
+        df = f"{one.df:g}, {one.df_error:g}"
+        yield f"{one.name:<{width}}{df:>9}{one.f:>10.3f}{_bare(one.p):>9}{_bare(one.p_gg):>9}"
+    yield f"  {found.caution}"
+
+
+def _p(p: float) -> str:
+    return f"p < {_LEAST_P:.4f}" if p < _LEAST_P else f"p = {p:.4f}"
+
+
+def _bare(p: float) -> str:
+    return f"<{_LEAST_P:.4f}" if p < _LEAST_P else f"{p:.4f}"
+
+
+def _figure(value: float) -> str:
+    return _NONE if math.isnan(value) else f"{value:.4g}"
+
+
+def _ends(one: Interval | None) -> str:
+    return _NONE if one is None else f"[{_figure(one.low)}, {_figure(one.high)}]"

@@ -1,0 +1,168 @@
+"""What `reembody analyse` does: a tidy table in, every usual test out."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from app.cli.analyse_families import Family, families_of, mean_interval, tried
+from app.cli.analyse_input import read_tidy
+from app.science.statistics import (
+    AlignedRanks,
+    Cells,
+    ConstantData,
+    Interval,
+    RmAnova,
+    StatisticsError,
+    TooFewData,
+    aligned_ranks_within,
+    cells_of,
+    rm_anova,
+)
+from app.science.statistics.arrays import complete_rows
+from app.science.statistics.tidy import Complete
+
+_MOST_FACTORS = 2
+_SHOWN = 8
+
+
+@dataclass(frozen=True)
+class AnalyseOrder:
+    """What was asked for; see the options of the command."""
+
+    table: Path
+    subject: str
+    within: list[str]
+    measure: str
+    reference: str | None
+    seed: int
+    art: bool
+
+
+@dataclass(frozen=True)
+class CellMean:
+    """One cell: its levels by factor, and its values over the subjects who have it."""
+
+    levels: dict[str, str]
+    n: int
+    sd: float
+    median: float
+    interval: Interval | None
+    mean: float
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """Everything that was computed, and what was left out on the way."""
+
+    order: AnalyseOrder
+    cells: Cells
+    complete: Complete
+    means: tuple[CellMean, ...]
+    families: tuple[Family, ...]
+    rm_anova: RmAnova | None
+    aligned: AlignedRanks | None
+    warnings: list[str] = field(default_factory=list)
+
+
+def carry_out(order: AnalyseOrder) -> Analysis:
+    """Analyse a file.
+
+    Raises StatisticsError (a ValueError) for what cannot be analysed, OSError for what cannot be
+    read.
+    """
+    if not 1 <= len(order.within) <= _MOST_FACTORS:
+        raise StatisticsError(
+            f"{len(order.within)} within-subject factors were named; one or two can be analysed."
+        )
+    read = read_tidy(order.table, order.subject, order.within, order.measure)
+    cells = cells_of(
+        read.subjects,
+        read.within,
+        read.measure,
+        measure_name=order.measure,
+        subject_name=order.subject,
+        lines=read.lines,
+    )
+    complete = cells.complete()
+    _check_usable(order, cells, complete)
+    warnings = _warnings(cells, complete, read.replicates)
+    rng = np.random.default_rng(order.seed)
+    return Analysis(
+        order=order,
+        cells=cells,
+        complete=complete,
+        means=tuple(_means(cells, rng)),
+        families=tuple(families_of(cells, order.reference, rng, warnings)),
+        rm_anova=tried(lambda: rm_anova(complete.values, cells.factors), warnings),
+        aligned=tried(lambda: aligned_ranks_within(complete.values, cells.factors), warnings)
+        if order.art
+        else None,
+        warnings=warnings,
+    )
+
+
+def missing_cells(cells: Cells, subject: str) -> str:
+    """Which cells a subject lacks, in words."""
+    row = cells.rows[cells.subjects.index(subject)]
+    lacking = [
+        ", ".join(
+            f"{factor} {levels[place]}"
+            for factor, levels, place in zip(cells.factors, cells.levels, where, strict=True)
+        )
+        for where in np.argwhere(row == 0)
+    ]
+    more = f" and {len(lacking) - _SHOWN} more" if len(lacking) > _SHOWN else ""
+    return "; ".join(lacking[:_SHOWN]) + more
+
+
+def _check_usable(order: AnalyseOrder, cells: Cells, complete: Complete) -> None:
+    if len(complete.subjects) < 2:
+        lacking = complete.left_out[0]
+        raise TooFewData(
+            f"Only {len(complete.subjects)} of {len(cells.subjects)} subjects have a value of"
+            f" {order.measure!r} in every cell; two at least are needed. {order.subject}"
+            f" {lacking!r}, for example, lacks {missing_cells(cells, lacking)}."
+        )
+    if float(np.ptp(complete.values)) <= 0.0:
+        raise ConstantData(
+            f"Column {order.measure!r} is {complete.values.flat[0]:g} in every cell of every"
+            " complete subject; there is nothing to test."
+        )
+
+
+def _warnings(cells: Cells, complete: Complete, replicates: int) -> list[str]:
+    told = [
+        f"left out of Friedman, Page and ANOVA (listwise): {name} lacks"
+        f" {missing_cells(cells, name)}"
+        for name in complete.left_out
+    ]
+    if cells.n_averaged:
+        told.append(
+            f"{cells.n_averaged} of {cells.rows.size} cells have several values, at most"
+            f" {int(cells.rows.max())}; their mean was taken"
+        )
+    if replicates:
+        told.append(f"{replicates} rows repeat an earlier one whole, and were taken as replicates")
+    return told
+
+
+def _means(cells: Cells, rng: np.random.Generator) -> list[CellMean]:
+    found = []
+    for where in np.ndindex(*cells.values.shape[1:]):
+        levels = {
+            factor: names[place]
+            for factor, names, place in zip(cells.factors, cells.levels, where, strict=True)
+        }
+        column, _ = complete_rows(cells.values[(slice(None), *where)])
+        found.append(
+            CellMean(
+                levels=levels,
+                n=column.size,
+                mean=float(column.mean()) if column.size else float("nan"),
+                sd=float(column.std(ddof=1)) if column.size > 1 else float("nan"),
+                median=float(np.median(column)) if column.size else float("nan"),
+                interval=mean_interval(column, rng),
+            )
+        )
+    return found

@@ -1,0 +1,75 @@
+"""The command `retarget`: parse, call, print."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.failing import fail
+
+
+def retarget(
+    clip: Annotated[
+        Path | None, typer.Argument(help="Capture: BVH, Motive CSV, AMC, C3D, TRC and others.")
+    ] = None,
+    to: Annotated[
+        str | None,
+        typer.Option(help="130cm, 165cm, 190cm, any other stature, or a file with a skeleton."),
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Write the result as .bvh or .csv.")] = None,
+    lock_feet: Annotated[
+        bool, typer.Option("--lock-feet", help="Hold feet at their places while they stand.")
+    ] = False,
+    ground: Annotated[
+        str, typer.Option(help="flat, kerb:HEIGHT@DISTANCE or ramp:HEIGHT/LENGTH@DISTANCE in m.")
+    ] = "flat",
+    joint_map: Annotated[
+        Path | None, typer.Option(help="JSON: body joint to joint of the clip; else by names.")
+    ] = None,
+    skeleton: Annotated[
+        Path | None, typer.Option(help="ASF of an AMC; else the one beside it.")
+    ] = None,
+    unit: Annotated[float | None, typer.Option(help="Metres per unit of the clip.")] = None,
+    up: Annotated[str | None, typer.Option(help="Upward axis of the clip: x, y or z.")] = None,
+    check: Annotated[
+        str | None, typer.Option(help="table1: compute the paper's Table 1 again instead.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Bring a capture onto an avatar of any size, and measure its steps."""
+    if check is not None:
+        _check(check, as_json=as_json)
+        return
+    if clip is None or to is None:
+        fail("a clip and --to are needed, as in: reembody retarget walk.bvh --to 165cm")
+    from app.cli import retarget_texts as texts
+    from app.cli.retargeting import RetargetOrder, carry_out
+
+    order = RetargetOrder(
+        clip=clip,
+        to=to,
+        out=out,
+        ground=ground,
+        lock_feet=lock_feet,
+        joint_map=joint_map,
+        skeleton=skeleton,
+        unit=unit,
+        up=up,
+    )
+    try:
+        done = carry_out(order)
+    except (ValueError, OSError) as error:
+        fail(str(error))
+    print(json.dumps(texts.as_json(done)) if as_json else texts.as_text(done))
+
+
+def _check(what: str, *, as_json: bool) -> None:
+    """Compute a published table again."""
+    if what != "table1":
+        fail(f"--check {what!r}: table1 is valid")
+    from app.cli import retarget_texts as texts
+    from app.science.retargeting.table1 import check_table1
+
+    rows = check_table1()
+    print(json.dumps(texts.table1_json(rows)) if as_json else texts.table1_text(rows))

@@ -1,0 +1,103 @@
+"""Bringing a capture onto an avatar from the command line."""
+
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.adapters.captures.bvh_export import to_bvh
+from app.adapters.captures.table_export import to_csv
+from app.cli.retarget_ground import ground_along
+from app.cli.retarget_input import Clip, joint_map_of, read_avatar, read_clip, reading_of
+from app.science.retargeting.ground import Flat, Ground
+from app.science.retargeting.joint_map import check_joint_map
+from app.science.retargeting.pipeline import Retargeted, retarget_motion
+from app.science.retargeting.transfer import Retargeter
+from app.science.rig import RigMotion
+
+_WRITTEN = (".bvh", ".csv")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RetargetOrder:
+    """What is asked for.
+
+    Attributes:
+        clip: the capture.
+        to: `165cm` and the like, or a file with a skeleton.
+        out: .bvh or .csv to write; None to only measure.
+        ground: see `app.cli.retarget_ground`.
+        lock_feet: hold the feet while they stand.
+        joint_map: JSON file for the clip; None to go by its joints' names.
+        skeleton: ASF of an AMC; None to take the one beside it.
+        unit: metres per unit of the clip; None to go by the file.
+        up: the clip's upward axis; None to go by the file.
+    """
+
+    clip: Path
+    to: str
+    out: Path | None = None
+    ground: str = "flat"
+    lock_feet: bool = False
+    joint_map: Path | None = None
+    skeleton: Path | None = None
+    unit: float | None = None
+    up: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Done:
+    """What came of it."""
+
+    order: RetargetOrder
+    clip: Clip
+    result: Retargeted
+
+
+def carry_out(order: RetargetOrder) -> Done:
+    """Retarget a clip and write what is asked for.
+
+    Raises:
+        ValueError: something of the input cannot be used; nothing is written.
+        OSError: a file cannot be opened or written; nothing is left half-written.
+    """
+    _check_out(order)
+    along = ground_along(order.ground)
+    avatar, avatar_map = read_avatar(order.to)
+    clip = read_clip(order.clip, reading_of(order.skeleton, order.unit, order.up))
+    source_map = joint_map_of(clip.motion.rig, order.joint_map)
+    check_joint_map(clip.motion.rig, source_map)
+    check_joint_map(avatar, avatar_map)
+    ground: Ground = Flat()
+    if along is not None:
+        scale = Retargeter(clip.motion.rig, source_map, avatar, avatar_map).scale
+        ground = along(scale * clip.motion.root_positions_m)
+    result = retarget_motion(
+        clip.motion, source_map, avatar, avatar_map, ground=ground, lock=order.lock_feet
+    )
+    if order.out is not None:
+        write_motion(order.out, result.motion)
+    return Done(order, clip, result)
+
+
+def write_motion(path: Path, motion: RigMotion) -> None:
+    """Write BVH or CSV as the name ends, whole or not at all; raises OSError."""
+    pieces: Iterable[str] = [to_bvh(motion)] if path.suffix.lower() == ".bvh" else to_csv(motion)
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with part.open("x", encoding="utf-8", newline="\n") as file:
+            file.writelines(pieces)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _check_out(order: RetargetOrder) -> None:
+    if order.out is None:
+        return
+    if order.out.suffix.lower() not in _WRITTEN:
+        raise ValueError(f"--out {order.out}: names ending with .bvh or .csv are valid")
+    if not order.out.parent.is_dir():
+        raise ValueError(f"--out {order.out}: there is no folder {order.out.parent}")
+    if order.out.exists() and order.clip.exists() and order.out.samefile(order.clip):
+        raise ValueError(f"--out {order.out}: that is the clip itself, give another name")

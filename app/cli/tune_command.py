@@ -1,0 +1,74 @@
+"""The command `tune`: parse, call, print."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.failing import fail
+
+
+def tune(
+    avatar: Annotated[
+        str | None,
+        typer.Option(help="Key of a stored configuration; without it the product's own."),
+    ] = None,
+    stature: Annotated[float, typer.Option(help="Stature of the body, m.")] = 1.75,
+    mass: Annotated[
+        float | None, typer.Option(help="Mass of the body, kg; else the configuration's.")
+    ] = None,
+    heuristic: Annotated[
+        str,
+        typer.Option(help="critical, inertia, ziegler-nichols-pd or tyreus-luyben-pd."),
+    ] = "critical",
+    mirror: Annotated[
+        bool, typer.Option("--mirror", help="Tune the left side and copy it to the right.")
+    ] = False,
+    evaluate: Annotated[
+        bool,
+        typer.Option("--evaluate", help="Try the gains that are there, and change nothing."),
+    ] = False,
+    attempts: Annotated[int, typer.Option(help="Experiments per axis at most.")] = 3,
+    workers: Annotated[int, typer.Option(help="Threads.")] = 2,
+    capture: Annotated[
+        Path | None, typer.Option(help="Also follow this capture, for the angular error.")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Write the tuned configuration as a JSON file.")
+    ] = None,
+    save: Annotated[
+        str | None,
+        typer.Option(help="Store it in the lab's database: a new key, or one to add a version to."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
+) -> None:
+    """Find gains for every axis of the avatar by relay experiments, and try them."""
+    from app.cli import tune_texts as texts
+    from app.cli.tuning import TuneOrder, carry_out
+    from app.errors import ReembodyError
+    from app.science.avatar.tuning import TuningCancelled
+
+    order = TuneOrder(
+        avatar=avatar,
+        stature_m=stature,
+        mass_kg=mass,
+        heuristic=heuristic,
+        mirror=mirror,
+        evaluate=evaluate,
+        attempts=attempts,
+        workers=workers,
+        capture=capture,
+        out=out,
+        save=save,
+    )
+    try:
+        done = carry_out(order)
+    except ReembodyError as error:
+        valid = f"; valid: {', '.join(error.valid)}" if isinstance(error.valid, list) else ""
+        fail(f"{error.message}{valid}. {error.remedy}".strip())
+    except TuningCancelled:
+        fail("the tuning was cancelled; nothing was written or stored")
+    except (ValueError, OSError) as error:
+        fail(str(error))
+    print(json.dumps(texts.as_json(done)) if as_json else texts.as_text(done))

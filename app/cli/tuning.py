@@ -1,0 +1,137 @@
+"""What `reembody tune` does: a configuration in, a better one out."""
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from app.cli.tune_progress import tell_progress
+from app.cli.tuned_storage import check_key, save_tuned, stored_avatar
+from app.protocol.avatar import avatar_text
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.defaults import default_configuration
+from app.science.avatar.figure import Figure
+from app.science.avatar.tuning import (
+    Assessment,
+    Followed,
+    TuningOptions,
+    TuningReport,
+    assess,
+    follow_capture,
+)
+from app.science.avatar.tuning import tune as tune_avatar
+from app.science.skeleton import Movement, build_skeleton, resample
+
+_RATE_HZ = 90.0
+"""Of a headset."""
+
+
+@dataclass(frozen=True)
+class TuneOrder:
+    """What was asked for; see the options of the command."""
+
+    avatar: str | None
+    stature_m: float
+    mass_kg: float | None
+    heuristic: str
+    mirror: bool
+    evaluate: bool
+    attempts: int
+    workers: int
+    capture: Path | None
+    out: Path | None
+    save: str | None
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """What came of it.
+
+    Attributes:
+        order: what was asked for.
+        report: of the tuning, or of the gains as they were.
+        tracking: of the capture, if there was one.
+        cpu_s: processor time of the tuning.
+        saved: the version that was stored, as `key, version n`.
+    """
+
+    order: TuneOrder
+    report: TuningReport | Assessment
+    tracking: Followed | None
+    cpu_s: float
+    saved: str | None
+
+
+def carry_out(order: TuneOrder) -> Tuned:
+    """Tune, write and store.
+
+    Raises ValueError for what cannot be tuned so, ReembodyError for an unknown avatar or a database
+    that cannot be worked with, OSError where the file cannot be written, TuningCancelled.
+    """
+    options = TuningOptions(
+        heuristic=order.heuristic,
+        mirror=order.mirror,
+        attempts=order.attempts,
+        workers=order.workers,
+    )
+    if order.evaluate and (order.save is not None or order.out is not None):
+        raise ValueError("--evaluate changes nothing, so there is nothing to --save or write --out")
+    if order.save is not None:
+        check_key(order.save)
+    configuration, figure = _avatar(order)
+    # A capture that cannot be read is said before the tuning.
+    movement = None if order.capture is None else _movement(order.capture, order.stature_m)
+    started_s = time.process_time()
+    with _interruptible() as interrupted, tell_progress() as progress:
+        work: Callable[..., TuningReport | Assessment] = assess if order.evaluate else tune_avatar
+        report = work(
+            configuration,
+            order.stature_m,
+            options,
+            figure=figure,
+            wall_s=time.monotonic,
+            progress=progress,
+            cancelled=interrupted,
+        )
+    cpu_s = time.process_time() - started_s
+    tracking = None
+    if movement is not None:
+        tracking = follow_capture(report.configuration, order.stature_m, movement, figure=figure)
+    if order.out is not None:
+        order.out.write_text(avatar_text(report.configuration), encoding="utf-8")
+    saved = None
+    if order.save is not None and isinstance(report, TuningReport):
+        saved = save_tuned(order.save, report, tracking)
+    return Tuned(order, report, tracking, cpu_s, saved)
+
+
+def _avatar(order: TuneOrder) -> tuple[Configuration, Figure | None]:
+    found, figure = default_configuration(), None
+    if order.avatar is not None:
+        found, figure = stored_avatar(order.avatar)
+    if order.mass_kg is not None:
+        found = replace(found, total_mass_kg=order.mass_kg)
+    return found, figure
+
+
+def _movement(capture: Path, stature_m: float) -> Movement:
+    from app.rehearsal.captured import captured_movement
+
+    return resample(captured_movement(capture, build_skeleton(stature_m)), _RATE_HZ)
+
+
+@contextmanager
+def _interruptible() -> Iterator[Callable[[], bool]]:
+    """Ctrl-C asks the experiments to end, instead of cutting one off."""
+    asked = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield asked.is_set
+        return
+    before = signal.signal(signal.SIGINT, lambda *_: asked.set())
+    try:
+        yield asked.is_set
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,0 +1,122 @@
+"""The commands `walk fit`, `walk sample` and `walk evaluate`: parse, call, print."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from app.cli.failing import fail
+
+walk = typer.Typer(
+    help="Learns how people walk, and predicts how others will.", no_args_is_help=True
+)
+_Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
+_Walks = Annotated[
+    list[Path],
+    typer.Argument(help="Tracks (CSV: time_s, x_m, y_m, subject) or captures of any format."),
+]
+_Scene = Annotated[
+    str | None, typer.Option(help="Scene file, or the key of a shipped scene; else open floor.")
+]
+_People = Annotated[
+    Path | None, typer.Option(help="CSV: subject, stature_m, and file where it does not say.")
+]
+_Seed = Annotated[int, typer.Option(help="Seed of everything that is drawn.", min=0)]
+
+
+@walk.command()
+def fit(
+    walks: _Walks,
+    out: Annotated[Path, typer.Option(help="Model file to write.")],
+    scene: _Scene = None,
+    people: _People = None,
+    seed: _Seed = 1,
+    k: Annotated[int, typer.Option(help="Neighbours that answer a question.", min=1)] = 100,
+    entries: Annotated[
+        int, typer.Option(help="Walks and blends of them in the space.", min=1, max=50_000)
+    ] = 5000,
+    reading: Annotated[
+        str, typer.Option(help="Of maps as suitability: chosen, paper or time-aware.")
+    ] = "chosen",
+    as_json: _Json = False,
+) -> None:
+    """Fit a model of how people walk on walks of two people or more."""
+    from app.cli import walk_texts as texts
+    from app.cli.walk_orders import FitOrder, WalksOrder, carry_out_fit
+
+    order = FitOrder(WalksOrder(tuple(walks), scene, people), out, seed, k, entries, reading)
+    try:
+        done = carry_out_fit(order, _tell if sys.stderr.isatty() else None)
+    except (ValueError, OSError) as error:
+        fail(str(error))
+    print(json.dumps(texts.fit_json(done)) if as_json else texts.fit_text(done))
+
+
+@walk.command()
+def sample(
+    model: Annotated[Path, typer.Argument(help="A file that `walk fit` wrote.")],
+    length: Annotated[float | None, typer.Option(help="A straight path, m.")] = None,
+    path: Annotated[
+        str | None, typer.Option(help="A path by its points, as in '0,0 0,2 1.5,3', m.")
+    ] = None,
+    scene: _Scene = None,
+    start: Annotated[
+        str | None, typer.Option("--from", help="Place of the scene, or x,y in m.")
+    ] = None,
+    goal: Annotated[
+        str | None, typer.Option("--to", help="Place of the scene, or x,y in m.")
+    ] = None,
+    stature: Annotated[float | None, typer.Option(help="Of the walker, m.")] = None,
+    count: Annotated[int, typer.Option(help="How many draws.")] = 100,
+    which: Annotated[str, typer.Option("--model", help="prob, adapt or stat.")] = "prob",
+    seed: _Seed = 1,
+    as_json: _Json = False,
+) -> None:
+    """Draw steering parameters and travel times for a path."""
+    from app.cli import walk_texts as texts
+    from app.cli.walk_orders import SampleOrder, carry_out_sample
+
+    order = SampleOrder(model, length, path, scene, start, goal, stature, count, which, seed)
+    try:
+        done = carry_out_sample(order)
+    except (ValueError, OSError) as error:
+        fail(str(error))
+    print(json.dumps(texts.sample_json(done)) if as_json else texts.sample_text(done))
+
+
+@walk.command()
+def evaluate(
+    model: Annotated[Path, typer.Argument(help="A file that `walk fit` wrote.")],
+    walks: _Walks,
+    scene: _Scene = None,
+    people: _People = None,
+    draws: Annotated[int, typer.Option(help="Draws for each walk.")] = 200,
+    seed: _Seed = 1,
+    even_fitted: Annotated[
+        bool, typer.Option("--even-fitted", help="Also on people the model was fitted on.")
+    ] = False,
+    as_json: _Json = False,
+) -> None:
+    """Compare predicted travel times with walks of other people."""
+    from app.cli import walk_texts as texts
+    from app.cli.walk_orders import WalksOrder, carry_out_evaluation
+
+    order = WalksOrder(tuple(walks), scene, people)
+    try:
+        fit_, result = carry_out_evaluation(
+            model, order, draws=draws, seed=seed, even_fitted=even_fitted
+        )
+    except (ValueError, OSError) as error:
+        fail(str(error))
+    print(
+        json.dumps(texts.evaluation_json(fit_, result))
+        if as_json
+        else texts.evaluation_text(fit_, result)
+    )
+
+
+def _tell(done: int, total: int) -> None:
+    sys.stderr.write(f"\rmaps: {done} of {total}" + ("\n" if done == total else ""))
+    sys.stderr.flush()

@@ -1,0 +1,158 @@
+"""What `reembody walk` reads: walks out of tracks and captures, people, scenes."""
+
+import csv
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from app.adapters.captures.capture import CaptureError
+from app.adapters.captures.files import read_capture_file
+from app.adapters.walks.scene_file import load_scene, load_shipped, shipped_scenes
+from app.adapters.walks.track_table import TrackReading, read_tracks
+from app.protocol.errors import ConfigError
+from app.science.rig import RigError
+from app.science.walking.capture_tracks import track_of_motion
+from app.science.walking.grid_planner import LazyThetaPlanner
+from app.science.walking.model import PlannedWalk, Track, Walk, WalkingError
+from app.science.walking.protocols import Planner
+from app.science.walking.scene import Scene, open_scene
+from app.science.walking.segmentation import walks_of
+from app.science.walking.tracks import Walker
+from app.science.walking.walks import planned_walk
+
+MOST_BYTES = 500_000_000
+_PERSON_COLUMNS = {"id", "subject", "person", "participant", "ped", "pers_id", "agent"}
+_TRACK_COLUMNS = ({"x", "x_m", "x_cm", "x_mm"}, {"y", "y_m", "y_cm", "y_mm"})
+
+
+@dataclass(frozen=True)
+class People:
+    """Who walked.
+
+    Attributes:
+        statures_m: subject to height.
+        subjects: file name to subject, for files that do not say.
+    """
+
+    statures_m: dict[str, float] = field(default_factory=dict)
+    subjects: dict[str, str] = field(default_factory=dict)
+
+
+def read_people(path: Path | None) -> People:
+    """Read a CSV with the columns subject, stature_m, and if wanted file.
+
+    Raises:
+        ValueError: a column is missing, or a height is no number.
+        OSError: it cannot be opened.
+    """
+    people = People()
+    if path is None:
+        return people
+    reader = csv.DictReader(io.StringIO(path.read_text(encoding="utf-8-sig")))
+    if "subject" not in (reader.fieldnames or ()):
+        raise ValueError(f"{path}: needs the columns subject, stature_m and, if wanted, file.")
+    for row in reader:
+        subject, told = (row["subject"] or "").strip(), (row.get("stature_m") or "").strip()
+        if told:
+            try:
+                people.statures_m[subject] = float(told)
+            except ValueError:
+                raise ValueError(
+                    f"{path}, line {reader.line_num}: stature_m is {told!r}, no number."
+                ) from None
+        if name := (row.get("file") or "").strip():
+            people.subjects[name] = subject
+    return people
+
+
+def read_scene(key: str | None) -> Scene | None:
+    """A scene that is shipped, by its key, or a scene file; None for the open floor.
+
+    Raises:
+        ValueError: the file is no scene; all its problems, each with its line.
+        OSError: it cannot be opened.
+    """
+    if key is None:
+        return None
+    if key in shipped_scenes():
+        return load_shipped(key)
+    path = Path(key)
+    if not path.exists():
+        known = ", ".join(shipped_scenes())
+        raise ValueError(f"--scene {key}: no such file; shipped with the product are {known}.")
+    try:
+        return load_scene(path.read_text(encoding="utf-8-sig"))
+    except ConfigError as error:
+        told = "; ".join(f"line {one.line}: {one.message}" for one in error.problems)
+        raise ValueError(f"{path}: {told}") from error
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path}: no text in UTF-8 ({error})") from error
+
+
+def read_walks(files: Sequence[Path], people: People) -> list[Walk]:
+    """All walks of some files, in their order.
+
+    Raises:
+        ValueError: a file cannot be used, or nobody walks in it.
+        OSError: one cannot be opened.
+    """
+    walks = []
+    for path in files:
+        found = [walk for track in _tracks(path, people) for walk in walks_of(track)]
+        if not found:
+            raise ValueError(
+                f"{path}: nobody walks in it; a walk leads 0.25 m or farther from where it begins."
+            )
+        walks += found
+    return walks
+
+
+def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
+    """Plan each walk's path; on the open floor where there is no scene.
+
+    Raises:
+        ValueError: the scene is closed between a walk's ends, or one of them is in an obstacle.
+    """
+    planner = None if scene is None else LazyThetaPlanner(scene)
+    entries = []
+    for number, walk in enumerate(walks, start=1):
+        used: Planner = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
+        try:
+            entries.append(planned_walk(walk, used))
+        except WalkingError as error:
+            raise ValueError(
+                f"walk {number}, of {walk.subject} ({walk.source}): {error}"
+            ) from error
+    return entries
+
+
+def _tracks(path: Path, people: People) -> list[Track]:
+    try:
+        header = _header(path)
+        if all(header & names for names in _TRACK_COLUMNS) or path.suffix.lower() == ".txt":
+            return _table(path, header, people)
+        subject = people.subjects.get(path.name, path.stem)
+        walker = Walker(subject, path.name, people.statures_m.get(subject))
+        return [track_of_motion(read_capture_file(path).motion, walker)]
+    except (CaptureError, WalkingError, RigError) as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def _header(path: Path) -> set[str]:
+    """Cells of a file's first line, small letters."""
+    if path.stat().st_size > MOST_BYTES:
+        raise CaptureError(f"larger than {MOST_BYTES} bytes, which is the limit.")
+    with path.open("rb") as file:
+        first = file.readline(2000).decode("utf-8-sig", errors="replace").lower()
+    return {cell.strip().strip('"') for cell in first.replace(";", ",").split(",")}
+
+
+def _table(path: Path, header: set[str], people: People) -> list[Track]:
+    reading = TrackReading(statures_m=people.statures_m)
+    tracks = read_tracks(path.read_bytes(), name=path.name, reading=reading)
+    if path.suffix.lower() == ".txt" or header & _PERSON_COLUMNS:
+        return tracks
+    # Nobody is named in it: it is about one person, who has the file's name.
+    subject = people.subjects.get(path.name, path.stem)
+    return [replace(tracks[0], subject=subject, stature_m=people.statures_m.get(subject))]

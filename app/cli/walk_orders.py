@@ -1,0 +1,224 @@
+"""What `reembody walk` does: fit a model, draw walks from it, compare it with walks."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from app.adapters.walks.model_file import read_model, write_model
+from app.cli.walk_input import People, planned, read_people, read_scene, read_walks
+from app.science.walking.database import check_persons, database_of
+from app.science.walking.evaluation import Evaluation, evaluate
+from app.science.walking.fitting import FitOptions, FittedWalking, fitted
+from app.science.walking.following import SteeringFollower
+from app.science.walking.grid_planner import LazyThetaPlanner
+from app.science.walking.maps import MapMaker, maps_of
+from app.science.walking.model import (
+    LENGTH,
+    STATURE,
+    TURNING,
+    PlannedPath,
+    PlannedWalk,
+    Walk,
+    WalkingError,
+)
+from app.science.walking.prediction import Prediction, Predictor
+from app.science.walking.protocols import Point
+from app.science.walking.scene import Scene
+from app.science.walking.suitability import PAPER, TIME_AWARE, SuitabilityOptions
+from app.science.walking.synthetic_walks import straight_path
+from app.science.walking.walks import dependencies_of
+
+READINGS: dict[str, SuitabilityOptions | None] = {
+    "chosen": None,
+    "paper": PAPER,
+    "time-aware": TIME_AWARE,
+}
+MODELS = ("stat", "adapt", "prob")
+
+
+@dataclass(frozen=True)
+class WalksOrder:
+    """Where walks are."""
+
+    files: tuple[Path, ...]
+    scene: str | None = None
+    people: Path | None = None
+
+
+@dataclass(frozen=True)
+class FitOrder:
+    """How to fit, and where to."""
+
+    walks: WalksOrder
+    out: Path
+    seed: int = 1
+    k: int = 100
+    entries: int = 5000
+    reading: str = "chosen"
+
+
+@dataclass(frozen=True)
+class SampleOrder:
+    """What to ask a model for; see the options of the command."""
+
+    model: Path
+    length_m: float | None = None
+    points: str | None = None
+    scene: str | None = None
+    start: str | None = None
+    goal: str | None = None
+    stature_m: float | None = None
+    count: int = 100
+    which: str = "prob"
+    seed: int = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Fitted:
+    """A model that was written.
+
+    Attributes:
+        content_hash: of the file's content.
+        left_out: dependencies that are not known of all walks.
+        cut: walks that begin or end amid walking, with the recording.
+    """
+
+    order: FitOrder
+    fit: FittedWalking
+    content_hash: str
+    left_out: tuple[str, ...]
+    cut: int
+
+
+@dataclass(frozen=True, eq=False)
+class Sampled:
+    """Draws from a model."""
+
+    order: SampleOrder
+    fit: FittedWalking
+    path: PlannedPath
+    dependencies: dict[str, float]
+    prediction: Prediction
+
+
+def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None = None) -> Fitted:
+    """Fit a model and write it; raises ValueError or OSError, with nothing written."""
+    if order.reading not in READINGS:
+        raise ValueError(f"--reading {order.reading!r}: {', '.join(READINGS)} are valid")
+    if not order.out.parent.is_dir():
+        raise ValueError(f"--out {order.out}: there is no folder {order.out.parent}")
+    entries = _entries(order.walks)
+    names, left_out = _names(entries)
+    people = {entry.walk.subject for entry in entries}
+    if len(people) < 2:
+        # Said before the maps are made, which takes the time.
+        _one_person(entries[0].walk, len(entries))
+    follower = SteeringFollower()
+    maker = MapMaker(follower=follower)
+    maps = [one for _, one in maps_of(entries, maker, progress=progress)]
+    database = database_of(entries, maps, names)
+    check_persons(database)
+    options = FitOptions(order.seed, order.k, order.entries, READINGS[order.reading])
+    fit = fitted(database, options)
+    digest = write_model(order.out, fit, follower.rules)
+    cut = sum(not (one.walk.begins_still and one.walk.ends_still) for one in entries)
+    return Fitted(order, fit, digest, left_out, cut)
+
+
+def carry_out_sample(order: SampleOrder) -> Sampled:
+    """Draw from a model; raises ValueError or OSError."""
+    if order.which not in MODELS:
+        raise ValueError(f"--model {order.which!r}: {', '.join(MODELS)} are valid")
+    if not 1 <= order.count <= 100_000:
+        raise ValueError(f"--count {order.count}: 1 to 100000 are valid")
+    path = _path_of(order)
+    fit, rules, _ = read_model(order.model)
+    dependencies = dependencies_of(path, order.stature_m)
+    if STATURE in fit.database.names and order.stature_m is None:
+        raise ValueError(f"{order.model} depends on stature: give --stature in metres")
+    predictor = Predictor(getattr(fit, order.which), SteeringFollower(rules))
+    rng = np.random.default_rng(order.seed)
+    prediction = predictor.predict(path, dependencies, order.count, rng)
+    return Sampled(order, fit, path, dependencies, prediction)
+
+
+def carry_out_evaluation(
+    model: Path, walks: WalksOrder, *, draws: int, seed: int, even_fitted: bool
+) -> tuple[FittedWalking, Evaluation]:
+    """Compare a model with walks; raises ValueError or OSError."""
+    if not 1 <= draws <= 10_000:
+        raise ValueError(f"--draws {draws}: 1 to 10000 are valid")
+    fit, rules, _ = read_model(model)
+    entries = _entries(walks)
+    known = {entry.walk.subject for entry in entries} & set(fit.database.subjects)
+    if known and not even_fitted:
+        raise ValueError(
+            f"the model was fitted on {', '.join(sorted(known))}: its errors on them say nothing"
+            " about others. Give other people's walks, or --even-fitted"
+        )
+    rng = np.random.default_rng(seed)
+    follower = SteeringFollower(rules)
+    return fit, evaluate(
+        fit.models, follower, entries, rng, draws=draws, course_of=lambda one: _course(one)
+    )
+
+
+def _course(entry: PlannedWalk) -> str:
+    """Walks alike to a quarter of a metre are repetitions."""
+    return f"{round(4.0 * entry.path.length_m) / 4.0:g} m"
+
+
+def _entries(order: WalksOrder) -> list[PlannedWalk]:
+    people: People = read_people(order.people)
+    scene = read_scene(order.scene)
+    return planned(read_walks(order.files, people), scene)
+
+
+def _names(entries: list[PlannedWalk]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Dependencies that all walks have, and those that only some have."""
+    usual = (LENGTH, TURNING, STATURE)
+    everywhere = tuple(n for n in usual if all(n in entry.dependencies for entry in entries))
+    return everywhere, tuple(name for name in usual if name not in everywhere)
+
+
+def _one_person(walk: Walk, count: int) -> None:
+    raise WalkingError(
+        f"all {count} walks are of one subject, {walk.subject!r}. How people differ cannot be"
+        " learnt from one: give walks of two or more, and say who walks (a column `subject`, a"
+        " file for each person, or --people)"
+    )
+
+
+def _path_of(order: SampleOrder) -> PlannedPath:
+    ways = [order.length_m is not None, order.points is not None, order.scene is not None]
+    if sum(ways) != 1:
+        raise ValueError("give one of --length, --path and --scene with --from and --to")
+    if order.length_m is not None:
+        return straight_path(order.length_m)
+    if order.points is not None:
+        return PlannedPath(np.array([_point(text, "--path") for text in order.points.split()]))
+    scene = read_scene(order.scene)
+    if scene is None or order.start is None or order.goal is None:
+        raise ValueError("--scene needs --from and --to: a place of the scene, or x,y in metres")
+    start, goal = (_place(scene, order.start, "--from"), _place(scene, order.goal, "--to"))
+    return LazyThetaPlanner(scene).plan(start, goal)
+
+
+def _place(scene: Scene, text: str, option: str) -> Point:
+    if text in scene.places:
+        return scene.places[text]
+    try:
+        return _point(text, option)
+    except ValueError as error:
+        known = ", ".join(scene.places) or "none"
+        raise ValueError(f"{error}; places of scene {scene.name!r} are {known}") from None
+
+
+def _point(text: str, option: str) -> Point:
+    try:
+        x, y = (float(part) for part in text.split(","))
+    except ValueError:
+        raise ValueError(f"{option} {text!r}: a point is two numbers, x,y in metres") from None
+    return x, y

@@ -1,0 +1,32 @@
+"""What tells whether figures drawn before still show the data: it changes when a figure might."""
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.features.studies.service import newest_version, study_by_key
+from app.models import AlarmRow, Phase, PhaseLatency, PhaseQuality, StudySession
+
+State = tuple[object, ...]
+
+
+def state_of_data(db: Session, study_key: str, kind: str) -> State:
+    """What changes whenever a figure might: sessions, events in them, and computed summaries.
+
+    Corrections and erasures are events, too.
+    """
+    study = study_by_key(db, study_key)
+    sessions = (StudySession.study_id == study.id, StudySession.kind == kind)
+    counted = select(func.count(), func.coalesce(func.sum(StudySession.version), 0)).where(
+        *sessions
+    )
+    of_sessions = [
+        db.scalar(
+            select(func.count())
+            .select_from(table)
+            .join(StudySession, StudySession.id == table.session_id)
+            .where(*sessions)
+        )
+        for table in (PhaseQuality, Phase, PhaseLatency, AlarmRow)
+    ]
+    version = newest_version(db, study).number
+    return (version, *db.execute(counted).one(), *of_sessions)

@@ -1,0 +1,1 @@
+"""Configurations of avatars: named, versioned, imported and exported."""

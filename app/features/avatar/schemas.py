@@ -1,0 +1,117 @@
+"""Avatars' configurations as pages see them; the configuration itself as in its file."""
+
+from datetime import datetime
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from app.features.config_problems import ProblemView
+from app.protocol.avatar import AvatarFile
+
+MAX_FILE_CHARACTERS = 262_144
+MAX_VERSION = 1_000_000
+
+Origin = Literal["shipped", "tuned", "by_hand", "loaded"]
+Made = Literal["tuned", "by_hand", "loaded"]
+AvatarKey = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_-]{0,79}$")]
+AvatarTitle = Annotated[
+    str,
+    StringConstraints(
+        strip_whitespace=True, min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f]+$"
+    ),
+]
+Note = Annotated[
+    str, StringConstraints(max_length=2_000, pattern=r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f]*$")
+]
+
+
+class NewAvatarVersion(BaseModel):
+    """A configuration to append; `based_on` is the version that was on the page, 0 for none."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    based_on: Annotated[int, Field(ge=0, le=MAX_VERSION)]
+    origin: Made
+    note: Note = ""
+    configuration: AvatarFile
+
+
+class NewAvatar(BaseModel):
+    """A configuration under a new key; `title` is what people call it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    key: AvatarKey
+    title: AvatarTitle
+    origin: Made
+    note: Note = ""
+    configuration: AvatarFile
+
+
+class AvatarText(BaseModel):
+    """A configuration file as text."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    text: Annotated[str, Field(max_length=MAX_FILE_CHARACTERS)]
+
+
+class AvatarVersionView(BaseModel):
+    """One version of a configuration."""
+
+    number: int
+    content_hash: str
+    origin: Origin
+    note: str
+    by: str
+    at: datetime
+
+
+class AvatarSummary(BaseModel):
+    """A configuration in the list, as its newest version is.
+
+    `axes` counts its driven axes, `locked_axes` those that cannot move; `sessions` the sessions
+    of the reader's studies that used any of its versions' contents.
+    """
+
+    key: str
+    title: str
+    newest: AvatarVersionView
+    versions: int
+    axes: int
+    locked_axes: int
+    sessions: int
+
+
+class AvatarVersionDetail(AvatarVersionView):
+    """A version in full. `report`: what tuning measured and with which settings, if it was tuned.
+
+    `sessions` counts the sessions of the reader's studies that used this content.
+    """
+
+    key: str
+    title: str
+    configuration: AvatarFile
+    report: dict[str, Any] | None
+    sessions: int
+
+
+class AvatarView(BaseModel):
+    """A configuration with all its versions, newest first, and the newest in full."""
+
+    key: str
+    title: str
+    by: str
+    at: datetime
+    newest: AvatarVersionDetail
+    versions: list[AvatarVersionView]
+
+
+class AvatarCheck(BaseModel):
+    """Whether a file can be used; `known` are the (key, version) that have its content already."""
+
+    ok: bool
+    problems: list[ProblemView] = []
+    content_hash: str | None = None
+    configuration: AvatarFile | None = None
+    known: list[tuple[str, int]] = []

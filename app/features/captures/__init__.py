@@ -1,0 +1,1 @@
+"""Captures of movement: stored once, read, mapped, retargeted and verified."""

@@ -1,0 +1,169 @@
+"""Captures as they travel to a page; lengths are metres unless a name says otherwise."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from fastapi import Query
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+Kind = Literal["skeleton", "markers", "bodies"]
+Up = Literal["x", "y", "z"]
+Origin = Literal["file", "format", "guessed", "chosen"]
+Shown = Literal["recorded", "skeleton"]
+ExportFormat = Literal["bvh", "csv"]
+JointSource = Literal["name", "hierarchy", "chosen"]
+
+FILE_NAME = r"^[^\x00-\x1f\x7f/\\]+$"
+FileName = Annotated[str, Query(min_length=1, max_length=200, pattern=FILE_NAME)]
+AVATAR = r"^[0-9]{2,3}(\.[0-9])?cm$"
+Avatar = Annotated[str, StringConstraints(pattern=AVATAR)]
+"""A stature, such as "165cm" or "172.5cm", from 50 to 260 cm."""
+MetresPerUnit = Annotated[float, Field(ge=1e-6, le=1000.0, allow_inf_nan=False)]
+Title = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+JointName = Annotated[str, StringConstraints(min_length=1, max_length=200)]
+MAX_AVATARS = 6
+MAX_BODY_JOINTS = 64
+
+
+class ReadingChoice(BaseModel):
+    """What somebody says about a file where the file does not, or says it wrongly.
+
+    `metres_per_unit`: the length of the file's unit; null to take the file's or a plausible one.
+    `up`: the file's upward axis; null to take the file's or its format's.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    metres_per_unit: MetresPerUnit | None = None
+    up: Up | None = None
+
+
+class CaptureChange(BaseModel):
+    """What is to change; what is left out stays. Another reading reads the file anew."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    title: Title | None = None
+    reading: ReadingChoice | None = None
+
+
+class ConventionView(BaseModel):
+    """One thing that had to be known to read the file, and who says so."""
+
+    value: str
+    origin: Origin
+
+
+class ConventionsView(BaseModel):
+    """By which conventions a file was read; everything after is y up, right-handed, SI."""
+
+    length: ConventionView
+    axes: ConventionView
+    rotations: ConventionView
+    rate: ConventionView
+
+
+class SkeletonView(BaseModel):
+    """The skeleton of a capture: its file's own, or one that was fitted to markers or bodies.
+
+    `parents` are indices into `joints`, -1 for the root. `unfitted` are joints that the markers do
+    not show; `residual_m` tells how far the fitted skeleton is from what was recorded (root mean
+    square), null for a skeleton of the file; `notes` what was trimmed, bridged or left out.
+    """
+
+    fingerprint: str
+    origin: Literal["file", "fitted"]
+    joints: list[str]
+    parents: list[int]
+    unfitted: list[str]
+    residual_m: float | None
+    notes: list[str]
+
+
+class CaptureSummary(BaseModel):
+    """What reading a capture found.
+
+    `names` are the joints, markers or rigid bodies of the file. `skeleton` is null where none could
+    be fitted; `no_skeleton` then says why. `observed` is the share of values that were seen.
+    """
+
+    names: list[str]
+    observed: float
+    conventions: ConventionsView
+    notes: list[str]
+    skeleton: SkeletonView | None
+    no_skeleton: str | None
+
+
+class CaptureListed(BaseModel):
+    """A capture in the list.
+
+    `format` is a key such as "bvh" or "motive-csv". `tracks` counts its joints, markers or bodies.
+    `has_skeleton`: it can be brought onto avatars. `size_bytes` is that of the file.
+    """
+
+    id: str
+    title: str
+    file_name: str
+    companion_name: str | None
+    format: str
+    kind: Kind
+    frames: int
+    rate_hz: float
+    duration_s: float
+    tracks: int
+    has_skeleton: bool
+    size_bytes: int
+    by: str
+    at: datetime
+
+
+class CaptureView(CaptureListed):
+    """A capture with what reading it found. `content_hash` is the SHA-256 of the file."""
+
+    content_hash: str
+    reading: ReadingChoice
+    summary: CaptureSummary
+
+
+class CapturePage(BaseModel):
+    """Captures, the newest first, and how many there are in all."""
+
+    captures: list[CaptureListed]
+    total: int
+
+
+class JointMapWish(BaseModel):
+    """A joint map to save: body joint -> joint of the skeleton, decided on `version`."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    joint_map: dict[JointName, JointName] = Field(max_length=MAX_BODY_JOINTS)
+    version: int = Field(ge=0, le=2**31 - 1)
+
+
+class JointMapView(BaseModel):
+    """Which joint of a skeleton plays which part of the body, for every capture of this skeleton.
+
+    `version` counts what was saved, 0 before; `chosen` is false while the map is the proposal.
+    `sources` tells of each mapped body joint whether its name, its place in the hierarchy, or
+    somebody chose it. `usable` is false where too little is mapped to bring it onto an avatar, and
+    `missing` says what.
+    """
+
+    fingerprint: str
+    version: int
+    chosen: bool
+    by: str | None
+    at: datetime | None
+    joint_map: dict[str, str]
+    proposal: dict[str, str]
+    sources: dict[str, JointSource]
+    body_joints: list[str]
+    rig_joints: list[str]
+    rig_parents: list[int]
+    unmapped_body_joints: list[str]
+    unmapped_rig_joints: list[str]
+    usable: bool
+    missing: list[str]
+    captures: int

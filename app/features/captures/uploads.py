@@ -1,0 +1,100 @@
+"""Taking an upload: onto the disk as it comes, never whole into memory, hashed on the way."""
+
+import hashlib
+import tempfile
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from anyio.to_thread import run_sync
+from starlette.requests import ClientDisconnect
+
+from app.errors import InvalidInput, NotDurable
+
+BLOCK_BYTES = 1024 * 1024
+
+
+@dataclass(frozen=True)
+class Uploaded:
+    """A file on disk, its SHA-256 and its size in bytes."""
+
+    path: Path
+    hash: str
+    size: int
+
+
+@asynccontextmanager
+async def uploaded(
+    body: AsyncIterator[bytes], companion_bytes: int | None
+) -> AsyncIterator[tuple[Uploaded, ...]]:
+    """The files of a request's body, in a folder that is gone afterwards.
+
+    The last `companion_bytes` are a file of their own. Raises InvalidInput where a file is empty or
+    the sender goes away, NotDurable where there is no room for it.
+    """
+    folder = await run_sync(_new_folder)
+    try:
+        whole = Path(folder.name) / "capture"
+        size = await _received_whole(body, whole)
+        if size <= (companion_bytes or 0):
+            raise InvalidInput(
+                "the file is empty" if companion_bytes is None else "the first file is empty",
+                value=size,
+                valid="the file, then its companion if there is one",
+                remedy="Send the file as the body of the request.",
+            )
+        yield await run_sync(_split, whole, size, companion_bytes)
+    finally:
+        await run_sync(folder.cleanup)
+
+
+def _new_folder() -> "tempfile.TemporaryDirectory[str]":
+    return tempfile.TemporaryDirectory(prefix="reembody-capture-")
+
+
+async def _received_whole(body: AsyncIterator[bytes], to: Path) -> int:
+    try:
+        return await _received(body, to)
+    except ClientDisconnect as error:
+        raise InvalidInput("the upload broke off", remedy="Send the file again.") from error
+    except OSError as error:
+        raise NotDurable(
+            f"the upload could not be put on the disk: {error.strerror}",
+            remedy="Free some space for temporary files on the server, then try again.",
+        ) from error
+
+
+async def _received(body: AsyncIterator[bytes], to: Path) -> int:
+    size, block = 0, bytearray()
+    file: BinaryIO = await run_sync(to.open, "wb")
+    try:
+        async for piece in body:
+            size += len(piece)
+            block += piece
+            if len(block) >= BLOCK_BYTES:
+                await run_sync(file.write, bytes(block))
+                block.clear()
+        await run_sync(file.write, bytes(block))
+    finally:
+        await run_sync(file.close)
+    return size
+
+
+def _split(whole: Path, size: int, companion_bytes: int | None) -> tuple[Uploaded, ...]:
+    if companion_bytes is None:
+        return (_measured(whole),)
+    beside = whole.with_name("companion")
+    with whole.open("r+b") as file, beside.open("wb") as companion:
+        file.seek(size - companion_bytes)
+        while block := file.read(BLOCK_BYTES):
+            companion.write(block)
+        file.truncate(size - companion_bytes)
+    return (_measured(whole), _measured(beside))
+
+
+def _measured(path: Path) -> Uploaded:
+    with path.open("rb") as file:
+        digest: Any = hashlib.file_digest(file, "sha256")
+    return Uploaded(path, digest.hexdigest(), path.stat().st_size)

@@ -1,0 +1,1 @@
+"""Humanoid models that lend avatars their body: uploaded once, measured, named by their hash."""

@@ -1,0 +1,1 @@
+"""Answers that were collected elsewhere: read, mapped, checked, taken in as a whole, undone."""

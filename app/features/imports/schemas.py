@@ -1,0 +1,249 @@
+"""What is said of a file of answers, what was found in it, and imports as they travel."""
+
+from datetime import date, datetime
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+
+MAX_TEXT = 1_500_000
+MAX_SETS = 24
+Name = Annotated[str, StringConstraints(min_length=1, max_length=200)]
+Word = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+Short = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80)]
+Reason = Annotated[str, StringConstraints(strip_whitespace=True, min_length=3, max_length=2000)]
+DateOrder = Literal["iso", "day_first", "month_first"]
+
+
+class _Body(BaseModel):
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+class ColumnSet(_Body):
+    """Columns that make one form: item -> column. `condition`: of all forms of these columns."""
+
+    items: Annotated[dict[Short, Name], Field(min_length=1, max_length=200)]
+    condition: Short | None = None
+
+
+class Mapping(_Body):
+    """What the columns and words of a file mean.
+
+    A tidy file has one set of columns and a column of conditions; a wide one has a set of columns
+    for each condition. `conditions`: word of the file -> key of a condition of the study. `words`:
+    answer in words -> number. Numbers x become multiply * x + add, for scales that count elsewhere
+    from 1. `turned`: items that the file has turned round already; they are turned back, since the
+    formulas of the instrument turn them.
+    """
+
+    instrument: Short
+    participant: Name
+    condition: Name | None = None
+    date: Name | None = None
+    date_order: DateOrder = "iso"
+    sets: Annotated[list[ColumnSet], Field(min_length=1, max_length=MAX_SETS)]
+    conditions: Annotated[dict[Short, Short], Field(max_length=100)] = {}
+    words: Annotated[dict[Word, float], Field(max_length=200)] = {}
+    multiply: float = 1.0
+    add: float = 0.0
+    turned: Annotated[list[Short], Field(max_length=200)] = []
+    header_rows: Annotated[int, Field(ge=1, le=5)] = 1
+
+    @model_validator(mode="after")
+    def _one_way_to_a_condition(self) -> Self:
+        told = [one.condition for one in self.sets]
+        if self.condition is not None and any(told):
+            raise ValueError("give a column of conditions, or a condition to each set of columns")
+        if len(self.sets) > 1 and (None in told or len(set(told)) < len(told)):
+            raise ValueError("several sets of columns need a condition each, all different")
+        if self.multiply == 0.0:
+            raise ValueError("multiply cannot be 0")
+        return self
+
+
+class LookRequest(_Body):
+    """A file that is only looked at."""
+
+    text: Annotated[str, StringConstraints(min_length=1, max_length=MAX_TEXT)]
+    instrument: Short | None = None
+    header_rows: Annotated[int | None, Field(ge=1, le=5)] = None
+
+
+class CheckRequest(_Body):
+    """A file and what its columns mean."""
+
+    text: Annotated[str, StringConstraints(min_length=1, max_length=MAX_TEXT)]
+    mapping: Mapping
+
+
+class ImportRequest(CheckRequest):
+    """The same, to be taken in."""
+
+    file_name: Name
+
+
+class UndoRequest(_Body):
+    """Why an import is undone."""
+
+    reason: Reason
+
+
+class EraseImportedRequest(_Body):
+    """Whose imported answers go; `confirm` is the code, typed again."""
+
+    participant_code: Short
+    confirm: Short
+
+
+class ErasedImported(BaseModel):
+    """How many forms went."""
+
+    forms: int
+
+
+class FileColumn(BaseModel):
+    """A column: its name, the question that stands below it, and some of what is in it."""
+
+    name: str
+    label: str
+    filled: int
+    distinct: int
+    examples: list[str]
+
+
+class ImportView(BaseModel):
+    """An import. Undone ones have no forms any more."""
+
+    id: str
+    file_name: str
+    content_hash: str
+    instrument: str
+    instrument_version: int
+    forms: int
+    participants: int
+    imported_at: datetime
+    imported_by: str
+    undone_at: datetime | None
+    undone_by: str | None
+    undone_reason: str | None
+    mapping: Mapping
+
+
+class LookView(BaseModel):
+    """What a file holds, and a proposal for what it means.
+
+    `remembered`: the proposal is that of an earlier import. `proposal` has None where no column
+    could be told for the participants or for any item.
+    """
+
+    separator: str
+    header_rows: int
+    rows: int
+    columns: list[FileColumn]
+    first_rows: list[list[str]]
+    instrument: str
+    proposal: Mapping | None
+    remembered: bool
+    words: list[str]
+    condition_words: list[str]
+    same_file: ImportView | None
+
+
+class CellProblem(BaseModel):
+    """Why something in the file cannot be taken in as it is."""
+
+    line: int
+    column: str
+    value: str
+    message: str
+    remedy: str
+
+
+class Shift(BaseModel):
+    """Numbers x of the file would fit as multiply * x + add."""
+
+    multiply: float
+    add: float
+    why: str
+
+
+class FormPreview(BaseModel):
+    """A form as it would be stored."""
+
+    line: int
+    participant_code: str
+    condition: str
+    in_study: bool
+    answered_on: date | None
+    answers: dict[str, float | str | None]
+    scores: dict[str, float | None]
+
+
+class ConditionCount(BaseModel):
+    """A condition of the file; `in_study`: it is one of the study's."""
+
+    condition: str
+    in_study: bool
+    forms: int
+
+
+class CheckView(BaseModel):
+    """What an import would do. Nothing was stored. With problems it would be refused.
+
+    `reversed_items`: the instrument's formulas turn them round. `notes`: to be looked at.
+    """
+
+    forms: int
+    participants: int
+    skipped_rows: int
+    missing_answers: int
+    conditions: list[ConditionCount]
+    problems: list[CellProblem]
+    n_problems: int
+    unknown_words: list[str]
+    shift: Shift | None
+    reversed_items: list[str]
+    notes: list[str]
+    first_forms: list[FormPreview]
+
+
+class ConditionMean(BaseModel):
+    """A score in a condition, over participants; `low` and `high`: 95 % interval of the mean."""
+
+    condition: str
+    n: int
+    mean: float
+    sd: float | None
+    low: float | None
+    high: float | None
+
+
+class PairView(BaseModel):
+    """Two conditions against each other."""
+
+    a: str
+    b: str
+    n: int
+    w: float
+    p: float
+    p_holm: float
+    rank_biserial: float
+
+
+class ScoreResult(BaseModel):
+    """What a score came to. `test` is a sentence for a paper; without one `why_not` says why."""
+
+    score: str
+    title: str
+    means: list[ConditionMean]
+    n: int
+    left_out: list[str]
+    test: str | None
+    why_not: str | None
+    pairs: list[PairView]
+
+
+class ImportDetail(BaseModel):
+    """An import and what its scores came to."""
+
+    view: ImportView
+    results: list[ScoreResult]

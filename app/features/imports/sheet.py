@@ -1,0 +1,133 @@
+"""A file of answers as a table: which separator, which rows are head, which line is which.
+
+Survey tools write more than one header row: names, then the questions, then ids of their own. The
+last kind is known by its look; otherwise one row is head unless a person says more.
+"""
+
+import csv
+import io
+from collections import Counter
+from dataclasses import dataclass
+
+from app.errors import InvalidInput
+
+SEPARATORS = (",", ";", "\t")
+MAX_ROWS, MAX_COLUMNS, MAX_CELL = 20_000, 1000, 5000
+_TOOL_IDS = ('{"importid"', "{'importid'")
+
+
+@dataclass(frozen=True)
+class SheetRow:
+    """A row and the line of the file on which it ends, from 1."""
+
+    line: int
+    cells: list[str]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Named columns, the question below each name, and the rows."""
+
+    separator: str
+    header_rows: int
+    header: list[str]
+    labels: list[str]
+    rows: list[SheetRow]
+
+    def column(self, name: str) -> int:
+        """Where a column is; raises InvalidInput."""
+        if name not in self.header:
+            raise InvalidInput(
+                f"the file has no column {name!r}",
+                value=name,
+                valid=self.header,
+                remedy="Choose one of its columns. Was the file changed since it was mapped?",
+            )
+        return self.header.index(name)
+
+    def values(self, name: str) -> list[str]:
+        """What stands in a column, row by row."""
+        at = self.column(name)
+        return [row.cells[at].strip() for row in self.rows]
+
+
+def read_sheet(text: str, header_rows: int | None = None) -> Sheet:
+    """Read a file; raises InvalidInput with the line of what cannot be read."""
+    text = text.removeprefix("\ufeff")
+    separator = _separator(text)
+    rows = _rows(text, separator)
+    if not rows:
+        raise InvalidInput("the file is empty", remedy="Save the table as CSV UTF-8 with a header.")
+    heads = header_rows or _header_rows(rows)
+    header = [cell.strip() for cell in rows[0].cells]
+    _check_shape(rows, header, heads)
+    labels = [cell.strip() for cell in rows[1].cells] if heads > 1 else [""] * len(header)
+    return Sheet(separator, heads, header, labels, rows[heads:])
+
+
+def _separator(text: str) -> str:
+    first = next((line for line in io.StringIO(text) if line.strip()), "")
+    return max(SEPARATORS, key=first.count)
+
+
+def _rows(text: str, separator: str) -> list[SheetRow]:
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    rows: list[SheetRow] = []
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells):
+                rows.append(SheetRow(reader.line_num, cells))
+            if len(rows) > MAX_ROWS:
+                raise _too_long()
+    except csv.Error as error:
+        raise InvalidInput(
+            f"line {reader.line_num} cannot be read: {error}",
+            value=reader.line_num,
+            remedy="Close every quote; write a quote inside a quoted cell twice.",
+        ) from error
+    return rows
+
+
+def _too_long() -> InvalidInput:
+    return InvalidInput(
+        "the file has too many rows", valid=f"at most {MAX_ROWS}", remedy="Split it."
+    )
+
+
+def _header_rows(rows: list[SheetRow]) -> int:
+    for at in (1, 2):
+        if at < len(rows):
+            cells = [cell.strip().lower() for cell in rows[at].cells if cell.strip()]
+            if cells and sum(cell.startswith(_TOOL_IDS) for cell in cells) * 2 > len(cells):
+                return at + 1
+    return 1
+
+
+def _check_shape(rows: list[SheetRow], header: list[str], heads: int) -> None:
+    if len(header) > MAX_COLUMNS:
+        raise InvalidInput("the file has too many columns", valid=f"at most {MAX_COLUMNS}")
+    doubled = [name for name, count in Counter(header).items() if count > 1 or not name]
+    if doubled:
+        raise InvalidInput(
+            f"the column name {doubled[0]!r} is there more than once"
+            if doubled[0]
+            else "a column has no name",
+            value=doubled[0],
+            remedy="Give every column a name of its own in the first row.",
+        )
+    for row in rows[heads:]:
+        if len(row.cells) != len(header):
+            raise InvalidInput(
+                f"line {row.line} has {len(row.cells)} cells, but the header has {len(header)}",
+                value=row.line,
+                valid=len(header),
+                remedy="Give every row one cell for each column; quote text with separators.",
+            )
+        if any(len(cell) > MAX_CELL or "\0" in cell for cell in row.cells):
+            raise InvalidInput(
+                f"line {row.line} has a cell that is too long or no text",
+                value=row.line,
+                valid=f"text of at most {MAX_CELL} characters",
+            )
+    if len(rows) <= heads:
+        raise InvalidInput("the file has a header but no rows", valid="at least one row of answers")

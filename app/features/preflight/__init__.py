@@ -1,0 +1,1 @@
+"""What should be in order before a participant puts the headset on."""

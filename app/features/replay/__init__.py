@@ -1,0 +1,1 @@
+"""A phase looked at again: what moved, and what happened in step with it."""

@@ -1,0 +1,1 @@
+"""What takes how much room, and for how many more sessions there is some."""

@@ -1,0 +1,80 @@
+"""The tables of the database by what is in them, as people think of it.
+
+A table of a later migration has to be put here; a test compares.
+"""
+
+from typing import Literal
+
+Family = Literal["samples", "results", "answers", "events", "captures", "setup"]
+
+FAMILIES: dict[Family, tuple[str, ...]] = {
+    # Movement, as the headset sent it.
+    "samples": (
+        "telemetry_batches",
+        "telemetry_chunks",
+        "telemetry_streams",
+        "client_reports",
+        "clock_probes",
+    ),
+    # What was told from it, phase by phase.
+    "results": (
+        "completions",
+        "contacts",
+        "joint_errors",
+        "phase_latencies",
+        "phase_quality",
+        "phases",
+    ),
+    "answers": (
+        "answer_corrections",
+        "answer_imports",
+        "answers",
+        "imported_forms",
+        "scores",
+        "submissions",
+    ),
+    # The record of each session, and that of the lab.
+    "events": (
+        "alarms",
+        "audit_entries",
+        "audit_head",
+        "session_contents",
+        "session_events",
+        "sessions",
+    ),
+    "captures": (
+        "capture_contents",
+        "capture_pieces",
+        "captures",
+        "humanoids",
+        "joint_maps",
+        "walk_sets",
+        "walking_models",
+        "walking_scenes",
+    ),
+    "setup": (
+        "accounts",
+        "alembic_version",
+        "avatar_versions",
+        "avatars",
+        "calibrations",
+        "copies_made",
+        "devices",
+        "erasures",
+        "instrument_versions",
+        "invitations",
+        "ledger_slots",
+        "ledgers",
+        "login_tokens",
+        "pairing_codes",
+        "participants",
+        "slot_attempts",
+        "studies",
+        "study_members",
+        "study_versions",
+        "suggestions",
+    ),
+}
+FAMILY_OF: dict[str, Family] = {
+    table: family for family, tables in FAMILIES.items() for table in tables
+}

@@ -1,0 +1,69 @@
+"""What a stored version of a study asks for, unpacked once: see `unchanging`."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import NotFound
+from app.features.instruments.service import instrument_of
+from app.features.unchanging import Unchanging
+from app.models import InstrumentVersion, StudyVersion
+from app.protocol import StudyProtocol, parse_study_json
+from app.science.instruments import Instrument
+
+_VERSIONS, _INSTRUMENTS = 64, 512
+
+
+@dataclass(frozen=True)
+class VersionContent:
+    """A study version without its files. `instruments`: key -> hash of the wording it uses."""
+
+    protocol: StudyProtocol
+    instruments: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class UsedInstrument:
+    """The wording that a study version uses: its row's id, typed, and as it travels to a page."""
+
+    version_id: str
+    instrument: Instrument
+    definition: Mapping[str, Any]
+
+
+_contents: Unchanging[str, VersionContent] = Unchanging(_VERSIONS)
+_used: Unchanging[tuple[str, str], UsedInstrument] = Unchanging(_INSTRUMENTS)
+
+
+def version_content(db: Session, version_id: str) -> VersionContent:
+    """The content of a study version that exists."""
+    return _contents.get(db, version_id, lambda: _read_content(db, version_id))
+
+
+def used_instrument(db: Session, version_id: str, key: str) -> UsedInstrument:
+    """The wording of instrument `key` in a study version; raises NotFound if it uses none."""
+    return _used.get(db, (version_id, key), lambda: _read_used(db, version_id, key))
+
+
+def _read_content(db: Session, version_id: str) -> VersionContent:
+    version = db.get_one(StudyVersion, version_id)
+    return VersionContent(parse_study_json(version.canonical_json), dict(version.instruments))
+
+
+def _read_used(db: Session, version_id: str, key: str) -> UsedInstrument:
+    instruments = version_content(db, version_id).instruments
+    row = db.scalar(
+        select(InstrumentVersion).where(
+            InstrumentVersion.key == key,
+            InstrumentVersion.content_hash == instruments.get(key),
+        )
+    )
+    if row is None:
+        raise NotFound(
+            f"the study uses no instrument {key!r}", value=key, valid=sorted(instruments)
+        )
+    return UsedInstrument(row.id, instrument_of(row), json.loads(row.canonical_json))

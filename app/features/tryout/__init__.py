@@ -1,0 +1,1 @@
+"""A scripted participant in this very server, so that newcomers see a session."""

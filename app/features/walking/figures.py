@@ -1,0 +1,78 @@
+"""In a process of its own: what is told of a set of walks and of a fitted model."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from app.science.walking.census import census
+from app.science.walking.fitting import FittedWalking
+from app.science.walking.leave_one_out import (
+    LeftOut,
+    neighbours_left_out,
+    nodes_left_out,
+    people_left_out,
+)
+from app.science.walking.model import PlannedWalk
+
+Json = dict[str, Any]
+
+
+def walks_told(entries: Sequence[PlannedWalk]) -> Json:
+    """A `WalksSummary` of walks."""
+    walks = [entry.walk for entry in entries]
+    names = sorted({name for entry in entries for name in entry.dependencies})
+    everywhere = [name for name in names if all(name in entry.dependencies for entry in entries)]
+    ranges = {name: _range([entry.dependencies[name] for entry in entries]) for name in everywhere}
+    return {
+        "walks": len(walks),
+        "people": len({walk.subject for walk in walks}),
+        "cut_by_recording": sum(not (walk.begins_still and walk.ends_still) for walk in walks),
+        "duration_s": _range([walk.duration_s for walk in walks]),
+        "speed_m_s": _range([walk.length_m / walk.duration_s for walk in walks]),
+        "dependencies": ranges,
+        "missing_dependencies": [name for name in names if name not in everywhere],
+        "census": asdict(census([entry.path.length_m for entry in entries])),
+    }
+
+
+def model_told(fit: FittedWalking, digest: str) -> Json:
+    """A `ModelSummary`."""
+    base, static = fit.database, fit.static
+    seeds = np.random.default_rng(fit.options.seed).spawn(2)
+    people = people_left_out(
+        base, fit.reading, seeds[0], entries=fit.options.entries, k=fit.options.k
+    )
+    return {
+        "model_hash": digest,
+        "walks": len(base),
+        "people": len(base.persons),
+        "duration_s": _range(base.durations_s),
+        "dependencies": {name: _range(base.vectors[:, at]) for at, name in enumerate(base.names)},
+        "parameters": [
+            {**asdict(one), "values": list(values)}
+            for one, values in zip(base.grid.parameters, base.grid.values, strict=True)
+        ],
+        "reading": asdict(fit.reading),
+        "readings": [{"reading": asdict(one.options), "crps_s": one.crps_s} for one in fit.scores],
+        "entries": len(fit.space.z),
+        "k": fit.space.k,
+        "static_vector": static.vector.tolist(),
+        "left_out": {
+            "neighbours": _left_out(neighbours_left_out(fit.space)),
+            "nodes": _left_out(nodes_left_out(fit.space, seeds[1])),
+            "people": _left_out(people),
+        },
+        "census": asdict(census(base.lengths_m.tolist())),
+    }
+
+
+def _left_out(found: LeftOut) -> Mapping[str, float]:
+    return {"mean_percent": found.mean, "sd_percent": found.sd, "entries": found.entries}
+
+
+def _range(values: Sequence[float] | np.ndarray[Any, np.dtype[np.float64]]) -> Json:
+    low, middle, high = np.quantile(np.asarray(values, dtype=np.float64), (0.0, 0.5, 1.0))
+    mean = float(np.mean(values))
+    return {"low": float(low), "median": float(middle), "high": float(high), "mean": mean}

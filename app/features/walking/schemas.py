@@ -1,0 +1,205 @@
+"""Scenes, sets of walks and models of walking as they travel to a page; SI throughout."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, WithJsonSchema
+
+Kind = Literal["human", "synthetic"]
+State = Literal["fitting", "stopped", "ready", "failed"]
+Stage = Literal["waiting", "walks", "maps", "blending"]
+Title = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=200)]
+Name = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max_length=80)]
+SceneKey = Annotated[str, StringConstraints(pattern=r"^[a-z0-9][a-z0-9-]{0,63}$")]
+RecordId = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{32}$")]
+Stature = Annotated[float, Field(ge=0.5, le=2.6, allow_inf_nan=False)]
+Seed = Annotated[int, Field(ge=0, le=2**31 - 1)]
+
+
+def _numbers(count: int) -> WithJsonSchema:
+    """So many numbers, said in words that every reader of the interface's document knows."""
+    numbers = {"type": "array", "items": {"type": "number"}}
+    return WithJsonSchema(numbers | {"minItems": count, "maxItems": count})
+
+
+Point = Annotated[tuple[float, float], _numbers(2)]
+Bounds = Annotated[tuple[float, float, float, float], _numbers(4)]
+Quartiles = Annotated[tuple[float, float, float], _numbers(3)]
+MAX_SCENE_CHARACTERS = 200_000
+MAX_CAPTURES = 200
+
+
+class _Asked(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class ObstacleView(BaseModel):
+    """Something nobody walks through: a convex outline, metres."""
+
+    name: str
+    corners_m: list[Point]
+
+
+class ScenePathView(BaseModel):
+    """A walk that people are asked for, between two places."""
+
+    name: str
+    start: str
+    goal: str
+
+
+class SceneListed(BaseModel):
+    """A scene in a list; `by` and `at` are null for those that come with the product."""
+
+    key: str
+    title: str
+    shipped: bool
+    by: str | None
+    at: datetime | None
+
+
+class SceneView(SceneListed):
+    """A scene; `bounds_m` is left, near, right, far, x to the right and y ahead."""
+
+    about: str
+    content_hash: str
+    bounds_m: Bounds
+    clearance_m: float
+    obstacles: list[ObstacleView]
+    places: dict[str, Point]
+    paths: list[ScenePathView]
+
+
+class NewScene(_Asked):
+    """The text of a scene file."""
+
+    text: Annotated[str, StringConstraints(min_length=1, max_length=MAX_SCENE_CHARACTERS)]
+
+
+class Range(BaseModel):
+    """Smallest, middle and largest value, and the mean."""
+
+    low: float
+    median: float
+    high: float
+    mean: float
+
+
+class CensusView(BaseModel):
+    """How long the planned paths are; a length on an edge belongs to the interval above it."""
+
+    count: int
+    edges_m: list[float]
+    counts: list[int]
+    share_up_to: list[float]
+    quartiles_m: Quartiles
+    cutoff_m: float
+    total_m: float
+
+
+class WalksSummary(BaseModel):
+    """What is in a set of walks.
+
+    `cut_by_recording`: walks that a recording begins or ends in. `missing_dependencies`: those that
+    only some walks have, so that no model can depend on them.
+    """
+
+    walks: int
+    people: int
+    cut_by_recording: int
+    duration_s: Range
+    speed_m_s: Range
+    dependencies: dict[str, Range]
+    missing_dependencies: list[str]
+    census: CensusView
+
+
+class PopulationView(BaseModel):
+    """A documented population of made-up walkers."""
+
+    name: str
+    about: str
+
+
+class PopulationOrigin(_Asked):
+    """Made-up walkers: whom, how often each walks each path, and in which scene.
+
+    `scene` null: the paper's laboratory of sixteen straight and curved walks.
+    """
+
+    kind: Literal["population"] = "population"
+    population: Name
+    people: Annotated[int, Field(ge=2, le=60)] = 12
+    repetitions: Annotated[int, Field(ge=1, le=10)] = 2
+    seed: Seed = 1
+    scene: SceneKey | None = None
+
+
+class CapturedPerson(_Asked):
+    """A capture, who walks in it, and where it leaves a choice, which tracked body is followed."""
+
+    capture_id: RecordId
+    subject: Name
+    stature_m: Stature | None = None
+    body: Name | None = None
+
+
+class CapturesOrigin(_Asked):
+    """Walks cut from stored captures."""
+
+    kind: Literal["captures"] = "captures"
+    captures: Annotated[list[CapturedPerson], Field(min_length=1, max_length=MAX_CAPTURES)]
+
+
+class TracksOrigin(BaseModel):
+    """A table of tracks that was brought in."""
+
+    kind: Literal["tracks"] = "tracks"
+    file_name: str
+    rate_hz: float | None = None
+    metres_per_unit: float | None = None
+    statures_m: dict[str, float] = Field(default_factory=dict)
+
+
+class NewWalkSet(_Asked):
+    """Walks to be made or to be cut from captures; tables of tracks are uploaded."""
+
+    title: Title
+    origin: Annotated[PopulationOrigin | CapturesOrigin, Field(discriminator="kind")]
+
+
+class WalkSetView(BaseModel):
+    """A set of walks. `kind` says whether people walked or a program."""
+
+    id: str
+    title: str
+    kind: Kind
+    origin: Annotated[PopulationOrigin | CapturesOrigin | TracksOrigin, Field(discriminator="kind")]
+    content_hash: str | None
+    summary: WalksSummary
+    by: str
+    at: datetime
+
+
+class FitChoice(_Asked):
+    """How to fit; the defaults are the paper's, but for the reading, which is chosen.
+
+    `steps`: values of each steering parameter, whose cube is the size of a map. `k`: neighbours.
+    `entries`: of the blending space, blends included. `reading`: how deviations are read as
+    suitability; "chosen" decides it by predicting people who were left out.
+    """
+
+    steps: Annotated[int, Field(ge=3, le=12)] = 10
+    k: Annotated[int, Field(ge=1, le=1000)] = 100
+    entries: Annotated[int, Field(ge=10, le=20_000)] = 5000
+    reading: Literal["chosen", "paper", "time-aware"] = "chosen"
+    seed: Seed = 1
+
+
+class NewModel(_Asked):
+    """A model to be fitted; `scene` is where tracks were walked, null for the open floor."""
+
+    title: Title
+    walk_set_id: RecordId
+    scene: SceneKey | None = None
+    options: FitChoice = Field(default_factory=FitChoice)

@@ -1,0 +1,91 @@
+"""A process of one's own for what computes long, which ends with the server.
+
+In a thread of the server it would hold up every running session: Python computes in one thread at a
+time. The process steps back where running sessions want the processor, and is made when something
+is there to do. One that has died is replaced at the next task.
+"""
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from typing import ParamSpec, TypeVar
+
+from app.collecting import start_unhurried
+
+NICENESS = 5
+"""Running sessions go first where both want the processor."""
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+@dataclass
+class Worker:
+    """One process that does one task after the other.
+
+    `prepare` runs in the process before its first task; it and every task must be functions of a
+    module, their arguments and answers picklable.
+    """
+
+    prepare: Callable[[], None] | None = None
+    _pool: ProcessPoolExecutor | None = None
+    _lock: threading.RLock = field(default_factory=threading.RLock)
+
+    def submit(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> "Future[T]":
+        """Have a task done after those that wait; a dead process fails it as BrokenProcessPool."""
+        with self._lock:
+            if self._pool is None:
+                context = multiprocessing.get_context("spawn")
+                self._pool = ProcessPoolExecutor(
+                    1, mp_context=context, initializer=_begin, initargs=(self.prepare,)
+                )
+            pool = self._pool
+            try:
+                future = pool.submit(task, *args, **kwargs)
+            except BrokenProcessPool:
+                self._forget(pool)
+                return self.submit(task, *args, **kwargs)
+        future.add_done_callback(lambda done: self._look(pool, done))
+        return future
+
+    def end(self) -> None:
+        """Let the process go, with what it is doing; the next task gets a new one."""
+        with self._lock:
+            pool, self._pool = self._pool, None
+        if pool is not None:
+            for process in list((getattr(pool, "_processes", None) or {}).values()):
+                # Not asked to end: it may be stuck where Python does not look at signals.
+                process.kill()
+            pool.shutdown(wait=True, cancel_futures=True)
+
+    def _look(self, pool: ProcessPoolExecutor, done: "Future[T]") -> None:
+        if not done.cancelled() and isinstance(done.exception(), BrokenProcessPool):
+            self._forget(pool)
+
+    def _forget(self, pool: ProcessPoolExecutor) -> None:
+        with self._lock:
+            if self._pool is pool:
+                self._pool = None
+
+
+def _begin(prepare: Callable[[], None] | None) -> None:
+    threading.Thread(target=_end_with_the_server, daemon=True).start()
+    # Ctrl-C reaches every process of a terminal; when to end is for the server to say.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(os, "nice"):
+        os.nice(NICENESS)
+    start_unhurried()
+    if prepare is not None:
+        prepare()
+
+
+def _end_with_the_server() -> None:
+    """A server that was killed cannot end anybody."""
+    server = multiprocessing.parent_process()
+    if server is not None:
+        server.join()
+        os._exit(1)

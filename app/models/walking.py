@@ -1,0 +1,77 @@
+"""How people walk: scenes, sets of walks, and the models that are fitted on them."""
+
+from typing import Any
+
+from sqlalchemy import JSON, CheckConstraint, ForeignKey, String, Text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from app.database import Base
+from app.models.types import Id, UtcTime
+
+
+class WalkingScene(Base):
+    """A floor with obstacles, as the text of its file; a key is given once."""
+
+    __tablename__ = "walking_scenes"
+
+    key: Mapped[str] = mapped_column(String(64), primary_key=True)
+    title: Mapped[str] = mapped_column(String(200))
+    text: Mapped[str] = mapped_column(Text)
+    content_hash: Mapped[str] = mapped_column(String(64))
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime]
+
+
+class WalkSetRow(Base):
+    """Walks to fit models on: people's tracks, kept as a table of text, or made-up walkers.
+
+    `origin` says where they come from and how they are read, `summary` what was found; both are as
+    in the schemas of the feature. `content_hash` is null for made-up walkers, whom their seed makes
+    anew.
+    """
+
+    __tablename__ = "walk_sets"
+    __table_args__ = (CheckConstraint("kind IN ('human', 'synthetic')", "kind"),)
+
+    id: Mapped[Id]
+    title: Mapped[str] = mapped_column(String(200))
+    kind: Mapped[str] = mapped_column(String(20))
+    origin: Mapped[dict[str, Any]] = mapped_column(JSON)
+    content_hash: Mapped[str | None] = mapped_column(
+        ForeignKey("capture_contents.hash"), index=True
+    )
+    summary: Mapped[dict[str, Any]] = mapped_column(JSON)
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime] = mapped_column(index=True)
+
+
+class WalkingModelRow(Base):
+    """A model of how people walk, while it is fitted and afterwards.
+
+    `walk_set` and `scene` are copies of what it is fitted on, so that it can be understood when
+    those are gone. `content_hash` is that of its file, null until it is ready; `trouble` is why it
+    could not be fitted.
+    """
+
+    __tablename__ = "walking_models"
+    __table_args__ = (
+        CheckConstraint("state IN ('fitting', 'stopped', 'ready', 'failed')", "state"),
+        CheckConstraint("kind IN ('human', 'synthetic')", "kind"),
+    )
+
+    id: Mapped[Id]
+    title: Mapped[str] = mapped_column(String(200))
+    kind: Mapped[str] = mapped_column(String(20))
+    state: Mapped[str] = mapped_column(String(20))
+    walk_set_id: Mapped[str | None] = mapped_column(ForeignKey("walk_sets.id"), index=True)
+    walk_set: Mapped[dict[str, Any]] = mapped_column(JSON)
+    scene: Mapped[dict[str, Any] | None] = mapped_column(JSON)
+    options: Mapped[dict[str, Any]] = mapped_column(JSON)
+    content_hash: Mapped[str | None] = mapped_column(
+        ForeignKey("capture_contents.hash"), index=True
+    )
+    summary: Mapped[dict[str, Any] | None] = mapped_column(JSON)
+    trouble: Mapped[str | None] = mapped_column(Text)
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime] = mapped_column(index=True)
+    ended_at: Mapped[UtcTime | None]

@@ -1,0 +1,52 @@
+"""What browsers are sent for the pages' scripts and styles."""
+
+import gzip
+from pathlib import Path
+
+import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
+
+from app.api.assets import Assets
+
+SCRIPT = "export const words = 'a script of some length';\n" * 100
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> TestClient:
+    """An application that serves a script, a tiny one, and a picture."""
+    (tmp_path / "page.js").write_text(SCRIPT)
+    (tmp_path / "tiny.js").write_text("export {};\n")
+    (tmp_path / "picture.png").write_bytes(bytes(4000))
+    app = FastAPI()
+    app.mount("/assets", Assets(directory=tmp_path))
+    return TestClient(app)
+
+
+def test_a_script_is_sent_compressed_and_may_be_kept(client: TestClient) -> None:
+    """The bytes on the wire are gzip of the file, and caches know what they depend on."""
+    with client.stream("GET", "/assets/page.js", headers={"accept-encoding": "gzip"}) as answer:
+        wire = b"".join(answer.iter_raw())
+    assert gzip.decompress(wire).decode() == SCRIPT
+    assert len(wire) < len(SCRIPT) / 10
+    assert answer.headers["content-encoding"] == "gzip"
+    assert answer.headers["vary"] == "Accept-Encoding"
+    assert answer.headers["content-type"].startswith("text/javascript")
+    assert "immutable" in answer.headers["cache-control"]
+
+
+@pytest.mark.parametrize("accepted", ["identity", "br", "gzip;q=0"])
+def test_who_takes_no_gzip_gets_the_file(client: TestClient, accepted: str) -> None:
+    """The file as it is, and a cache between does not give it to others as theirs."""
+    answer = client.get("/assets/page.js", headers={"accept-encoding": accepted})
+    assert "content-encoding" not in answer.headers
+    assert answer.text == SCRIPT
+    assert answer.headers["vary"] == "Accept-Encoding"
+
+
+@pytest.mark.parametrize("name", ["tiny.js", "picture.png"])
+def test_what_gains_nothing_is_left_as_it_is(client: TestClient, name: str) -> None:
+    """Small files, and those that are compressed already."""
+    answer = client.get(f"/assets/{name}", headers={"accept-encoding": "gzip"})
+    assert answer.status_code == 200
+    assert "content-encoding" not in answer.headers

@@ -1,0 +1,224 @@
+"""`reembody analyse`: figures, tables, what is left out, and what it refuses."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.cli.invoked import Invoked
+from tests.science.statistics.published import in_pingouin
+
+_COMMAND = Invoked("analyse")
+_FACTOR = ("--subject", "person", "--within", "latency", "--measure", "score")
+_SCORES = {"P1": (7, 6, 2), "P2": (6, 6, 3), "P3": (7, 5, 1), "P4": (5, 5, 2), "P5": (6, 4, 3)}
+
+
+def _written(folder: Path, lines: list[str], name: str = "data.csv") -> Path:
+    path = folder / name
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def _lines(separator: str = ",") -> list[str]:
+    """One row for each person and latency, the latencies out of order."""
+    rows = [separator.join(("person", "latency", "score", "remark"))]
+    for person, scores in _SCORES.items():
+        by_latency = dict(zip((0, 125, 350), scores, strict=True))
+        rows += [
+            separator.join((person, str(latency), str(by_latency[latency]), "ok"))
+            for latency in (350, 0, 125)
+        ]
+    return rows
+
+
+def test_json_has_every_test_of_one_factor(tmp_path: Path) -> None:
+    """The keys that scripts rely on, with levels in order of number."""
+    figures = _COMMAND.figures(_written(tmp_path, _lines()), *_FACTOR)
+    assert {"n", "design", "means", "friedman", "pairwise", "page", "rm_anova"} <= set(figures)
+    assert figures["n"] == 5
+    assert figures["design"]["within"] == [{"factor": "latency", "levels": ["0", "125", "350"]}]
+    assert [one["mean"] for one in figures["means"]] == pytest.approx([6.2, 5.2, 2.2])
+    friedman = figures["friedman"]
+    assert {"statistic", "df", "p", "p_asymptotic", "kendall_w", "method"} <= set(friedman)
+    assert (friedman["df"], friedman["method"]) == (2, "exact")
+    assert friedman["p"] < friedman["p_asymptotic"] < 0.01
+    pairs = figures["pairwise"]
+    assert [(one["a"], one["b"]) for one in pairs] == [
+        ("0", "125"),
+        ("0", "350"),
+        ("125", "350"),
+    ]
+    assert {"w", "p", "p_holm", "rank_biserial"} <= set(pairs[0])
+    assert (pairs[1]["w"], pairs[1]["p"], pairs[1]["rank_biserial"]) == (0.0, 0.0625, 1.0)
+    assert figures["page"]["p_falling"] < 0.01
+    assert [one["effect"] for one in figures["rm_anova"]] == ["latency"]
+    assert figures["warnings"] == []
+
+
+def test_two_factors_give_jamovis_anova_and_a_family_for_each_limb(tmp_path: Path) -> None:
+    """Pingouin's `rm_anova2`: F 33.852, 26.959, 12.632; Metric also at Pre and at Post."""
+    table = in_pingouin("rm_anova2")
+    path = _written(tmp_path, [",".join(table[0]), *(",".join(row.values()) for row in table)])
+    names = ("--subject", "Subject", "--within", "Metric", "--within", "Time")
+    figures = _COMMAND.figures(path, *names, "--measure", "Performance", "--art")
+    by_name = {one["effect"]: one for one in figures["rm_anova"]}
+    assert by_name["Time"]["f"] == pytest.approx(33.85228, abs=5e-6)
+    assert by_name["Metric"]["f"] == pytest.approx(26.95919, abs=5e-6)
+    assert by_name["Metric:Time"]["f"] == pytest.approx(12.63227, abs=5e-6)
+    assert [(one["factor"], one["at"]) for one in figures["families"]] == [
+        ("Metric", {}),
+        ("Time", {}),
+        ("Metric", {"Time": "Post"}),
+        ("Metric", {"Time": "Pre"}),
+    ]
+    assert figures["friedman"] == figures["families"][0]["friedman"]
+    assert figures["families"][1]["page"] is None
+    assert "contested" in figures["aligned_ranks"]["caution"]
+
+
+def test_each_latency_against_none(tmp_path: Path) -> None:
+    """Two comparisons adjusted for two, and the first that differs; an unknown level is refused."""
+    rows = [
+        f"P{who},{level},{who % 3 - level // 200}" for who in range(9) for level in (0, 125, 350)
+    ]
+    path = _written(tmp_path, ["person,latency,score", *rows])
+    planned = _COMMAND.figures(path, *_FACTOR, "--reference", "0.0")["against_reference"]
+    assert (planned["reference"], planned["first_that_differs"]) == ("0", "350")
+    assert [one["a"] for one in planned["comparisons"]] == ["125", "350"]
+    assert planned["comparisons"][1]["p_holm"] == pytest.approx(2.0 * 2.0 / 2**9)
+    text = _COMMAND.run(path, *_FACTOR, "--reference", "0").stdout
+    assert "First level that differs from 0: 350" in text
+    assert "there are: 0, 125, 350" in _COMMAND.refusal(path, *_FACTOR, "--reference", "90")
+
+
+def test_the_table_is_for_people(tmp_path: Path) -> None:
+    """Means with intervals, each test on its line, and how p was found."""
+    result = _COMMAND.run(_written(tmp_path, _lines()), *_FACTOR, "--art")
+    assert result.exit_code == 0, result.output
+    assert "score by latency (0, 125, 350): 5 of 5 subjects complete." in result.stdout
+    assert "Kendall's W" in result.stdout
+    assert "exact" in result.stdout
+    assert "0 - 350" in result.stdout
+    assert "GG eps" in result.stdout
+    assert "contested" in result.stdout
+    assert max(len(line) for line in result.stdout.splitlines()) <= 200
+
+
+def test_the_same_seed_gives_the_same_intervals(tmp_path: Path) -> None:
+    """And another seed others; nothing else changes."""
+    path = _written(tmp_path, _lines())
+    one, again = (_COMMAND.figures(path, *_FACTOR) for _ in range(2))
+    other = _COMMAND.figures(path, *_FACTOR, "--seed", 2)
+    assert one == again
+    assert one["means"] != other["means"]
+    assert one["friedman"] == other["friedman"]
+
+
+def test_the_order_of_rows_and_the_separator_do_not_matter(tmp_path: Path) -> None:
+    """Rows the other way round, semicolons, decimal commas, a byte order mark: one result."""
+    head, *rows = _lines()
+    plain = _COMMAND.figures(_written(tmp_path, [head, *rows]), *_FACTOR)
+    turned = _COMMAND.figures(_written(tmp_path, [head, *rows[::-1]]), *_FACTOR)
+    german = [line.replace(";7;", ";7,0;") for line in _lines(";")]
+    spreadsheet = _COMMAND.figures(
+        _written(tmp_path, ["\ufeff" + german[0], *german[1:]]), *_FACTOR
+    )
+    assert spreadsheet == plain
+    for key in ("friedman", "pairwise", "page"):
+        told = [
+            {name: value for name, value in one.items() if "ci" not in name}
+            for one in ([plain[key]] if isinstance(plain[key], dict) else plain[key])
+        ]
+        again = [
+            {name: value for name, value in one.items() if "ci" not in name}
+            for one in ([turned[key]] if isinstance(turned[key], dict) else turned[key])
+        ]
+        assert again == told
+
+
+@pytest.mark.parametrize("gone", ["P5,350,3,ok", "P5,350,NA,ok", "P5,350,,ok"])
+def test_a_missing_value_leaves_its_subject_out_by_the_rule(tmp_path: Path, gone: str) -> None:
+    """No row, NA or empty: listwise for Friedman, pairwise for Wilcoxon, and said."""
+    lines = [line for line in _lines() if line != "P5,350,3,ok"]
+    if "3" not in gone.split(",")[2]:
+        lines.append(gone)
+    figures = _COMMAND.figures(_written(tmp_path, lines), *_FACTOR)
+    assert (figures["n"], figures["design"]["subjects"]) == (4, 5)
+    assert [one["n"] for one in figures["pairwise"]] == [5, 4, 4]
+    assert [one["n_left_out"] for one in figures["pairwise"]] == [0, 1, 1]
+    assert figures["missing"]["left_out_listwise"] == ["P5"]
+    assert figures["missing"]["cells"] == 1
+    assert any("P5 lacks latency 350" in warning for warning in figures["warnings"])
+
+
+def test_several_rows_of_a_cell_are_averaged_and_said(tmp_path: Path) -> None:
+    """Two trials each; equal trials are replicates there."""
+    figures = _COMMAND.figures(_written(tmp_path, [*_lines(), *_lines()[1:]]), *_FACTOR)
+    assert figures["n"] == 5
+    assert [one["mean"] for one in figures["means"]] == pytest.approx([6.2, 5.2, 2.2])
+    assert figures["missing"]["averaged_cells"] == 15
+    assert any("15 of 15 cells have several values" in one for one in figures["warnings"])
+
+
+def test_differences_without_error_leave_the_ranks(tmp_path: Path) -> None:
+    """All people alike: no F, but Friedman's test, and a warning says why."""
+    lines = ["person,latency,score"]
+    lines += [f"P{who},{level},{who + level}" for who in range(4) for level in (0, 1, 3)]
+    figures = _COMMAND.figures(_written(tmp_path, lines), *_FACTOR)
+    assert figures["rm_anova"] == []
+    assert figures["friedman"]["kendall_w"] == pytest.approx(1.0)
+    assert any("same amount" in warning for warning in figures["warnings"])
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (("P3,125,5,ok", "P3,125,often,ok"), ("Line 10", "'score'", "'often'")),
+        (("P3,125,5,ok", "P3,125,5"), ("Line 10", "3 cells", "header has 4")),
+        (("P3,125,5,ok", "P2,125,6,ok"), ("Line 10 repeats line 7", "Remove one")),
+        (("P3,125,5,ok", " ,125,5,ok"), ("Line 10", "'person'", "names nothing")),
+        (("P3,125,5,ok", 'P3,125,"5,ok'), ("cannot be read", "Close every quote")),
+        (("person,", "who,"), ("no column 'person'", "who, latency, score, remark")),
+        (("remark", "score"), ("'score' stands 2 times", "rename")),
+    ],
+)
+def test_a_row_that_cannot_be_used_is_refused_by_its_line(
+    tmp_path: Path, change: tuple[str, str], words: tuple[str, ...]
+) -> None:
+    """Line, column and value, and exit code 2 with nothing on standard output."""
+    text = "\n".join(_lines())
+    assert change[0] in text
+    said = _COMMAND.refusal(_written(tmp_path, [text.replace(*change)]), *_FACTOR)
+    assert all(word in said for word in words), said
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        ([""], "is empty"),
+        ([",,"], "only empty cells"),
+        (["person,latency,score"], "no row"),
+        (["person,latency,score", "P1,0,1", "P1,125,2"], "one subject only, 'P1'"),
+        (["person,latency,score", "P1,0,1", "P2,0,2"], "one level only, '0'"),
+        (["person,latency,score", "P1,0,1", "P2,125,2"], "'P1', for example, lacks latency 125"),
+        (
+            ["person,latency,score", "P1,0,4", "P1,125,4", "P2,0,4", "P2,125,4"],
+            "'score' is 4 in every cell",
+        ),
+    ],
+)
+def test_a_table_with_too_little_is_refused(tmp_path: Path, lines: list[str], words: str) -> None:
+    """Each says what is needed."""
+    assert words in _COMMAND.refusal(_written(tmp_path, lines), *_FACTOR)
+
+
+def test_files_and_factors_that_cannot_be_are_refused(tmp_path: Path) -> None:
+    """A file that is not there or no text, three factors, one column twice."""
+    assert "nowhere.csv" in _COMMAND.refusal(tmp_path / "nowhere.csv", *_FACTOR)
+    binary = tmp_path / "binary.csv"
+    binary.write_bytes(b"\xff\xfe\x00")
+    assert "UTF-8" in _COMMAND.refusal(binary, *_FACTOR)
+    path = _written(tmp_path, _lines())
+    assert "one or two" in _COMMAND.refusal(
+        path, *_FACTOR, "--within", "remark", "--within", "score"
+    )
+    assert "all be different" in _COMMAND.refusal(path, *_FACTOR, "--within", "latency")

@@ -1,0 +1,20 @@
+"""When Python looks for garbage."""
+
+import subprocess
+import sys
+
+TOLD = """
+import gc
+usual = gc.get_threshold()
+from app.cli import main
+unhurried = gc.get_threshold()
+from app.collecting import settle
+settle()
+print(unhurried[0] > usual[0], gc.get_threshold() == usual, gc.get_freeze_count() > 1000)
+"""
+
+
+def test_seldom_while_starting_and_as_usual_from_then_on() -> None:
+    """A server that has started collects as Python does, apart from what is here to stay."""
+    said = subprocess.run([sys.executable, "-c", TOLD], capture_output=True, check=True, text=True)
+    assert said.stdout.split() == ["True", "True", "True"]

@@ -1,0 +1,231 @@
+"""`reembody retarget`: from a capture file to figures and files, and what it refuses."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.adapters.bvh import read_bvh
+from app.adapters.captures.bvh_export import to_bvh
+from app.cli.retarget_ground import ground_along
+from app.science.retargeting.reference_avatars import reference_avatar
+from app.science.rig import Rig, RigMotion
+from tests.cli.invoked import Invoked
+from tests.science.retargeting.bodies import scaled
+from tests.science.retargeting.walks import made_walk
+
+_KEYS = [
+    "frames",
+    "fps",
+    "leg_ratio",
+    "step_lengths_m",
+    "step_heights_m",
+    "foot_slide_m_s",
+    "unmapped_joints",
+]
+_COMMAND = Invoked("retarget")
+_run, _figures, _refusal = _COMMAND.run, _COMMAND.figures, _COMMAND.refusal
+
+
+@pytest.fixture
+def clip(tmp_path: Path) -> Path:
+    """A made walk of a person of 1.75 m as a BVH file."""
+    path = tmp_path / "walk.bvh"
+    path.write_text(to_bvh(made_walk(reference_avatar(1.75)).motion))
+    return path
+
+
+def test_json_has_exactly_its_keys_and_steps_scale_with_the_legs(clip: Path) -> None:
+    """Step i of source and avatar are the same step, and have the ratio of the legs."""
+    figures = _figures(clip, "--to", "130cm")
+    assert list(figures) == _KEYS
+    assert figures["frames"] == made_walk(reference_avatar(1.75)).motion.frame_count
+    assert figures["fps"] == pytest.approx(120.0, abs=1e-3)
+    assert figures["leg_ratio"] == pytest.approx(1.30 / 1.75, abs=1e-9)
+    assert figures["unmapped_joints"] == []
+    for key in ("step_lengths_m", "step_heights_m"):
+        steps = figures[key]
+        assert isinstance(steps, dict)
+        ratios = np.array(steps["avatar"]) / np.array(steps["source"])
+        assert len(ratios) == 5
+        assert ratios == pytest.approx(np.full(5, 1.30 / 1.75), abs=1e-9)
+
+
+def test_another_file_can_be_the_avatar(clip: Path, tmp_path: Path) -> None:
+    """The skeleton of a file is taken, its movement is not."""
+    rig = scaled(reference_avatar(1.75), 0.5)
+    still = RigMotion(
+        Rig(rig.names, rig.parents, rig.offsets_m, rig.rest_rotations, rig.ends),
+        30.0,
+        rig.offsets_m[:1],
+        rig.rest_rotations[np.newaxis],
+        np.ones((1, rig.joint_count), dtype=np.bool_),
+    )
+    avatar = tmp_path / "small.bvh"
+    avatar.write_text(to_bvh(still))
+    assert _figures(clip, "--to", avatar)["leg_ratio"] == pytest.approx(0.5, abs=1e-9)
+
+
+def test_what_is_written_is_the_avatars_movement(clip: Path, tmp_path: Path) -> None:
+    """BVH in centimetres with the avatar's bones; CSV a row a frame; no other file is left."""
+    bvh, table = tmp_path / "out.bvh", tmp_path / "out.csv"
+    assert _run(clip, "--to", "190cm", "--out", bvh).exit_code == 0
+    assert _run(clip, "--to", "190cm", "--out", table).exit_code == 0
+    written = read_bvh(bvh, metres_per_unit=0.01)
+    knee = written.names.index("LeftLowerLeg")
+    assert np.linalg.norm(written.offsets_m[knee]) == pytest.approx(0.245 * 1.90, abs=1e-9)
+    with table.open(newline="") as file:
+        rows = list(csv.reader(file))
+    assert len(rows) == written.frame_count + 1
+    column = rows[0].index("Hips.y_m")
+    assert float(rows[1][column]) == pytest.approx(written.root_positions_m[0, 1], abs=1e-8)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["out.bvh", "out.csv", "walk.bvh"]
+
+
+def test_holding_the_feet_lowers_the_slide(clip: Path) -> None:
+    """The number in JSON is the slide of what is delivered."""
+    free, held = _figures(clip, "--to", "165cm"), _figures(clip, "--to", "165cm", "--lock-feet")
+    assert isinstance(free["foot_slide_m_s"], float)
+    assert isinstance(held["foot_slide_m_s"], float)
+    assert held["foot_slide_m_s"] < 1e-6 < free["foot_slide_m_s"]
+
+
+def test_the_avatar_follows_the_ground(clip: Path, tmp_path: Path) -> None:
+    """Beyond a kerb of 12 cm the hips are 12 cm higher at the end than at the start."""
+    for lock in ((), ("--lock-feet",)):
+        out = tmp_path / "up.bvh"
+        ground = ("--ground", "kerb:0.12@1.0")
+        assert _run(clip, "--to", "165cm", "--out", out, *ground, *lock).exit_code == 0
+        hips = read_bvh(out, metres_per_unit=0.01).root_positions_m
+        assert hips[-1, 1] - hips[0, 1] == pytest.approx(0.12, abs=2e-3)
+
+
+def test_people_get_a_table_with_units(clip: Path, tmp_path: Path) -> None:
+    """Conventions and who says so, steps one by one, slide, what is unmapped, what was written."""
+    out = tmp_path / "out.bvh"
+    said = _run(clip, "--to", "165cm", "--lock-feet", "--out", out).stdout
+    for words in ("unit", "guessed", "step length, mean", "m/s", "with feet held", "unmapped"):
+        assert words in said
+    assert f"written: {out}" in said
+
+
+def test_a_joint_map_can_be_given(clip: Path, tmp_path: Path) -> None:
+    """What it leaves out stays as in the T-pose and is listed."""
+    rig = reference_avatar(1.75)
+    told = {name: name for name in rig.names if name != "UpperChest"}
+    path = tmp_path / "map.json"
+    path.write_text(json.dumps(told))
+    figures = _figures(clip, "--to", "165cm", "--joint-map", path)
+    assert figures["unmapped_joints"] == ["UpperChest"]
+
+
+def test_unit_and_axis_can_be_said(tmp_path: Path) -> None:
+    """A file in inches reads as what it is once that is said; an axis is x, y or z."""
+    motion = made_walk(reference_avatar(1.75)).motion
+    path = tmp_path / "inches.bvh"
+    path.write_text(to_bvh(motion, metres_per_unit=0.0254))
+    figures = _figures(path, "--to", "165cm", "--unit", "0.0254")
+    assert figures["leg_ratio"] == pytest.approx(1.65 / 1.75, abs=1e-9)
+    assert "x, y and z are valid" in _refusal(path, "--to", "165cm", "--up", "w")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("--to", "Faye"), "130cm, 165cm, 190cm"),
+        (("--to", "300cm"), "0.5 to 2.6 m"),
+        ((), "--to are needed"),
+        (("--to", "165cm", "--out", "out.fbx"), ".bvh or .csv"),
+        (("--to", "165cm", "--out", "nowhere/out.bvh"), "no folder"),
+        (("--to", "165cm", "--out", "walk.bvh"), "the clip itself"),
+        (("--to", "165cm", "--ground", "hill"), "kerb:HEIGHT@DISTANCE"),
+        (("--to", "165cm", "--ground", "ramp:1/0@1"), "kerb:HEIGHT@DISTANCE"),
+        (("--to", "165cm", "--joint-map", "walk.bvh"), "no JSON"),
+        (("--to", "165cm", "--joint-map", "missing.json"), "missing.json"),
+        (("--to", "165cm", "--skeleton", "missing.asf"), "missing.asf"),
+        (("--to", "165cm", "--unit", "0"), "m per unit"),
+        (("--check", "table2"), "table1 is valid"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_with_the_reason(
+    clip: Path, monkeypatch: pytest.MonkeyPatch, arguments: tuple[str, ...], reason: str
+) -> None:
+    """Status 2, nothing on standard output, and the folder is as it was."""
+    monkeypatch.chdir(clip.parent)
+    before = clip.read_bytes()
+    assert reason in _refusal("walk.bvh", *arguments)
+    assert [path.name for path in clip.parent.iterdir()] == ["walk.bvh"]
+    assert clip.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"", "the text ends"),
+        (b"HIERARCHY\nROOT Hips\n{\n", "line 3"),
+        (bytes(range(256)), "expected 'HIERARCHY'"),
+    ],
+)
+def test_broken_files_are_refused_and_nothing_is_written(
+    tmp_path: Path, content: bytes, reason: str
+) -> None:
+    """The message names the file and where it breaks."""
+    path, out = tmp_path / "broken.bvh", tmp_path / "out.bvh"
+    path.write_bytes(content)
+    said = _refusal(path, "--to", "165cm", "--out", out)
+    assert str(path) in said
+    assert reason in said
+    assert not out.exists()
+
+
+def test_a_map_that_does_not_fit_is_refused(clip: Path, tmp_path: Path) -> None:
+    """A joint the clip does not have, a body joint that is none, and a map that is no object."""
+    path = tmp_path / "map.json"
+    for told, reason in (
+        ({"Hips": "Pelvis"}, "no joint 'Pelvis'"),
+        ({"Hips": "Hips", "Tail": "Spine"}, "no body joint"),
+        (["Hips"], "one object"),
+        ({"Hips": 3}, "one object"),
+    ):
+        path.write_text(json.dumps(told))
+        assert reason in _refusal(clip, "--to", "165cm", "--joint-map", path)
+
+
+def test_a_word_for_the_ground_is_what_it_says() -> None:
+    """The way is from where the hips begin to where they end, whichever direction that is."""
+    hips = np.array(((1.0, 0.9, 2.0), (1.0, 0.9, -3.0)))
+    kerb, ramp = ground_along("kerb:-0.1@2"), ground_along("ramp:0.5/2@1")
+    assert ground_along("flat") is None
+    assert kerb is not None
+    assert ramp is not None
+    assert kerb(hips).height_m(np.ones(2), np.array((0.1, -0.1))).tolist() == [0.0, -0.1]
+    heights = ramp(hips).height_m(np.ones(3), np.array((1.5, 0.0, -2.0)))
+    assert heights == pytest.approx((0.0, 0.25, 0.5))
+    with pytest.raises(ValueError, match="goes nowhere"):
+        kerb(hips[:1])
+
+
+def test_table_1_is_computed_again() -> None:
+    """Twenty-two rows; all but the pelvis within 0.01 degrees of what is printed."""
+    result = _run("--check", "table1", "--json")
+    rows = json.loads(result.stdout)["rows"]
+    assert [list(row) for row in rows] == [["joint", "printed", "computed", "difference_deg"]] * 22
+    apart = [row["joint"] for row in rows if row["difference_deg"] > 0.01]
+    assert apart == ["pelvis"]
+    said = _run("--check", "table1").stdout
+    assert "21 of 22 rows agree" in said
+    assert "the source contradicts itself" in said
+
+
+@pytest.mark.parametrize(
+    ("name", "frames", "steps"), [("cmu_bvh/02_01.bvh", 343, 4), ("cmu_asfamc/02_01.amc", 343, 4)]
+)
+def test_real_captures_come_through(shared_data: Path, name: str, frames: int, steps: int) -> None:
+    """One walk of CMU's as BVH, and as AMC with the ASF that lies beside it."""
+    figures = _figures(shared_data / "motion" / name, "--to", "165cm")
+    lengths = figures["step_lengths_m"]
+    assert figures["frames"] == frames
+    assert isinstance(lengths, dict)
+    assert len(lengths["source"]) == len(lengths["avatar"]) == steps

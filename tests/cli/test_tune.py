@@ -1,0 +1,179 @@
+"""`reembody tune`: gains, figures, files and stored versions, and what it refuses."""
+
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import pytest
+
+from app.cli.installation import opened_database
+from app.clock import Clock
+from app.features.avatar.schemas import NewAvatar
+from app.features.avatar.service import avatar_by_key, create_avatar, newest_version, typed
+from app.features.humanoids.tasks import measured
+from app.models import CaptureContent, HumanoidRow
+from app.protocol.avatar import file_of, load_avatar
+from app.science.avatar.defaults import default_configuration
+from app.science.avatar.parts import AXIS_NAMES
+from tests.cli.invoked import Invoked
+from tests.science.avatar.figures import HASH, figure
+
+_HELD = ("trunk_head", "left_leg", "right_leg", "right_arm", "left_fingers", "right_fingers")
+_COMMAND = Invoked("tune")
+_run, _figures, _refusal = _COMMAND.run, _COMMAND.figures, _COMMAND.refusal
+
+
+@pytest.fixture
+def installation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An installation with one avatar of which only the left arm moves."""
+    monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "data"))
+    monkeypatch.delenv("REEMBODY_DATABASE_URL", raising=False)
+    (tmp_path / "data").mkdir()
+    arm = replace(default_configuration(), locked_groups=_HELD)
+    wish = NewAvatar(key="arm", title="Arm", origin="by_hand", configuration=file_of(arm))
+    with opened_database() as database, database.writing() as db:
+        create_avatar(db, "tester", wish, Clock().utc_now())
+    return tmp_path
+
+
+@pytest.mark.usefixtures("installation")
+def test_json_names_every_axis_with_gains_figures_and_status() -> None:
+    """Progress goes to standard error; standard output is JSON and nothing else."""
+    figures = _figures("--avatar", "arm")
+    assert [axis["name"] for axis in figures["axes"]] == list(AXIS_NAMES)
+    by_name = {axis["name"]: axis for axis in figures["axes"]}
+    elbow = by_name["LeftLowerArmY"]
+    assert elbow["status"] == "tuned"
+    assert elbow["kp"] > elbow["kd"] > 0.0
+    assert 0.0 <= elbow["overshoot_percent"] <= 3.0
+    assert 0.0 < elbow["settling_s"] <= 0.2
+    assert elbow["relay"]["hysteresis_deg"] == 2.0
+    assert by_name["SpineX"]["status"] == "locked"
+    assert by_name["SpineX"]["overshoot_percent"] is None
+    assert figures["summary"]["tuned"] == 8
+    assert figures["summary"]["locked"] == 83
+
+
+def test_a_tuned_configuration_is_written_and_stored_as_versions(installation: Path) -> None:
+    """The file is what is stored; a second tuning by another rule is the next version."""
+    out = installation / "tuned.json"
+    figures = _figures("--avatar", "arm", "--out", out, "--save", "arm-tuned")
+    assert figures["saved"] == "arm-tuned, version 1"
+    written = load_avatar(out.read_text())
+    with opened_database() as database, database.reading() as db:
+        stored = newest_version(db, avatar_by_key(db, "arm-tuned"))
+        assert stored.content_hash == written.content_hash
+        assert stored.origin == "tuned"
+        assert stored.report is not None
+        assert stored.report["summary"] == figures["summary"]
+    elbow = next(axis for axis in figures["axes"] if axis["name"] == "LeftLowerArmY")
+    assert written.configuration.axes["LeftLowerArmY"].kp == elbow["kp"]
+    assert written.configuration.locked_groups == tuple(
+        name for name in written.configuration.locked_groups if name in _HELD
+    )
+    again = _figures("--avatar", "arm", "--heuristic", "inertia", "--save", "arm-tuned")
+    assert again["saved"] == "arm-tuned, version 2"
+
+
+@pytest.mark.usefixtures("installation")
+def test_the_table_has_units_and_an_end() -> None:
+    """For people: gains with units, a status an axis, a summary; progress apart."""
+    result = _run("--avatar", "arm", "--mass", "60", "--stature", "1.6")
+    assert result.exit_code == 0, result.output
+    assert "N m/rad" in result.stdout
+    assert "8 tuned, 0 retried, 0 flagged, 83 locked" in result.stdout
+    assert "1.6 m, 60 kg" in result.stdout
+    assert "skipped: a locked group holds it" in result.stdout
+    assert "relay experiment: 8 of 8 axes" in result.stderr
+
+
+@pytest.mark.usefixtures("installation")
+def test_a_capture_gives_each_axis_an_angular_error(shared_data: Path) -> None:
+    """On a real walk an arm follows within a degree and a half, on average over its axes."""
+    clip = shared_data / "motion" / "cmu_bvh" / "02_01.bvh"
+    figures = _figures("--avatar", "arm", "--capture", clip)
+    errors = {axis["name"]: axis["rms_error_deg"] for axis in figures["axes"]}
+    assert 0.0 < errors["LeftLowerArmY"] < 5.0
+    assert errors["SpineX"] is None
+    assert 0.0 < figures["tracking"]["mean_error_deg"] <= 1.5
+    assert figures["tracking"]["frames"] > 100
+
+
+@pytest.mark.usefixtures("installation")
+def test_gains_that_are_there_are_evaluated_and_kept(shared_data: Path) -> None:
+    """The same figures as of a tuning, with the errors apart, and no experiment."""
+    clip = shared_data / "motion" / "cmu_bvh" / "02_01.bvh"
+    figures = _figures("--avatar", "arm", "--evaluate", "--capture", clip)
+    assert figures["summary"]["accepted"] + figures["summary"]["flagged"] == 8
+    assert figures["summary"]["locked"] == 83
+    assert figures["options"] is None
+    elbow = next(axis for axis in figures["axes"] if axis["name"] == "LeftLowerArmY")
+    assert elbow["kp"] == default_configuration().axes["LeftLowerArmY"].kp
+    assert elbow["relay"] is None
+    tracking = figures["tracking"]
+    assert tracking["unclamped"]["mean_error_deg"] >= tracking["mean_error_deg"] > 0.0
+    assert tracking["clipped_share"] >= 0.0
+    floor = tracking["on_floor"]
+    assert floor["free"]["samples"] + floor["touching"]["samples"] == 8 * floor["frames"]
+
+
+@pytest.mark.usefixtures("installation")
+def test_the_body_of_a_model_is_tuned_without_what_it_lacks() -> None:
+    """An avatar with a skin and four fingers: its own axes, and the model stays its model."""
+    with opened_database() as database, database.writing() as db:
+        db.add(CaptureContent(hash=HASH, size=1))
+        db.flush()
+        db.add(
+            HumanoidRow(
+                hash=HASH,
+                file_name="four.glb",
+                by="test",
+                **asdict(measured(figure("Little"), "vrm")),
+                at=Clock().utc_now(),
+            )
+        )
+        db.flush()
+        arm = typed(newest_version(db, avatar_by_key(db, "arm")))
+        content = file_of(replace(arm, humanoid=HASH, colliders="mesh"))
+        new = NewAvatar(key="skin", title="skin", origin="by_hand", configuration=content)
+        create_avatar(db, "test", new, Clock().utc_now())
+    figures = _figures("--avatar", "skin", "--save", "skin-tuned")
+    assert {axis["name"] for axis in figures["axes"]} == {
+        name for name in AXIS_NAMES if "Little" not in name
+    }
+    assert figures["summary"]["tuned"] == 8
+    with opened_database() as database, database.reading() as db:
+        tuned = typed(newest_version(db, avatar_by_key(db, "skin-tuned")))
+    assert (tuned.humanoid, tuned.colliders) == (HASH, "mesh")
+
+
+@pytest.mark.usefixtures("installation")
+def test_an_unknown_avatar_is_refused_with_those_there_are() -> None:
+    """The product's own is among them although no server has started yet."""
+    said = _refusal("--avatar", "nobody")
+    assert "nobody" in said
+    assert "arm, standard" in said
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--heuristic", "guess"], "critical, inertia, ziegler-nichols-pd, tyreus-luyben-pd"),
+        (["--stature", "9"], "2.6"),
+        (["--mass", "0"], "mass"),
+        (["--attempts", "0"], "from 1"),
+        (["--capture", "nowhere.bvh"], "nowhere.bvh"),
+        (["--save", "Not A Key"], "small letter"),
+        (["--evaluate", "--save", "arm"], "changes nothing"),
+    ],
+)
+def test_what_cannot_be_is_refused_at_once(arguments: list[str], words: str) -> None:
+    """Before any experiment, saying what is valid."""
+    assert words in _refusal(*arguments)
+
+
+@pytest.mark.long
+def test_the_body_that_comes_with_the_product_is_tuned_without_a_database() -> None:
+    """All of its free axes, the worst overshoot 10 % at most."""
+    figures = _figures("--mirror")
+    assert figures["summary"]["worst_overshoot_percent"] <= 10.0
+    assert figures["summary"]["flagged"] == 0

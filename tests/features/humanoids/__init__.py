@@ -1,0 +1,1 @@
+"""Humanoid models over HTTP."""

@@ -1,0 +1,228 @@
+"""Answers collected elsewhere: real and survey files, every cell that does not fit, undoing."""
+
+import io
+import json
+import uuid
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from sqlalchemy import func, select
+
+from app.models import AuditEntry, ImportedForm, SlotAttempt, StudySession
+from tests.features.lab import STUDY, Json, Lab, error, ok
+
+URL = f"/api/studies/{STUDY}/imports"
+
+
+def look(lab: Lab, text: str, **fields: Any) -> Json:
+    """What the server makes of a file."""
+    view: Json = ok(lab.operator.post(f"{URL}/look", json={"text": text, **fields}))
+    return view
+
+
+def check(lab: Lab, text: str, mapping: Json) -> Json:
+    """What an import would do."""
+    body = {"text": text, "mapping": mapping}
+    view: Json = ok(lab.operator.post(f"{URL}/check", json=body))
+    return view
+
+
+def take_in(lab: Lab, text: str, mapping: Json) -> Any:
+    """Ask for the import itself."""
+    body = {"text": text, "mapping": mapping, "file_name": "answers.csv"}
+    return lab.operator.post(URL, json=body)
+
+
+def tidy(rows: list[str]) -> str:
+    """A small tidy file of one-item forms that no other test has."""
+    return "\n".join(["pid,condition,fms", *rows]) + f"\n{uuid.uuid4().hex[:8]},other,3\n"
+
+
+def stored_forms(lab: Lab, import_id: str) -> int:
+    """How many forms of an import there are."""
+    with lab.database.reading() as db:
+        query = select(func.count()).where(ImportedForm.import_id == import_id)
+        return db.scalar(query) or 0
+
+
+def test_published_scores_come_back(lab: Lab, shared_data: Path) -> None:
+    """The TLX table in VR: the means its authors print, and Friedman's test of them."""
+    text = (shared_data / "questionnaires" / "tlxscores.csv").read_text(encoding="utf-8")
+    text += f"{uuid.uuid4().hex[:6]},Office,1,,,,,,,\n"  # an abandoned row; and no file twice
+    seen = look(lab, text)
+    assert (seen["instrument"], seen["separator"], seen["rows"]) == ("raw_tlx", ",", 65)
+    mapping = seen["proposal"]
+    assert (mapping["participant"], mapping["condition"]) == ("PPID", "Response")
+    assert len(mapping["sets"][0]["items"]) == 6
+    dry = check(lab, text, mapping)
+    assert dry["n_problems"] > 0
+    assert (dry["shift"]["multiply"], dry["shift"]["add"]) == (5.0, -5.0)
+    mapping |= {"multiply": 5.0, "add": -5.0}
+    dry = check(lab, text, mapping)
+    told = (dry["n_problems"], dry["forms"], dry["participants"], dry["skipped_rows"])
+    assert told == (0, 64, 16, 1)
+    made = ok(take_in(lab, text, mapping))
+    assert (made["forms"], made["participants"]) == (64, 16)
+    (result,) = [
+        one
+        for one in ok(lab.operator.get(f"{URL}/{made['id']}"))["results"]
+        if len(one["means"]) == 4
+    ][-1:]
+    means = {one["condition"]: one["mean"] for one in result["means"]}
+    published = {"Object": 22.8125, "Cube": 25.15625, "Stick": 16.97917, "Laser": 18.48958}
+    assert means == pytest.approx(published, abs=5e-6)
+    assert result["test"].startswith("Friedman, asymptotic: χ²(3) = 12.06, p = .007")
+
+
+def test_a_wide_survey_file_is_understood(lab: Lab) -> None:
+    """Three header rows, semicolons, words for numbers, a set of columns for each condition."""
+    names = [f"fms_{ms}" for ms in (0, 125)]
+    head = ";".join(["ResponseId", "RecordedDate", *names])
+    labels = ";".join(["Response ID", "Recorded Date", *["How sick?"] * len(names)])
+    ids = ";".join(f'"{{""ImportId"":""{one}""}}"' for one in ["r", "d", *names])
+    code = uuid.uuid4().hex[:8]
+    text = f"{head}\n{labels}\n{ids}\n{code};2026-03-01 10:00:00;Not at all;7\n"
+    seen = look(lab, text, instrument="fms")
+    assert (seen["header_rows"], seen["separator"], seen["rows"]) == (3, ";", 1)
+    mapping = seen["proposal"]
+    assert [one["condition"] for one in mapping["sets"]] == ["0", "125"]
+    assert set(mapping["conditions"]) == {"0", "125"}
+    dry = check(lab, text, mapping)
+    assert (dry["unknown_words"], dry["problems"][0]["line"]) == (["Not at all"], 4)
+    mapping["words"] = {"not at all": 0}
+    dry = check(lab, text, mapping)
+    assert dry["n_problems"] == 0
+    assert [one["in_study"] for one in dry["conditions"]] == [True, True]
+    assert [next(iter(one["answers"].values())) for one in dry["first_forms"]] == [0.0, 7.0]
+    assert dry["first_forms"][0]["answered_on"] == "2026-03-01"
+    made = ok(take_in(lab, text, mapping))
+    table = lab.operator.get(f"{URL}/{made['id']}/table").text.splitlines()
+    assert [line.split(",")[7] for line in table] == ["answered_on", "2026-03-01", "2026-03-01"]
+
+
+def test_every_cell_that_does_not_fit_is_told_and_nothing_is_stored(lab: Lab) -> None:
+    """A file is taken in as a whole or not at all."""
+    text = tidy(["a@b.org,x,3", "P1,x,3", "P1,x,4", "P2,x,21", ",x,2", "P3,x,"])
+    mapping = look(lab, text, instrument="fms")["proposal"]
+    dry = check(lab, text, mapping)
+    lines = sorted((one["line"], one["column"]) for one in dry["problems"])
+    assert lines == [(2, "pid"), (4, "pid"), (5, "fms"), (6, "pid")]
+    assert all(one["remedy"] for one in dry["problems"])
+    with lab.database.reading() as db:
+        before = db.scalar(select(func.count()).select_from(ImportedForm))
+    refused = error(take_in(lab, text, mapping), 422, "invalid_input")
+    assert len(refused["details"]) == 4
+    with lab.database.reading() as db:
+        assert db.scalar(select(func.count()).select_from(ImportedForm)) == before
+
+
+def test_the_same_file_is_refused_until_it_is_undone(lab: Lab) -> None:
+    """By its content; undoing takes the forms, keeps who and why, and frees the file."""
+    text = tidy(["P1,x,3", "P1,y,4"])
+    mapping = look(lab, text, instrument="fms")["proposal"]
+    first = ok(take_in(lab, text, mapping))
+    again = error(take_in(lab, text, mapping), 409, "conflict")
+    assert again["details"][0]["import_id"] == first["id"]
+    assert look(lab, text, instrument="fms")["same_file"]["id"] == first["id"]
+    undone = ok(lab.operator.post(f"{URL}/{first['id']}/undo", json={"reason": "wrong scale"}))
+    assert (undone["forms"], undone["undone_reason"]) == (0, "wrong scale")
+    assert stored_forms(lab, first["id"]) == 0
+    error(lab.operator.post(f"{URL}/{first['id']}/undo", json={"reason": "again"}), 409, "conflict")
+    assert look(lab, text, instrument="fms")["remembered"]
+    assert ok(take_in(lab, text, mapping))["forms"] == 3
+    with lab.database.reading() as db:
+        actions = db.scalars(
+            select(AuditEntry.action).where(AuditEntry.subject == f"import:{first['id']}")
+        ).all()
+        trail = " ".join(db.scalars(select(AuditEntry.details)))
+    assert actions == ["answer.imported", "answer.import_undone"]
+    assert "P1" not in trail
+
+
+def test_imported_answers_are_never_sessions(lab: Lab) -> None:
+    """No session, no slot of the ledger, no row of an export's tables; marked in their own file."""
+    with lab.database.reading() as db:
+        before = [
+            db.scalar(select(func.count()).select_from(one)) for one in (StudySession, SlotAttempt)
+        ]
+    text = tidy(["=P9,x,3"])
+    mapping = look(lab, text, instrument="fms")["proposal"]
+    made = ok(take_in(lab, text, mapping))
+    with lab.database.reading() as db:
+        after = [
+            db.scalar(select(func.count()).select_from(one)) for one in (StudySession, SlotAttempt)
+        ]
+    assert after == before
+    table = lab.operator.get(f"{URL}/{made['id']}/table").text.splitlines()
+    assert table[0].startswith("study_key,origin,import_id")
+    assert all(line.split(",")[1] == "imported" for line in table[1:])
+    assert ",'=P9," in table[1]
+
+
+def test_one_participant_can_be_forgotten(lab: Lab) -> None:
+    """On request, from all files of the study, and without the code in the trail."""
+    code = f"gone{uuid.uuid4().hex[:6]}"
+    text = tidy([f"{code},x,3", f"{code},y,3"])
+    made = ok(take_in(lab, text, look(lab, text, instrument="fms")["proposal"]))
+    body = {"participant_code": code, "confirm": "somebody"}
+    error(lab.operator.post(f"{URL}/erase", json=body), 422, "invalid_input")
+    assert ok(lab.operator.post(f"{URL}/erase", json=body | {"confirm": code})) == {"forms": 2}
+    assert stored_forms(lab, made["id"]) == 1
+    with lab.database.reading() as db:
+        trail = " ".join(db.scalars(select(AuditEntry.details)))
+    assert code not in trail
+
+
+def test_a_participant_of_the_study_gets_and_loses_what_files_say(lab: Lab) -> None:
+    """The same code is the same person: their copy has it, and their erasure takes it."""
+    code = f"both{uuid.uuid4().hex[:6]}"
+    lab.join(participant_code=code)
+    text = tidy([f"{code},x,3"])
+    made = ok(take_in(lab, text, look(lab, text, instrument="fms")["proposal"]))
+    people = ok(lab.operator.get(f"/api/studies/{STUDY}/participants"))
+    person = next(one["id"] for one in people if one["code"] == code)
+    of = f"/api/studies/{STUDY}/participants/{person}"
+    with zipfile.ZipFile(io.BytesIO(lab.operator.get(f"{of}/access").content)) as copy:
+        told = json.loads(copy.read("imported.json"))
+        assert not any(name.startswith("imported/") for name in copy.namelist())
+    assert [one["answers"]["sickness"] for one in told] == [3.0]
+    body = {"confirm": code, "reason_code": "requested"}
+    erased = ok(lab.operator.post(f"{of}/erasure", json=body))
+    assert erased["removed"]["imported_forms"] == 1
+    assert stored_forms(lab, made["id"]) == 1
+    with zipfile.ZipFile(
+        io.BytesIO(lab.operator.get(f"/api/studies/{STUDY}/export").content)
+    ) as archive:
+        (own,) = [name for name in archive.namelist() if made["id"] in name]
+        assert own.split("/")[-2] == "imported"
+        assert code.encode() not in archive.read(own)
+
+
+def test_words_of_the_scale_are_known_and_none_is_an_answer(lab: Lab) -> None:
+    """The sickness questionnaire calls its lowest step "None": that is no missing answer."""
+    text = f"pid,n1,n2,n3\n{uuid.uuid4().hex[:6]},None,severe,NA\n"
+    items = list(ok(lab.operator.get("/api/instruments/ssq"))["preview"]["instrument"]["items"])
+    keys = [one["key"] for one in items[:3]]
+    columns = dict(zip(keys, ("n1", "n2", "n3"), strict=True))
+    mapping = {"instrument": "ssq", "participant": "pid", "sets": [{"items": columns}]}
+    dry = check(lab, text, mapping)
+    assert (dry["n_problems"], dry["missing_answers"]) == (0, 1)
+    given = dry["first_forms"][0]["answers"]
+    assert [given[key] for key in keys] == [0.0, 3.0, None]
+
+
+def test_items_turned_in_the_file_are_noticed_and_turned_back(lab: Lab) -> None:
+    """An item that a formula turns must go against the others; if not, that is said."""
+    names = ["pid", *(f"sp{n}" for n in range(1, 6))]
+    rows = [[f"T{n}-{uuid.uuid4().hex[:4]}", *[str(n % 7)] * 5] for n in range(10)]
+    text = "\n".join(",".join(row) for row in [names, *rows]) + "\n"
+    mapping = look(lab, text, instrument="ipq")["proposal"]
+    dry = check(lab, text, mapping)
+    assert dry["reversed_items"] == ["sp2"]
+    assert any("sp2" in note and "turned" in note for note in dry["notes"])
+    dry = check(lab, text, mapping | {"turned": ["sp2"]})
+    assert not any("sp2 enters" in note for note in dry["notes"])
+    answers = [one["answers"]["sp2"] for one in dry["first_forms"]]
+    assert answers == [6.0 - n % 7 for n in range(len(answers))]

@@ -1,0 +1,70 @@
+"""A process beside the server: it is replaced when it dies, and ends with the server."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import CancelledError
+from concurrent.futures.process import BrokenProcessPool
+
+import psutil
+import pytest
+
+from app.features.workers import NICENESS, Worker
+
+KILLED_SERVER = """
+import os, signal
+from app.features.workers import Worker
+if __name__ == "__main__":
+    print(Worker().submit(os.getpid).result(), flush=True)
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.fixture
+def worker() -> Iterator[Worker]:
+    """A worker that is ended afterwards."""
+    worker = Worker()
+    yield worker
+    worker.end()
+
+
+def test_one_process_does_one_task_after_the_other(worker: Worker) -> None:
+    """Never the server's own, and behind whatever wants the processor."""
+    first, second = worker.submit(os.getpid).result(), worker.submit(os.getpid).result()
+    assert first == second != os.getpid()
+    assert worker.submit(os.nice, 0).result() == os.nice(0) + NICENESS
+
+
+def test_a_dead_process_is_replaced(worker: Worker) -> None:
+    """Its task fails, the next one is done."""
+    first = worker.submit(os.getpid).result()
+    with pytest.raises(BrokenProcessPool):
+        worker.submit(os.kill, first, signal.SIGKILL).result()
+    assert worker.submit(os.getpid).result() != first
+
+
+def test_what_was_ended_is_gone_and_can_begin_again(worker: Worker) -> None:
+    """Also in the middle of a task."""
+    first = worker.submit(os.getpid).result()
+    endless = worker.submit(time.sleep, 1000)
+    worker.end()
+    with pytest.raises((BrokenProcessPool, CancelledError)):
+        endless.result()
+    assert not psutil.pid_exists(first)
+    assert worker.submit(os.getpid).result() != first
+
+
+def test_no_process_outlives_a_killed_server() -> None:
+    """It notices by itself: nobody is left to end it."""
+    server = subprocess.run(
+        [sys.executable, "-c", KILLED_SERVER], capture_output=True, text=True, check=False
+    )
+    pid = int(server.stdout)
+    for _ in range(200):
+        if not psutil.pid_exists(pid):
+            return
+        time.sleep(0.05)
+    pytest.fail(f"process {pid} is still there")

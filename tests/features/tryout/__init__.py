@@ -1,0 +1,1 @@
+"""A scripted participant in the server."""

@@ -1,0 +1,66 @@
+"""Tables of tracks and small models, for tests."""
+
+import time
+from typing import Any
+
+import numpy as np
+
+from tests.features.lab import Json, Lab, ok
+
+SMALL = {"steps": 3, "k": 5, "entries": 30, "reading": "time-aware", "seed": 1}
+"""Fitted within a second."""
+
+
+FLOOR = """key: floor
+title: An open floor
+bounds_m: [-2, -2, 4, 4]
+places: {start: [0, -1], middle: [0.5, 1], goal: [2, 3]}
+paths:
+  - {name: there, from: start, to: goal}
+  - {name: half, from: start, to: middle}
+  - {name: rest, from: middle, to: goal}
+"""
+"""Nothing stands in the way, so that planning takes no time."""
+
+
+def table(people: int = 3, walks: int = 3, bad_line: int | None = None) -> bytes:
+    """Straight walks there and back along y, of minimum jerk; each person has a pace of theirs."""
+    lines = ["id,time_s,x_m,y_m"]
+    for person in range(people):
+        now_s, at_m = 0.0, 0.0
+        for walk in range(walks):
+            goal_m = 0.0 if at_m > 0.0 else 1.5 + 0.5 * walk
+            for share in np.linspace(0.0, 1.0, 61):
+                way = 10 * share**3 - 15 * share**4 + 6 * share**5
+                lines.append(f"P{person},{now_s:.4f},0.0,{at_m + way * (goal_m - at_m):.5f}")
+                now_s += (2.0 + 0.2 * person + 0.3 * walk) / 60.0
+            at_m = goal_m
+            for _ in range(40):
+                lines.append(f"P{person},{now_s:.4f},0.0,{at_m:.5f}")
+                now_s += 1.0 / 40.0
+    if bad_line is not None:
+        lines[bad_line - 1] = "P0,0.5,nan,0.0"
+    return "\n".join(lines).encode()
+
+
+def bring_in(lab: Lab, data: bytes, **query: Any) -> Any:
+    """Upload a table of tracks; the answer."""
+    asked = {"name": "tracks.csv", "title": "Corridor", **query}
+    return lab.operator.post("/api/walking/walk-sets/tracks", params=asked, content=data)
+
+
+def fitted(lab: Lab, set_id: str, **options: Any) -> Json:
+    """A model on a set, once it is no longer being fitted."""
+    wish = {"title": "A model", "walk_set_id": set_id, "options": SMALL | options}
+    model: Json = ok(lab.operator.post("/api/walking/models", json=wish))
+    return settled(lab, model["id"])
+
+
+def settled(lab: Lab, model_id: str) -> Json:
+    """The model once nothing is computed for it any more."""
+    for _ in range(600):
+        model: Json = ok(lab.operator.get(f"/api/walking/models/{model_id}"))
+        if model["state"] != "fitting":
+            return model
+        time.sleep(0.05)
+    raise AssertionError(f"still fitted: {model['progress']}")

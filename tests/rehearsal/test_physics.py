@@ -1,0 +1,158 @@
+"""The rehearsal in an avatar that follows by forces: real contacts, real joint errors."""
+
+import asyncio
+import re
+import time
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+import pytest
+from httpx2 import AsyncClient
+from sqlalchemy import select
+
+from app.client.http import call
+from app.client.telemetry import TelemetryClient
+from app.database import open_database
+from app.models import JointErrorRow
+from app.rehearsal.body import make_person
+from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.headset import Headset
+from app.rehearsal.physics import PhysicsBody
+from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, rehearse
+from app.rehearsal.variant import physics_variant
+from app.science.avatar.defaults import default_configuration
+from app.science.avatar.model import avatar_model
+from app.science.avatar.scene import scene_of
+from app.science.rotations import identity
+from app.science.skeleton import Pose, build_skeleton
+from app.wire.messages import CompletionReport, ContactReport
+from tests.features.lab import Json, ok
+from tests.protocol.helpers import edited, study
+from tests.rehearsal.orders import InstantServer, order
+from tests.rehearsal.test_headset import AS_FAST_AS_IT_GOES
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+KEY = "short-study"
+SPEED = 10.0
+SUMMARIES_WITHIN_S = 60.0
+
+
+def short() -> str:
+    """The shipped study with short phases."""
+    text = edited(("key: reembodiment-latency", f"key: {KEY}"))
+    text = text.replace("duration_s: 120", "duration_s: 2")
+    text = text.replace("duration_s: 60", "duration_s: 12")
+    return re.sub(r"(preparation_s|freeze_s): 5", r"\1: 0.5", text)
+
+
+class BuiltHere:
+    """Builds the avatar here, with the boxes of the shipped study."""
+
+    async def take_up(self, stature_m: float) -> PhysicsBody:
+        """As the server would have built it."""
+        tasks = study().tasks
+        configuration = default_configuration()
+        scene = scene_of((tasks.hand.layout(), tasks.foot.layout()))
+        built = avatar_model(configuration, stature_m, scene=scene)
+        return PhysicsBody(built.mjcf, configuration)
+
+
+def play(limb: str, duration_s: float, latency_ms: float = 0.0) -> tuple[InstantServer, Headset]:
+    """A whole phase."""
+    server = InstantServer(
+        order(limb=limb, kind="task", duration_s=duration_s, latency_ms=latency_ms)
+    )
+    person = make_person(np.random.default_rng(3), None)
+    client = cast("TelemetryClient", server)
+    clock = FrameClock(AS_FAST_AS_IT_GOES)
+    headset = Headset(client, person, study().tasks, clock, BuiltHere())
+    asyncio.run(headset.run())
+    return server, headset
+
+
+@pytest.mark.parametrize("limb", ["hand", "foot"])
+def test_the_tasks_can_be_done_by_real_contacts(limb: str) -> None:
+    """Panels turn green under the limb that belongs there, and tasks are completed."""
+    server, headset = play(limb, 20.0)
+    contacts = [one for one in server.reports if isinstance(one, ContactReport)]
+    completions = [one for one in server.reports if isinstance(one, CompletionReport)]
+    assert completions
+    green = {one.body_part for one in contacts if one.effect in ("green", "completed")}
+    ends = {"RightHand"} if limb == "hand" else {"LeftFoot", "LeftToes", "RightFoot", "RightToes"}
+    assert green
+    assert green <= ends | {"LeftHand"}
+    assert {one.surface.split("/")[0] for one in contacts} == {limb}
+    assert headset.completions == len(completions)
+
+
+def test_a_body_with_other_legs_stands_on_the_same_floor() -> None:
+    """Its hips are as much higher as its legs are longer, wherever the participant's are."""
+    built = avatar_model(default_configuration(), 1.8)
+    person = build_skeleton(1.6)
+    scale = built.body.parts["Hips"].joint_m[1] / person.standing_hips_m
+    body = PhysicsBody(built.mjcf, default_configuration(), scale)
+    for t_s, share in ((1.0, 1.0), (1.1, 0.9)):
+        height_m = share * person.standing_hips_m
+        shown = body.frame(t_s, Pose(np.array([0.1, height_m, 0.2]), identity(22)))
+        assert shown.root_position_m == pytest.approx([0.1, scale * height_m, 0.2])
+
+
+def test_a_whole_session_is_rehearsed_in_a_physics_avatar(tmp_path: Path) -> None:
+    """It completes; the record names configuration and model, and how far the body was off."""
+    with LiveServer(tmp_path) as server, server.client() as api:
+        ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+        ok(api.post("/api/studies", json={"yaml": short()}))
+        plan = RehearsalPlan(
+            url=server.url, study=KEY, speed=SPEED, seed=3, password=ADMIN_PASSWORD, physics=True
+        )
+        report: RehearsalReport = asyncio.run(rehearse(plan))
+        session = f"/api/sessions/{report.session_id}"
+        view, events = ok(api.get(session)), ok(api.get(f"{session}/events"))
+        standard: Json = ok(api.get("/api/avatars/standard"))
+        assert again(server, f"{KEY}-physics") == again(server, KEY) == f"{KEY}-physics"
+        (version,) = ok(api.get(f"/api/studies/{KEY}-physics"))["versions"]
+        errors = summarised(f"sqlite:///{server.data_dir / 'reembody.sqlite'}", report)
+    assert version["number"] == 1
+    assert (view["status"], view["avatar"], report.avatar) == ("completed", "physics", "physics")
+    assert view["avatar_configuration_hash"] == standard["newest"]["content_hash"]
+    (built,) = (one["data"] for one in events if one["type"] == "avatar_built")
+    assert built["configuration_hash"] == view["avatar_configuration_hash"]
+    assert report.frames_sent == report.frames_stored
+    assert report.contacts > 0
+    # The delayed command is followed to a few degrees where nothing stands in the way.
+    assert 0.0 < np.median(errors["command"]) < np.radians(5.0)
+    assert np.median(errors["present"]) >= np.median(errors["command"])
+
+
+def again(server: LiveServer, study_key: str) -> str:
+    """Which study another rehearsal would use."""
+
+    async def ask() -> str:
+        async with AsyncClient(base_url=server.url) as http:
+            credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+            await call(http, "POST", "/api/login", credentials)
+            return await physics_variant(http, study_key)
+
+    return asyncio.run(ask())
+
+
+def summarised(url: str, report: RehearsalReport) -> dict[str, list[float]]:
+    """Reference -> mean angle of every joint in every phase; waits for what is computed."""
+    database, give_up_s = open_database(url), time.monotonic() + SUMMARIES_WITHIN_S
+    query = select(JointErrorRow.phase_id, JointErrorRow.reference, JointErrorRow.mean_rad).where(
+        JointErrorRow.session_id == report.session_id, JointErrorRow.axis == "angle"
+    )
+    try:
+        while time.monotonic() < give_up_s:
+            with database.reading() as db:
+                rows = db.execute(query).all()
+            if len({phase_id for phase_id, _, _ in rows}) == len(report.phases):
+                return {
+                    reference: [mean or 0.0 for _, of, mean in rows if of == reference]
+                    for reference in ("present", "command")
+                }
+            time.sleep(0.1)
+    finally:
+        database.close()
+    raise AssertionError(f"no joint errors of all phases within {SUMMARIES_WITHIN_S:g} s")

@@ -1,0 +1,215 @@
+"""`reembody` commands from a process that has already imported them: a second sooner each.
+
+A run starts hundreds of servers, and what they do first is the same: import, for longer than
+everything that follows. So each test process keeps a nursery, a process that has imported the
+command and does nothing else, with one thread. Asked for a server, it forks: the child has its own
+process group, environment, folder and output, runs the command from its arguments on as the
+installed script does, and can be killed like any other process.
+
+    test process --(a socket, one message a request)--> nursery --(fork)--> `reembody serve ...`
+
+Whether the script itself starts is seen by tests/lan and tests/house, which run it.
+"""
+
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+MOST_BYTES = 64 * 1024
+CHEAP_PASSWORDS = "TESTS_HAVE_CHEAP_PASSWORDS"
+"""Set where servers need not take a sixth of a second for each password."""
+EAGER = (
+    "app.cli.commands",
+    "app.cli.serving",
+    "sqlalchemy.dialects.sqlite",
+    "psycopg",
+    "uvicorn.lifespan.on",
+    "uvicorn.protocols.http.httptools_impl",
+    "uvicorn.protocols.websockets.websockets_sansio_impl",
+)
+"""What a server has imported by the time it listens."""
+
+
+class Child:
+    """A process of the nursery, with what `subprocess.Popen` offers of it."""
+
+    def __init__(self, nursery: "Nursery", pid: int) -> None:
+        self.pid = pid
+        self._nursery = nursery
+        self._handle = os.pidfd_open(pid)
+        self._code: int | None = None
+
+    @property
+    def returncode(self) -> int | None:
+        """The exit code, negative for a signal; None while it runs."""
+        return self.poll()
+
+    def poll(self) -> int | None:
+        """The exit code as of now."""
+        if self._code is None and select.select([self._handle], [], [], 0)[0]:
+            self._ended()
+        return self._code
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Wait for its end; raises subprocess.TimeoutExpired."""
+        if self._code is None:
+            if not select.select([self._handle], [], [], timeout)[0]:
+                raise subprocess.TimeoutExpired("reembody", timeout or 0.0)
+            self._ended()
+        assert self._code is not None  # `_ended` has set it
+        return self._code
+
+    def send_signal(self, request: int) -> None:
+        """Send a signal, unless it has ended."""
+        if self.poll() is None:
+            os.kill(self.pid, request)
+
+    def kill(self) -> None:
+        """SIGKILL."""
+        self.send_signal(signal.SIGKILL)
+
+    def _ended(self) -> None:
+        self._code = int(self._nursery.ask({"reap": self.pid})["code"])
+        os.close(self._handle)
+
+
+@dataclass(frozen=True)
+class Wish:
+    """A command to run: everything that a process has of its own."""
+
+    arguments: Sequence[str]
+    environment: dict[str, str]
+    folder: Path
+    output: Path
+
+
+class Nursery:
+    """The prepared process, from the side of the test process."""
+
+    def __init__(self) -> None:
+        ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with theirs:
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "tests.support.nursery", str(theirs.fileno())],
+                pass_fds=[theirs.fileno()],
+                stdin=subprocess.DEVNULL,
+                env={**_plain_environment(), "PYTHONUNBUFFERED": "1"},
+                cwd=Path(__file__).resolve().parents[2],
+            )
+        self._socket = ours
+
+    def start(self, wish: Wish) -> Child:
+        """Run a command."""
+        started = self.ask(
+            {
+                "arguments": list(wish.arguments),
+                "environment": wish.environment,
+                "folder": str(wish.folder),
+                "output": str(wish.output),
+            }
+        )
+        return Child(self, int(started["pid"]))
+
+    def ask(self, request: dict[str, Any]) -> dict[str, Any]:
+        """One request, one answer."""
+        self._socket.sendall(json.dumps(request).encode())
+        answered = self._socket.recv(MOST_BYTES)
+        if not answered:
+            raise RuntimeError(f"the nursery ended with exit code {self._process.wait()}")
+        answer: dict[str, Any] = json.loads(answered)
+        return answer
+
+
+@cache
+def nursery() -> Nursery:
+    """The one of this process; it ends with it."""
+    return Nursery()
+
+
+def _plain_environment() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if not name.startswith("REEMBODY_")}
+
+
+def serve_wishes(wishes: socket.socket) -> dict[str, Any] | None:
+    """Answer until nobody asks any more (None); in each child, returns what it is to run."""
+    while asked := wishes.recv(MOST_BYTES):
+        request = json.loads(asked)
+        if "reap" in request:
+            _, status = os.waitpid(request["reap"], 0)
+            answer = {"code": os.waitstatus_to_exitcode(status)}
+        else:
+            pid = os.fork()
+            if pid == 0:
+                wishes.close()
+                child: dict[str, Any] = request
+                return child
+            answer = {"pid": pid}
+        wishes.sendall(json.dumps(answer).encode())
+    return None
+
+
+def become(request: dict[str, Any]) -> None:
+    """Be a process of one's own: group, folder, environment, output."""
+    os.setsid()
+    os.chdir(request["folder"])
+    os.environ.clear()
+    os.environ.update(request["environment"])
+    output = os.open(request["output"], os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+    for standard in (1, 2):
+        os.dup2(output, standard)
+    os.close(output)
+    script = str(Path(sys.executable).with_name("reembody"))
+    sys.argv = [script, *request["arguments"]]
+    # What the processes that it makes will look for.
+    main_module = sys.modules["__main__"]
+    main_module.__spec__, main_module.__file__ = None, script
+
+
+def main() -> None:
+    """Import, then answer; a child leaves by running the command."""
+    for name in EAGER:
+        __import__(name)
+    _read_shipped_files()
+    if os.environ.get(CHEAP_PASSWORDS):
+        make_passwords_cheap()
+    wishes = socket.socket(fileno=int(sys.argv[1]))
+    request = serve_wishes(wishes)
+    if request is not None:
+        become(request)
+        from app.cli import main as reembody
+
+        reembody()
+
+
+def make_passwords_cheap() -> None:
+    """The same kind of hash in this process from now on, with the least work."""
+    from argon2 import PasswordHasher
+
+    from app.features.accounts import passwords
+
+    passwords._HASHER = PasswordHasher(time_cost=1, memory_cost=64, parallelism=1)
+
+
+def _read_shipped_files() -> None:
+    """Every new database gets them; what was read is kept by its text."""
+    from app.features.studies.service import shipped_files
+    from app.protocol.loading import load_instrument, study_source
+
+    shipped = shipped_files()
+    for path in shipped.instruments:
+        load_instrument(path.read_text(encoding="utf-8"))
+    for path in shipped.studies:
+        study_source(path.read_text(encoding="utf-8"))
+
+
+if __name__ == "__main__":
+    main()
