@@ -2,6 +2,7 @@ import { existsSync, readdirSync } from "node:fs";
 import { resolve } from "node:path";
 import react from "@vitejs/plugin-react";
 import { defineConfig, type Plugin } from "vitest/config";
+import { tabletWorker, WORKER } from "./tabletWorker.ts";
 
 const source = resolve(import.meta.dirname, "src");
 
@@ -27,7 +28,7 @@ export default defineConfig({
   root: source,
   cacheDir: resolve(import.meta.dirname, "node_modules/.vite"),
   publicDir: false,
-  plugins: [react(), servePagesLikeTheServer()],
+  plugins: [react(), servePagesLikeTheServer(), tabletWorker()],
   resolve: {
     alias: { "@shared": resolve(source, "shared"), "@charts": resolve(source, "charts") },
   },
@@ -40,9 +41,16 @@ export default defineConfig({
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 1500,
     rolldownOptions: {
-      input: Object.fromEntries(pages.map((name) => [name, resolve(source, name, "index.html")])),
+      input: {
+        ...Object.fromEntries(pages.map((name) => [name, resolve(source, name, "index.html")])),
+        [WORKER]: resolve(source, "tablet/offline/worker.ts"),
+      },
+      output: {
+        // A service worker is known by its address.
+        entryFileNames: ({ name }) => (name === WORKER ? "[name].js" : "assets/[name]-[hash].js"),
+      },
     },
   },
-  server: { port: 5173, proxy: { "/api": "http://127.0.0.1:8000" } },
+  server: { port: 5173, proxy: { "/api": { target: "http://127.0.0.1:8000", ws: true } } },
   test: { root: source, include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
 });

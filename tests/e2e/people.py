@@ -49,6 +49,20 @@ class Experimenter:
         expect(button).to_be_enabled(timeout=PATIENCE_MS)
         button.click()
 
+    def start(self) -> None:
+        """Start the session, with a reason where the pre-flight asks for one.
+
+        What is missing may come while the reason is written; the same button then starts.
+        """
+        self.press("Start session")
+        asked = self.page.get_by_role("dialog")
+        begun = self.page.get_by_text(re.compile(r"^Step 1 of"))
+        expect(asked.or_(begun).first).to_be_visible(timeout=PATIENCE_MS)
+        if asked.is_visible():
+            asked.get_by_label("Reason").fill("The headset comes later")
+            asked.get_by_role("button", name=re.compile("Start (anyway|session)")).click()
+            expect(begun).to_be_visible(timeout=PATIENCE_MS)
+
     def match_height(self, stated_cm: str, matched_cm: str) -> None:
         """Find the height that was stated on the tablet, and enter the matched one."""
         stated = self.page.get_by_label("Height as stated")

@@ -37,7 +37,7 @@ def pages(
     experimenter.open_tab(KEY)
     experimenter.create_session()
     participant.pair(experimenter.code_for("tablet"))
-    experimenter.press("Start session")
+    experimenter.start()
     expect(participant.page.get_by_role("button", name=GO)).to_be_visible()
     return experimenter, participant
 

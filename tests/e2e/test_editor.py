@@ -162,14 +162,14 @@ def test_an_own_instrument_is_written_tried_and_stored(
 
 @pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.long)])
 def test_editor_and_library_are_accessible(
-    live_server: LiveServer,
+    running_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], Path],
     scheme: ColorScheme,
 ) -> None:
     """Every section of the form and every tab of an instrument: nothing serious, in German too."""
-    writer = Writer(page_factory((1180, 820), scheme), live_server.url)
+    writer = Writer(page_factory((1180, 820), scheme), running_server.url)
     writer.log_in()
     page = writer.page
     writer.open_tab(STUDY, "edit")
@@ -182,7 +182,7 @@ def test_editor_and_library_are_accessible(
     expect(page.get_by_role("tab", name="Orte und Farben")).to_be_visible()
     screenshot(page, f"editor-de-{scheme}")
     for tab in ("", "scoring", "try", "file"):
-        page.goto(f"{live_server.url}/#/instruments/raw_tlx/{tab}")
+        page.goto(f"{running_server.url}/#/instruments/raw_tlx/{tab}")
         page.wait_for_load_state("networkidle")
         assert axe(page) == [], tab
         screenshot(page, f"instrument-{tab or 'items'}-{scheme}")
@@ -190,15 +190,16 @@ def test_editor_and_library_are_accessible(
 
 @pytest.mark.parametrize("size", [(1366, 1024), (1024, 1366), (1180, 820), (820, 1180)])
 def test_many_steps_fit_under_a_finger(
-    live_server: LiveServer, page_factory: Callable[..., Page], size: tuple[int, int]
+    running_server: LiveServer, page_factory: Callable[..., Page], size: tuple[int, int]
 ) -> None:
     """All 21 answers of the sickness scale are in sight and at least 44 px wide and high."""
     page = page_factory(size)
-    writer = Writer(page, live_server.url)
+    writer = Writer(page, running_server.url)
     writer.log_in()
-    page.goto(f"{live_server.url}/#/instruments/fms/try")
-    expect(page.locator(".sd-rating__item")).to_have_count(21)
-    for box in (one.bounding_box() for one in page.locator(".sd-rating__item").all()):
+    page.goto(f"{running_server.url}/#/instruments/fms/try")
+    steps = page.locator("[data-name] label")
+    expect(steps).to_have_count(21)
+    for box in (one.bounding_box() for one in steps.all()):
         assert box is not None
         assert min(box["width"], box["height"]) >= 44
         assert 0 <= box["x"] <= box["x"] + box["width"] <= size[0]

@@ -75,7 +75,7 @@ def test_a_whole_session_from_login_to_csv(
     experimenter.create_session()
     participant.pair(experimenter.code_for("tablet"))
     with Wearer(live_server.url, experimenter.code_for("headset")) as wearer:
-        experimenter.press("Start session")
+        experimenter.start()
         participant.agree()
         participant.fill_in(DEMOGRAPHICS)
         participant.have_read()
@@ -104,7 +104,7 @@ def test_a_whole_session_from_login_to_csv(
     screenshot(experimenter.page, "dashboard-one-session")
     experimenter.open_tab(STUDY, "export")
     with experimenter.page.expect_download(timeout=PATIENCE_MS) as download:
-        experimenter.press("Download")
+        experimenter.press("Download (zip")
     archive = zipfile.ZipFile(download.value.path())
     scores = _table(archive, "scores.csv")
     embodiment = [float(row["value"]) for row in scores if row["score"] == "soe_thesis"]

@@ -14,7 +14,7 @@ from tests.support.browser import ColorScheme, PageWatch
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 STUDY = "reembodiment-latency"
-TABS = ("", "ledger", "sessions", "dashboard", "export", "protocol")
+TABS = ("", "ledger", "sessions", "participants", "dashboard", "export", "protocol")
 
 
 @pytest.fixture(scope="module")
@@ -72,11 +72,16 @@ def test_every_console_page_is_accessible(
     expect(page.get_by_text("Session completed")).to_be_visible(timeout=PATIENCE_MS)
     assert axe(page) == []
     screenshot(page, f"console-session-{scheme}")
+    page.get_by_role("link", name="Replay Hand task").first.click()
+    expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
+    page.keyboard.press("L")
+    assert axe(page) == []
+    screenshot(page, f"console-replay-{scheme}")
 
 
 @pytest.mark.parametrize("size", [(1180, 820), (820, 1180)])
 def test_the_tablet_is_accessible(
-    live_server: LiveServer,
+    running_server: LiveServer,
     page_factory: Callable[..., Page],
     page_watch: PageWatch,
     axe: Callable[[Page], list[str]],
@@ -85,9 +90,9 @@ def test_the_tablet_is_accessible(
 ) -> None:
     """Pairing, consent, a form: nothing serious, in both orientations, and in German."""
     page_watch.allow(r"status of 401")
-    console = Experimenter(page_factory((1280, 800), "dark"), live_server.url)
-    tablet = Participant(page_factory(size), live_server.url)
-    tablet.page.goto(f"{live_server.url}/tablet")
+    console = Experimenter(page_factory((1280, 800), "dark"), running_server.url)
+    tablet = Participant(page_factory(size), running_server.url)
+    tablet.page.goto(f"{running_server.url}/tablet")
     expect(tablet.page.get_by_role("heading", name="Connect this tablet")).to_be_visible()
     assert axe(tablet.page) == []
     screenshot(tablet.page, f"tablet-pairing-{size[0]}")
@@ -95,7 +100,7 @@ def test_the_tablet_is_accessible(
     console.open_tab(STUDY)
     console.create_session()
     tablet.pair(console.code_for("tablet"))
-    console.press("Start session")
+    console.start()
     expect(tablet.page.get_by_role("heading", name="Consent")).to_be_visible(timeout=PATIENCE_MS)
     assert axe(tablet.page) == []
     screenshot(tablet.page, f"tablet-consent-{size[0]}")

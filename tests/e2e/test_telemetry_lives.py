@@ -61,7 +61,6 @@ def test_a_page_that_crashes_delivers_under_its_old_number(
     check_both_lives(again, headset_site, first, certain)
 
 
-@pytest.mark.long
 def test_a_browser_that_is_killed_delivers_under_its_old_number(
     wear: Wear, headset_site: Site, browser: Browser, tmp_path: Path
 ) -> None:

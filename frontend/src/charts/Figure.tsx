@@ -1,6 +1,6 @@
 /** A Plotly figure of the server. The library is large, so it is fetched when the first is shown. */
 import { Center, Loader, Text, useComputedColorScheme } from "@mantine/core";
-import { type JSX, useEffect, useRef, useState } from "react";
+import { type JSX, type RefObject, useEffect, useRef, useState } from "react";
 import { dressed, heightOf, type Palette } from "./layout";
 
 interface FigureProps {
@@ -11,21 +11,33 @@ interface FigureProps {
   readonly watermark: string | null;
   readonly loading: string;
   readonly failed: string;
+  /** Drawn once somebody comes near it: for pages of many figures. */
+  readonly whenNear?: boolean;
 }
+
+/** How far below the window a figure may be when it is drawn. */
+const AHEAD = "600px";
 
 type State = "loading" | "drawn" | "failed";
 
-export function Figure({ figure, label, watermark, ...texts }: FigureProps): JSX.Element {
+export function Figure({
+  figure,
+  label,
+  watermark,
+  whenNear = false,
+  ...texts
+}: FigureProps): JSX.Element {
   const root = useRef<HTMLElement>(null);
   const scheme = useComputedColorScheme("light");
   const [state, setState] = useState<State>("loading");
+  const near = useNear(root, whenNear);
   useEffect(() => {
     const element = root.current;
-    if (element === null) return;
+    if (element === null || !near) return;
     // Read again whenever the appearance changes: the colours are the page's own.
     const palette = paletteOf(element, scheme);
     return draw(element, figure, palette, watermark, setState);
-  }, [figure, scheme, watermark]);
+  }, [figure, scheme, watermark, near]);
   return (
     <div style={{ position: "relative", height: heightOf(figure) }}>
       {state !== "drawn" && (
@@ -33,13 +45,31 @@ export function Figure({ figure, label, watermark, ...texts }: FigureProps): JSX
           {state === "failed" ? (
             <Text c="dimmed">{texts.failed}</Text>
           ) : (
-            <Loader aria-label={texts.loading} />
+            <Loader role="status" aria-label={texts.loading} />
           )}
         </Center>
       )}
       <section ref={root} aria-label={label} style={{ height: "100%" }} />
     </div>
   );
+}
+
+/** Whether an element was ever near the window; at once where nobody asks for it. */
+function useNear(root: RefObject<HTMLElement | null>, asked: boolean): boolean {
+  const [near, setNear] = useState(!asked);
+  useEffect(() => {
+    const element = root.current;
+    if (element === null || near) return;
+    const watch = new IntersectionObserver(
+      (entries) => {
+        if (entries.some((entry) => entry.isIntersecting)) setNear(true);
+      },
+      { rootMargin: AHEAD },
+    );
+    watch.observe(element);
+    return () => watch.disconnect();
+  }, [root, near]);
+  return near;
 }
 
 function draw(
@@ -78,7 +108,8 @@ function draw(
 const CONFIG = {
   displaylogo: false,
   responsive: false,
-  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d"],
+  // Pictures are saved by buttons of ours, with caption and mark.
+  modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage"],
 } as const;
 
 function paletteOf(element: HTMLElement, scheme: "light" | "dark"): Palette {

@@ -1,6 +1,8 @@
 /** The console's reads of the server, each with the key under which it is kept. */
+import { type Asked, analysis, type FigureGroup } from "@shared/api/analysis";
 import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
+import { exports, storageRoom, tryouts } from "@shared/api/housekeeping";
 import { type AuditFilter, audit, invitations, people } from "@shared/api/people";
 import { calibrations, consents, suggestions } from "@shared/api/records";
 import { rights } from "@shared/api/rights";
@@ -53,11 +55,19 @@ export const ledgerQuery = (key: string, kind: Kind) =>
 export const sessionsQuery = (key: string) =>
   queryOptions({ queryKey: ["studies", key, "sessions"], queryFn: () => studies.sessions(key) });
 
-export const dashboardQuery = (key: string, kind: DataKind) =>
+export const dashboardQuery = (key: string, asked: Asked, group: FigureGroup) =>
   queryOptions({
-    queryKey: ["studies", key, "dashboard", kind],
-    queryFn: () => studies.dashboard(key, kind),
+    queryKey: ["studies", key, "dashboard", asked, group],
+    queryFn: () => analysis.dashboard(key, asked, group),
     // The server tells what it drew last, and draws anew where there is more.
+    refetchInterval: ({ state }) => (state.data?.current === false ? 1500 : false),
+    placeholderData: keepPreviousData,
+  });
+
+export const statisticsQuery = (key: string, kind: DataKind) =>
+  queryOptions({
+    queryKey: ["studies", key, "statistics", kind],
+    queryFn: () => analysis.statistics(key, kind),
     refetchInterval: ({ state }) => (state.data?.current === false ? 1500 : false),
   });
 
@@ -134,3 +144,27 @@ export const participantsQuery = (key: string) =>
 /** Everything that was answered in a session, with the wordings; it changes with each correction. */
 export const formsQuery = (id: string) =>
   queryOptions({ queryKey: ["sessions", id, "forms"], queryFn: () => rights.answers(id) });
+
+export const preflightQuery = (id: string) =>
+  queryOptions({ queryKey: ["preflight", id], queryFn: () => sessions.preflight(id) });
+
+/** Looked at while something is being made. */
+export const exportsQuery = queryOptions({
+  queryKey: ["exports"],
+  queryFn: exports.list,
+  refetchInterval: ({ state }) =>
+    state.data?.some(({ state: one }) => one === "queued" || one === "making") ? 700 : false,
+});
+
+export const storageQuery = queryOptions({
+  queryKey: ["storage"],
+  queryFn: () => storageRoom.get(false),
+  refetchInterval: 60_000,
+});
+
+export const tryoutQuery = queryOptions({
+  queryKey: ["tryout"],
+  queryFn: tryouts.newest,
+  refetchInterval: ({ state }) =>
+    state.data?.state === "starting" ? 400 : state.data?.state === "running" ? 1500 : false,
+});

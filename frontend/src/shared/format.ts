@@ -59,6 +59,12 @@ export function number(value: number, language: string, digits = 2): string {
   return new Intl.NumberFormat(locale(language), { maximumFractionDigits: digits }).format(value);
 }
 
+/** `8.00`, `−0.25`: the same decimals for every value, so that they can be compared. */
+export function decimals(value: number, language: string, count: number): string {
+  const digits = { minimumFractionDigits: count, maximumFractionDigits: count };
+  return new Intl.NumberFormat(locale(language), digits).format(value).replace("-", "−");
+}
+
 /** Date and time of day in the reader's own time zone, from UTC ISO 8601. */
 export function dateTime(iso: string, language: string): string {
   return new Intl.DateTimeFormat(locale(language), {

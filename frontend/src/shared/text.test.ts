@@ -18,6 +18,14 @@ describe("texts", () => {
     ]);
   });
 
+  it("show a picture where its name stands alone", () => {
+    expect(paragraphs("Like this:\n\n![t_pose]\n\nSay ![t_pose] aloud.")).toEqual([
+      { kind: "prose", text: "Like this:" },
+      { kind: "picture", name: "t_pose" },
+      { kind: "prose", text: "Say ![t_pose] aloud." },
+    ]);
+  });
+
   it("keep markup as plain text", () => {
     expect(paragraphs("<script>alert(1)</script>")).toEqual([
       { kind: "prose", text: "<script>alert(1)</script>" },

@@ -8,14 +8,19 @@ export function inLanguage(text: Text | string | null | undefined, language: str
   return text[language] ?? text.en ?? Object.values(text)[0] ?? "";
 }
 
-/** Paragraphs of a longer text: blank lines separate them, lines starting with `- ` are points. */
+/**
+ * Paragraphs of a longer text: blank lines separate them, lines starting with `- ` are points, and
+ * `![t_pose]` alone is a picture by its name.
+ */
 export type Paragraph =
   | { readonly kind: "prose"; readonly text: string }
   | { readonly kind: "heading"; readonly text: string }
+  | { readonly kind: "picture"; readonly name: string }
   | { readonly kind: "points"; readonly points: readonly string[] };
 
 const POINT = /^\s*[-*]\s+/;
 const HEADING = /^#+\s+/;
+const PICTURE = /^!\[([a-z_]+)\]$/;
 
 /** Split a text into paragraphs, points and headings; nothing in it is ever read as HTML. */
 export function paragraphs(text: string): readonly Paragraph[] {
@@ -34,6 +39,8 @@ function paragraph(part: string): readonly Paragraph[] {
     const heading: Paragraph = { kind: "heading", text: first.replace(HEADING, "") };
     return rest === "" ? [heading] : [heading, ...paragraph(rest)];
   }
+  const picture = PICTURE.exec(part);
+  if (picture !== null) return [{ kind: "picture", name: picture[1] ?? "" }];
   const start = lines.findIndex((line) => POINT.test(line));
   if (start === -1) return [{ kind: "prose", text: lines.map((line) => line.trim()).join(" ") }];
   const points: Paragraph = { kind: "points", points: joinPoints(lines.slice(start)) };

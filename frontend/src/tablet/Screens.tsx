@@ -1,5 +1,5 @@
 /** The frame of every screen, and the choice of the screen. */
-import { SegmentedControl } from "@mantine/core";
+import { Button, SegmentedControl } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
 import type { ConsentForm } from "@shared/api/records";
 import type { TabletState } from "@shared/api/types";
@@ -7,16 +7,18 @@ import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { Icon } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
-import { type JSX, useEffect } from "react";
+import { type JSX, useEffect, useRef } from "react";
 import { useSweep } from "./drafts/useSweep";
 import { useTexts } from "./i18n";
 import classes from "./Screens.module.css";
+import { CallForHelp } from "./screens/CallForHelp";
 import { Consent } from "./screens/Consent";
 import { Finished } from "./screens/Finished";
 import { FormScreen } from "./screens/FormScreen";
 import { Held } from "./screens/Held";
 import { Reading } from "./screens/Reading";
 import { Waiting } from "./screens/Waiting";
+import { useTextSize } from "./textSize";
 import { STATE_KEY } from "./useTabletState";
 
 interface ScreensProps {
@@ -27,6 +29,7 @@ interface ScreensProps {
 
 export function Screens({ state, connected, refresh }: ScreensProps): JSX.Element {
   const { t, setLanguage, language } = useTexts();
+  const content = useFocusOnNews(state);
   useSweep(state, connected);
   useEffect(() => {
     const spoken = state.language === "de" ? "de" : "en";
@@ -43,13 +46,30 @@ export function Screens({ state, connected, refresh }: ScreensProps): JSX.Elemen
             {t("bar.offline")}
           </span>
         )}
-        <LanguageChoice state={state} />
+        <div className={classes.tools}>
+          <CallForHelp state={state} connected={connected} />
+          <TextSizeButton />
+          <LanguageChoice state={state} />
+        </div>
       </header>
-      <main className={classes.content}>
+      <main className={classes.content} ref={content} tabIndex={-1}>
         <Screen state={state} refresh={refresh} />
       </main>
     </div>
   );
+}
+
+/** Another screen is read from its beginning, also by somebody who hears it or goes by keys. */
+function useFocusOnNews({ screen, step_index, administration }: TabletState) {
+  const content = useRef<HTMLElement>(null);
+  const shown = `${screen} ${step_index} ${administration?.key ?? ""}`;
+  const before = useRef(shown);
+  useEffect(() => {
+    if (before.current === shown) return;
+    before.current = shown;
+    content.current?.focus({ preventScroll: true });
+  }, [shown]);
+  return content;
 }
 
 function Screen({ state, refresh }: Omit<ScreensProps, "connected">): JSX.Element {
@@ -80,6 +100,24 @@ function Screen({ state, refresh }: Omit<ScreensProps, "connected">): JSX.Elemen
     case "waiting":
       return <Waiting state={state} />;
   }
+}
+
+function TextSizeButton(): JSX.Element {
+  const { t } = useTexts();
+  const [size, larger] = useTextSize();
+  return (
+    <Button
+      size="sm"
+      variant="default"
+      aria-label={t("bar.textSize", { percent: Math.round(size * 100) })}
+      title={t("bar.textSize", { percent: Math.round(size * 100) })}
+      onClick={larger}
+    >
+      <span aria-hidden="true" className={classes.letters}>
+        A<span>A</span>
+      </span>
+    </Button>
+  );
 }
 
 /** Whether a consent wants more than one press. */

@@ -1,11 +1,16 @@
-/** The screen the server wants, kept current by its live feed. */
+/** The screen the server wants, kept current by its live feed, and on the tablet for bad times. */
 import { tablet } from "@shared/api/endpoints";
+import { isUnauthorised } from "@shared/api/errors";
 import { type FeedState, openFeed } from "@shared/api/live";
 import type { TabletState } from "@shared/api/types";
-import { useQuery, useQueryClient } from "@tanstack/react-query";
+import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useState } from "react";
+import { drafts } from "./drafts/useKeptForm";
 
 export const STATE_KEY = ["tablet", "state"] as const;
+
+/** A server that takes longer to answer is treated like one that is not there. */
+const PATIENCE_MS = 4000;
 
 export function useTabletState() {
   const queries = useQueryClient();
@@ -13,9 +18,12 @@ export function useTabletState() {
   const query = useQuery({
     queryKey: STATE_KEY,
     queryFn: tablet.state,
+    // Asked also where the system says there is no network: to fail is what brings the kept screen.
+    networkMode: "always",
     // Without a connection the page goes on asking; with one the feed tells of every change.
     refetchInterval: ({ state }) => (state.error === null ? false : 5000),
   });
+  useKeptScreen(query, queries);
   const paired = query.data !== undefined && query.error === null;
   useEffect(() => {
     if (!paired) return;
@@ -35,6 +43,43 @@ export function useTabletState() {
     });
   }, [paired, queries]);
   return { query, connected: paired && feed !== "lost" };
+}
+
+type StateQuery = Pick<
+  ReturnType<typeof useQuery<TabletState>>,
+  "data" | "error" | "failureReason" | "isSuccess"
+>;
+
+/**
+ * Keeps every screen of the server, and shows the last one when the page starts without an answer.
+ *
+ * A kept screen counts like an answer of long ago: the feed finds that there is no connection, the
+ * bar says so, and the page goes on asking.
+ */
+function useKeptScreen(
+  { data, error, failureReason, isSuccess }: StateQuery,
+  queries: QueryClient,
+): void {
+  useEffect(() => {
+    if (data !== undefined && isSuccess) void drafts.keepScreen(data);
+  }, [data, isSuccess]);
+  const unpaired = isUnauthorised(error);
+  useEffect(() => {
+    if (unpaired) void drafts.forgetScreen();
+  }, [unpaired]);
+  const nothing = data === undefined && !unpaired;
+  const failed = failureReason !== null;
+  useEffect(() => {
+    if (!nothing) return;
+    const show = async () => {
+      const last = await drafts.lastScreen();
+      if (last !== undefined && queries.getQueryData(STATE_KEY) === undefined) {
+        queries.setQueryData<TabletState>(STATE_KEY, last);
+      }
+    };
+    const timer = setTimeout(() => void show(), failed ? 0 : PATIENCE_MS);
+    return () => clearTimeout(timer);
+  }, [nothing, failed, queries]);
 }
 
 /** Answers and live events may cross on the line; of one session the higher version stays. */

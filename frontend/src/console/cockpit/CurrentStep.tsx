@@ -14,7 +14,6 @@ import { HeightForm } from "./HeightForm";
 import { PaperConsent } from "./PaperConsent";
 import { PauseReason } from "./PauseReason";
 import { PhaseClock } from "./PhaseClock";
-import { Readiness } from "./Readiness";
 import type { Reasoned } from "./reasons";
 import type { useSession } from "./useSession";
 
@@ -30,7 +29,7 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
   const { t } = useTexts();
   const step = currentStep(session);
   return (
-    <section className={classes.card} aria-live="polite">
+    <section className={classes.card} data-tour="step" aria-live="polite">
       {step === null ? (
         <h2 className={classes.title}>{t(`session.${session.status}`)}</h2>
       ) : (
@@ -43,7 +42,6 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
         </>
       )}
       <p className={classes.guide}>{t(guidance(session))}</p>
-      {step === null && session.status === "planned" && <Readiness session={session} />}
       {step !== null && isTimed(step) && <PhaseClock session={session} store={live.store} />}
       {session.current?.status === "paused" && <PauseReason live={live} />}
       {step?.kind === "height" && session.allowed.includes("complete_step") ? (
@@ -55,7 +53,7 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
           exceptions={<Exceptions {...props} />}
         />
       ) : (
-        <div className={classes.actions}>
+        <div className={classes.actions} data-tour="next">
           <Primary {...props} />
           <Exceptions {...props} />
         </div>

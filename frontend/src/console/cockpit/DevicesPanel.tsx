@@ -7,17 +7,22 @@ import { Icon } from "@shared/ui/Icon";
 import { useMutation } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
 import { useTexts } from "../i18n";
+import { Key } from "../ui/Key";
 import cockpit from "./Cockpit.module.css";
 import { PairingDialog } from "./PairingDialog";
 import classes from "./Panels.module.css";
+import { isBusy } from "./useKeys";
 
 const KINDS: readonly Device[] = ["tablet", "headset"];
+/** Pairing is far down the page for somebody without a mouse. */
+const PAIR_KEYS: Readonly<Record<Device, string>> = { tablet: "T", headset: "H" };
 
 export function DevicesPanel({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
   const [pairing, setPairing] = useState<Device | null>(null);
+  usePairKeys(setPairing);
   return (
-    <section>
+    <section data-tour="devices">
       <h2 className={cockpit.sectionTitle}>{t("devices.title")}</h2>
       {KINDS.map((kind) => {
         const paired = session.devices.filter((device) => device.kind === kind);
@@ -44,14 +49,36 @@ function Unpaired({ kind, onPair }: { readonly kind: Device; readonly onPair: ()
     <div className={classes.device}>
       <Icon name={kind} size={22} />
       <div>
-        <div className={classes.deviceName}>{t(`device.${kind}`)}</div>
+        <div className={classes.deviceName}>
+          {t(`device.${kind}`)} <Key name={PAIR_KEYS[kind]} />
+        </div>
         <div className={classes.deviceState}>{t("device.unpaired")}</div>
       </div>
-      <Button size="xs" variant="light" onClick={onPair} aria-label={t(`device.pair.${kind}`)}>
+      <Button
+        size="xs"
+        variant="light"
+        onClick={onPair}
+        aria-label={t(`device.pair.${kind}`)}
+        aria-keyshortcuts={PAIR_KEYS[kind]}
+      >
         {t("device.pair")}
       </Button>
     </div>
   );
+}
+
+/** Keys that show a code; a device that is there already is replaced by whoever uses it. */
+function usePairKeys(pair: (kind: Device) => void): void {
+  useEffect(() => {
+    const onKey = (event: KeyboardEvent) => {
+      const kind = KINDS.find((one) => PAIR_KEYS[one] === event.key.toUpperCase());
+      if (kind === undefined || event.repeat || isBusy(event)) return;
+      event.preventDefault();
+      pair(kind);
+    };
+    document.addEventListener("keydown", onKey);
+    return () => document.removeEventListener("keydown", onKey);
+  }, [pair]);
 }
 
 interface PairedProps {

@@ -7,6 +7,7 @@ import { type JSX, useEffect, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
+import { isOver } from "../replay/phaseNames";
 import { KindBadge } from "../ui/KindBadge";
 import { Order } from "../ui/Order";
 import { StatusBadge } from "../ui/StatusBadge";
@@ -16,11 +17,13 @@ import { Reveal } from "./Reveal";
 interface HeaderProps {
   readonly session: SessionView;
   readonly feed: FeedState;
+  /** Missing while the list is on the page anyway, or there is nothing left to check. */
+  readonly onChecks: (() => void) | undefined;
   readonly onLog: () => void;
   readonly onHelp: () => void;
 }
 
-export function Header({ session, feed, onLog, onHelp }: HeaderProps): JSX.Element {
+export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps): JSX.Element {
   const { t } = useTexts();
   const may = useMay();
   return (
@@ -45,7 +48,7 @@ export function Header({ session, feed, onLog, onHelp }: HeaderProps): JSX.Eleme
       ) : (
         <Order sequence={session.sequence} />
       )}
-      <div className={classes.tools}>
+      <div className={classes.tools} data-tour="head">
         <Feed state={feed} />
         {may("run") && hasConsent(session) && (
           <Button
@@ -56,6 +59,30 @@ export function Header({ session, feed, onLog, onHelp }: HeaderProps): JSX.Eleme
             leftSection={<Icon name="document" size={16} />}
           >
             {t("consent.link")}
+          </Button>
+        )}
+        {onChecks !== undefined && (
+          <Tooltip label={t("preflight.open")}>
+            <ActionIcon
+              variant="default"
+              size="md"
+              aria-label={t("preflight.open")}
+              onClick={onChecks}
+            >
+              <Icon name="flag" size={18} />
+            </ActionIcon>
+          </Tooltip>
+        )}
+        {session.ended_at === null && session.phases.some(isOver) && (
+          <Button
+            component="a"
+            href={`#/sessions/${encodeURIComponent(session.id)}/replay`}
+            data-tour="replay"
+            variant="default"
+            size="xs"
+            leftSection={<Icon name="play" size={16} />}
+          >
+            {t("replay.open")}
           </Button>
         )}
         <Button

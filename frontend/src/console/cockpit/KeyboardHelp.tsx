@@ -14,12 +14,16 @@ export function KeyboardHelp({ opened, onClose }: KeyboardHelpProps): JSX.Elemen
   const { t } = useTexts();
   const keys = [
     [t("keys.enterOrSpace"), t("keys.primary")],
+    ["T", t("device.pair.tablet")],
+    ["H", t("device.pair.headset")],
     ["P", t("keys.pause")],
     ["N", t("keys.note")],
     ["R", t("keys.redo")],
     ["S", t("keys.skip")],
     ["L", t("keys.log")],
     ["A", t("alarm.open")],
+    ["C", t("preflight.open")],
+    ["1 2 3", t("live3d.keys")],
     ["?", t("keys.help")],
     ["Esc", t("keys.close")],
   ] as const;

@@ -104,7 +104,7 @@ function EntryForm({ session, administration, onClose }: EntryFormProps): JSX.El
           mayOmit
           busy={save.isPending}
           onChange={setDraft}
-          onSubmit={(answers, { timings }) =>
+          onSubmit={(answers, { timings, traces }) =>
             save.mutate({
               idempotency_key: key,
               administration: administration.key,
@@ -114,6 +114,7 @@ function EntryForm({ session, administration, onClose }: EntryFormProps): JSX.El
               language: session.language,
               started_at_utc: startedAt.toISOString(),
               timings,
+              item_traces: traces,
             })
           }
         />

@@ -9,6 +9,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { useShown } from "../ui/useShown";
 import classes from "./Panels.module.css";
 
 interface PairingDialogProps {
@@ -19,12 +20,13 @@ interface PairingDialogProps {
 
 export function PairingDialog({ session, device, onClose }: PairingDialogProps): JSX.Element {
   const { t } = useTexts();
+  const named = useShown(device);
   return (
     <Modal
       opened={device !== null}
       onClose={onClose}
       size="md"
-      title={device === null ? "" : t(`device.pair.${device}`)}
+      title={named && t(`device.pair.${named}`)}
       closeButtonProps={{ "aria-label": t("action.close") }}
     >
       {device !== null && <Code session={session} device={device} onClose={onClose} />}

@@ -34,7 +34,7 @@ export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | n
   const cause = current.status === "paused" ? causeKey(current.pause_reason) : null;
   return (
     <>
-      <div className={classes.clockRow}>
+      <div className={classes.clockRow} data-tour="clock">
         <div
           className={`${classes.clock} numbers ${report.running ? "" : classes.still}`}
           role="timer"

@@ -1,9 +1,11 @@
 /** Every exception asks why, because the record keeps the reason; common reasons are one key away. */
-import { Button, Chip, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
+import { Button, Group, Modal, Stack, Text } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { ReasonField } from "../ui/ReasonField";
+import { useShown } from "../ui/useShown";
 import { RedoChoice } from "./RedoChoice";
 import { COMMON_REASONS, type Reasoned } from "./reasons";
 import { redoTarget } from "./redo";
@@ -18,11 +20,12 @@ interface ReasonDialogProps {
 
 export function ReasonDialog({ type, session, live, onClose }: ReasonDialogProps): JSX.Element {
   const { t } = useTexts();
+  const named = useShown(type);
   return (
     <Modal
       opened={type !== null}
       onClose={onClose}
-      title={type === null ? "" : t(`ask.${type}`)}
+      title={named && t(`ask.${named}`)}
       closeButtonProps={{ "aria-label": t("action.close") }}
     >
       {type !== null && <ReasonForm type={type} session={session} live={live} onClose={onClose} />}
@@ -51,27 +54,7 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
       <Stack>
         <Text c="dimmed">{t(`ask.${type}.body`)}</Text>
         {type === "redo" && <RedoChoice session={session} step={step} onChange={setStep} />}
-        <Group gap="xs">
-          {COMMON_REASONS[type].map((key) => (
-            <Chip key={key} checked={reason === t(key)} onChange={() => setReason(t(key))}>
-              {t(key)}
-            </Chip>
-          ))}
-        </Group>
-        <Textarea
-          label={t("ask.reason")}
-          data-autofocus
-          autosize
-          minRows={2}
-          maxLength={500}
-          value={reason}
-          onChange={(event) => setReason(event.currentTarget.value)}
-          onKeyDown={(event) => {
-            if (event.key !== "Enter" || event.shiftKey) return;
-            event.preventDefault();
-            event.currentTarget.form?.requestSubmit();
-          }}
-        />
+        <ReasonField usual={COMMON_REASONS[type]} value={reason} onChange={setReason} />
         {live.error !== null && <Failure error={live.error} />}
         <Group justify="flex-end">
           <Button variant="default" onClick={onClose}>

@@ -1,5 +1,5 @@
 /** Showing a blinded session's condition before it is over: for a reason that the record keeps. */
-import { Button, Chip, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
+import { Button, Group, Modal, Stack, Text } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { blinding } from "@shared/api/people";
 import type { SessionView } from "@shared/api/types";
@@ -9,6 +9,7 @@ import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
 import { useMay } from "../may";
 import { sessionQuery } from "../queries";
+import { ReasonField } from "../ui/ReasonField";
 
 const REASONS: readonly Key[] = [
   "blind.reason.adverse",
@@ -64,22 +65,7 @@ function RevealForm({ session, onClose }: RevealFormProps): JSX.Element {
     >
       <Stack>
         <Text c="dimmed">{t("blind.ask.body")}</Text>
-        <Group gap="xs">
-          {REASONS.map((key) => (
-            <Chip key={key} checked={reason === t(key)} onChange={() => setReason(t(key))}>
-              {t(key)}
-            </Chip>
-          ))}
-        </Group>
-        <Textarea
-          label={t("ask.reason")}
-          data-autofocus
-          autosize
-          minRows={2}
-          maxLength={500}
-          value={reason}
-          onChange={(event) => setReason(event.currentTarget.value)}
-        />
+        <ReasonField usual={REASONS} value={reason} onChange={setReason} />
         {reveal.isError && <Failure error={reveal.error} />}
         <Group justify="flex-end">
           <Button variant="default" onClick={onClose}>

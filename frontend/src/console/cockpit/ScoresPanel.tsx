@@ -9,6 +9,7 @@ import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { AnswersDrawer } from "../rights/AnswersDrawer";
 import { stepName } from "../steps";
+import { AnswerHints } from "./AnswerHints";
 import cockpit from "./Cockpit.module.css";
 import classes from "./Panels.module.css";
 
@@ -16,7 +17,9 @@ export function ScoresPanel({ session }: { readonly session: SessionView }): JSX
   const { t } = useTexts();
   const may = useMay();
   const [opened, { open, close }] = useDisclosure();
-  const scored = session.scores.filter(({ score_views }) => score_views.length > 0);
+  const scored = session.scores.filter(
+    ({ score_views, hints }) => score_views.length > 0 || hints.length > 0,
+  );
   return (
     <section>
       <div className={classes.titleRow}>
@@ -66,6 +69,7 @@ function Scores({ session, one }: ScoresProps): JSX.Element {
           </div>
         ))}
       </dl>
+      <AnswerHints hints={one.hints} />
     </div>
   );
 }

@@ -6,6 +6,7 @@ import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { AfterWithdrawal } from "../rights/AfterWithdrawal";
+import { Tour } from "../tour/Tour";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/useTitle";
 import { AlarmDrawer } from "./AlarmDrawer";
@@ -19,10 +20,15 @@ import { EventDrawer } from "./EventDrawer";
 import { Header } from "./Header";
 import { HeldCard } from "./HeldCard";
 import { KeyboardHelp } from "./KeyboardHelp";
+import { hasMovement, LiveCard } from "./live3d/LiveCard";
 import { NotesPanel } from "./NotesPanel";
 import { OperatorEntry } from "./OperatorEntry";
 import { PhaseTable } from "./PhaseTable";
+import { PreflightBody, PreflightCard } from "./preflight/PreflightCard";
+import { StartAnyway } from "./preflight/StartAnyway";
+import { usePreflight } from "./preflight/usePreflight";
 import { ReasonDialog } from "./ReasonDialog";
+import { RecordDrawer } from "./RecordDrawer";
 import type { Reasoned } from "./reasons";
 import { ScoresPanel } from "./ScoresPanel";
 import { SignalStrip } from "./SignalStrip";
@@ -31,7 +37,7 @@ import { TelemetryCard } from "./TelemetryCard";
 import { Timeline } from "./Timeline";
 import { useAlarms } from "./useAlarms";
 import { useKeys } from "./useKeys";
-import { useSession } from "./useSession";
+import { type Send, useSession } from "./useSession";
 
 /** Only one of them is ever allowed. Pausing asks for no reason: it has to be quick. */
 const PAUSING = ["pause", "resume"] as const;
@@ -54,7 +60,7 @@ interface CockpitProps {
   readonly live: ReturnType<typeof useSession>;
 }
 
-function Cockpit({ session, live }: CockpitProps): JSX.Element {
+function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
   const { t } = useTexts();
   const may = useMay();
   const [asking, setAsking] = useState<Reasoned | null>(null);
@@ -62,6 +68,13 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
   const [help, helps] = useDisclosure();
   const [entry, entries] = useDisclosure();
   const [history, histories] = useDisclosure();
+  const [list, lists] = useDisclosure();
+  const isPlanned = may("run") && session.status === "planned";
+  const flight = usePreflight(session, direct, isPlanned || list);
+  // A start looks at the list first; everything else goes its own way.
+  const send: Send = (command, onDone) =>
+    command.type === "start" ? void flight.start() : direct.send(command, onDone);
+  const live = { ...direct, send, sending: direct.sending || flight.looking };
   const alarms = useAlarms(session, live.store, live.storage);
   const worst = alarms.on[0];
   const ended = session.ended_at !== null;
@@ -89,14 +102,21 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
     log: logs.toggle,
     help: helps.toggle,
     alarms: histories.toggle,
+    checks: () => (isPlanned || ended || !may("run") ? undefined : lists.toggle()),
     step: `${session.current?.index} ${session.current?.status}`,
   });
   return (
     <div className={classes.cockpit}>
-      <Header session={session} feed={live.feed} onLog={logs.open} onHelp={helps.open} />
+      <Header
+        session={session}
+        feed={live.feed}
+        onChecks={isPlanned || ended || !may("run") ? undefined : lists.open}
+        onLog={logs.open}
+        onHelp={helps.open}
+      />
       <SignalStrip session={session} alarms={alarms} onHistory={histories.open} />
       <Timeline session={session} />
-      <div className={classes.centre}>
+      <div className={classes.centre} data-tour="centre">
         {session.simulated && (
           <Notice tone="sim" title={t("simulated.session", { scale: session.time_scale })} />
         )}
@@ -109,19 +129,26 @@ function Cockpit({ session, live }: CockpitProps): JSX.Element {
         ) : (
           <HeldCard held={session.held} onAsk={ask} />
         )}
+        {isPlanned && <PreflightCard session={session} flight={flight} />}
+        {hasMovement(session) && <LiveCard session={session} store={live.store} />}
         <TelemetryCard session={session} store={live.store} />
         {ended && <PhaseTable session={session} />}
       </div>
-      <aside className={classes.side} aria-label={t("side.label")}>
+      <aside className={classes.side} data-tour="side" aria-label={t("side.label")}>
         {!ended && may("run") && <DevicesPanel session={session} />}
         {session.kind === "expert" && <SuggestionsPanel session={session} />}
         <NotesPanel session={session} send={live.send} sending={live.sending} />
         <ScoresPanel session={session} />
       </aside>
+      <StartAnyway session={session} live={direct} flight={flight} />
+      <RecordDrawer title={t("preflight.open")} opened={list} onClose={lists.close}>
+        <PreflightBody session={session} flight={flight} />
+      </RecordDrawer>
       <ReasonDialog type={asking} session={session} live={live} onClose={() => setAsking(null)} />
       <EventDrawer session={session} opened={log} onClose={logs.close} />
       <AlarmDrawer session={session} opened={history} onClose={histories.close} />
       <KeyboardHelp opened={help} onClose={helps.close} />
+      <Tour />
       <OperatorEntry
         session={session}
         step={currentStep(session)}

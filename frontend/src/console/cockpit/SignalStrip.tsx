@@ -3,12 +3,14 @@
  * fills it with colour and says what to do, and nothing on the page moves.
  */
 import { Button } from "@mantine/core";
+import { sessions } from "@shared/api/endpoints";
 import type { SessionView, Signal } from "@shared/api/types";
 import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
-import { useQuery } from "@tanstack/react-query";
+import { useMutation, useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../i18n";
+import { useMay } from "../may";
 import { alarmsQuery } from "../queries";
 import {
   amount,
@@ -38,6 +40,7 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
   return (
     <section
       className={`${classes.strip} ${tone} ${seen ? classes.seen : ""}`}
+      data-tour="signal"
       aria-label={t("signal.label")}
     >
       {first === undefined ? (
@@ -45,7 +48,8 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
       ) : (
         <Wrong alarm={first} session={session} others={alarms.on.length - 1} />
       )}
-      {first !== undefined && !seen && (
+      {first?.code === "help_asked" && <AnswerCall session={session} />}
+      {first !== undefined && first.code !== "help_asked" && !seen && (
         <Button size="xs" variant="default" onClick={() => alarms.see(first)}>
           {t("alarm.understood")}
         </Button>
@@ -61,6 +65,19 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
         {total > 0 && <span className={`${classes.total} numbers`}>{total}</span>}
       </Button>
     </section>
+  );
+}
+
+/** The participant's call ends when somebody is there, not when somebody has read of it. */
+function AnswerCall({ session }: { readonly session: SessionView }): JSX.Element | null {
+  const { t } = useTexts();
+  const may = useMay();
+  const answer = useMutation({ mutationFn: () => sessions.answerHelp(session.id) });
+  if (!may("run")) return null;
+  return (
+    <Button size="xs" loading={answer.isPending} onClick={() => answer.mutate()}>
+      {t("alarm.help_asked.answer")}
+    </Button>
   );
 }
 

@@ -11,10 +11,10 @@ import { groupSteps, type StepGroup } from "./groupSteps";
 import classes from "./Timeline.module.css";
 
 export function Timeline({ session }: { readonly session: SessionView }): JSX.Element {
-  const { t } = useTexts();
+  const label = useTexts().t("timeline.label");
   return (
     // biome-ignore lint/a11y/noNoninteractiveTabindex: a region that scrolls has to take the focus
-    <nav className={cockpit.steps} tabIndex={0} aria-label={t("timeline.label")}>
+    <nav className={cockpit.steps} tabIndex={0} data-tour="timeline" aria-label={label}>
       {groupSteps(session.steps).map((group) => (
         <Group key={group.steps[0]?.index} group={group} session={session} />
       ))}

@@ -88,6 +88,7 @@ const CODES = [
   "stop_rule_met",
   "stop_rule_near",
   "stop_rule_unknown",
+  "help_asked",
 ] as const;
 
 type Code = (typeof CODES)[number];

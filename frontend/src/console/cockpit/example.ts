@@ -52,6 +52,7 @@ export const session: SessionView = {
   held: null,
   blinded: false,
   avatar: "delayed_copy",
+  avatar_configuration_hash: null,
   language: "en",
   version: 1,
   status: "active",

@@ -19,5 +19,8 @@ export function useFormTexts(): FormTexts {
       low === null || high === null
         ? (units[unit] ?? unit)
         : t("form.range", { low, high, unit: units[unit] ?? unit }).trim(),
+    whole: t("form.whole"),
+    atLeast: (low, unit) => t("form.atLeast", { low, unit: units[unit] ?? unit }).trim(),
+    atMost: (high, unit) => t("form.atMost", { high, unit: units[unit] ?? unit }).trim(),
   };
 }

@@ -10,6 +10,7 @@ export interface Keys {
   readonly log: () => void;
   readonly help: () => void;
   readonly alarms: () => void;
+  readonly checks: () => void;
   /** Changes whenever the primary action means something else. */
   readonly step: string;
 }
@@ -26,6 +27,7 @@ const BINDINGS: Readonly<Record<string, Exclude<keyof Keys, "step">>> = {
   n: "note",
   l: "log",
   a: "alarms",
+  c: "checks",
   "?": "help",
 };
 
@@ -53,7 +55,8 @@ export function useKeys(keys: Keys): void {
   }, []);
 }
 
-function isBusy(event: KeyboardEvent): boolean {
+/** Something is being typed, a dialog is open, or the key belongs to the browser. */
+export function isBusy(event: KeyboardEvent): boolean {
   if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return true;
   const target = event.target as HTMLElement;
   if (target.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName)) return true;

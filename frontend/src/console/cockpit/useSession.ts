@@ -60,15 +60,30 @@ export function useSession(id: string) {
     },
     onError: async (error, sent) => {
       if (!isApiError(error, "stale")) return;
-      const fresh = await sessions.get(id);
-      accept(fresh);
-      setOvertaken({ command: sent.command, changes: changesBetween(sent.view, fresh) });
+      overtake(sent, await sessions.get(id));
     },
   });
+
+  const overtake = (
+    sent: { readonly view: SessionView; readonly command: Command },
+    fresh: SessionView,
+  ) => {
+    accept(fresh);
+    setOvertaken({ command: sent.command, changes: changesBetween(sent.view, fresh) });
+  };
 
   const send: Send = (order, onDone) => {
     if (query.data === undefined || command.isPending) return;
     command.mutate({ view: query.data, command: order }, { onSuccess: () => onDone?.() });
+  };
+
+  /** For an order prepared on `seen` whose own notes have changed the version since. */
+  const sendAnew = async (seen: SessionView, order: Command): Promise<void> => {
+    const fresh = await sessions.get(id);
+    if (fresh.status !== seen.status) return overtake({ view: seen, command: order }, fresh);
+    await command.mutateAsync({ view: fresh, command: order }).catch((error: unknown) => {
+      if (!isTold(error)) throw error;
+    });
   };
 
   return {
@@ -77,6 +92,7 @@ export function useSession(id: string) {
     storage,
     feed,
     send,
+    sendAnew,
     sending: command.isPending,
     error: isTold(command.error) ? null : command.error,
     overtaken,

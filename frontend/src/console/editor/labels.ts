@@ -1,7 +1,9 @@
 /** What fields and their values are called: in the reader's language where we have a word for them. */
 import { type Key, useTexts } from "../i18n";
-import { editorEn } from "../i18n/editorTexts";
+import { fieldsEn } from "../i18n/fieldTexts";
+import { preregistrationEn } from "../i18n/preregistrationTexts";
 
+const NAMED: Readonly<Record<string, string>> = { ...fieldsEn, ...preregistrationEn };
 const UNITS: Readonly<Record<string, string>> = { s: "s", ms: "ms", m: "m", cm: "cm", deg: "°" };
 
 /** `freeze_s` as `Freeze (s)`: for a setting that is newer than the tables of words. */
@@ -21,7 +23,7 @@ export interface Labels {
 
 export function useLabels(): Labels {
   const { t } = useTexts();
-  const known = (key: string): string | undefined => (key in editorEn ? t(key as Key) : undefined);
+  const known = (key: string): string | undefined => (key in NAMED ? t(key as Key) : undefined);
   return {
     field: (name) => known(`field.${name}`) ?? readable(name),
     hint: (name) => known(`hint.${name}`),

@@ -12,12 +12,21 @@ export const SECTIONS = [
   "texts",
   "blinding",
   "places",
+  "preregistration",
 ] as const;
 export type Section = (typeof SECTIONS)[number];
 
 /** Settings by the beginning of their path. What is claimed by nobody is shown under safety. */
 const CLAIMED: Readonly<Record<Section, readonly string[]>> = {
-  basics: ["key", "title", "description", "languages", "avatar", "provenance"],
+  basics: [
+    "key",
+    "title",
+    "description",
+    "languages",
+    "avatar",
+    "avatar_configuration",
+    "provenance",
+  ],
   conditions: ["conditions", "latency"],
   orders: ["orders"],
   procedure: ["procedure"],
@@ -26,6 +35,7 @@ const CLAIMED: Readonly<Record<Section, readonly string[]>> = {
   texts: ["texts"],
   blinding: ["blinding", "on_disconnect"],
   places: ["tasks", "appearance"],
+  preregistration: ["preregistration"],
 };
 
 /** The top settings of a section, in the order of the file. */

@@ -5,19 +5,39 @@ import {
   type Texts,
   useTranslations,
 } from "@shared/i18n/i18n";
+import { analysisDe, analysisEn } from "./analysisTexts";
+import { answerHintsDe, answerHintsEn } from "./answerHintTexts";
 import { auditDe, auditEn } from "./auditTexts";
+import { capturesDe, capturesEn } from "./captureTexts";
+import { captureViewDe, captureViewEn } from "./captureViewTexts";
 import { consentDe, consentEn } from "./consentTexts";
 import { de } from "./de";
+import { downloadsDe, downloadsEn } from "./downloadTexts";
 import { editorDe, editorEn } from "./editorTexts";
 import { en } from "./en";
 import { equipmentDe, equipmentEn } from "./equipmentTexts";
 import { expertDe, expertEn } from "./expertTexts";
+import { fieldsDe, fieldsEn } from "./fieldTexts";
+import { importsDe, importsEn } from "./importTexts";
 import { instrumentsDe, instrumentsEn } from "./instrumentTexts";
 import { joinDe, joinEn } from "./joinTexts";
+import { jointMapDe, jointMapEn } from "./jointMapTexts";
+import { liveDe, liveEn } from "./liveTexts";
 import { networkDe, networkEn } from "./networkTexts";
 import { peopleDe, peopleEn } from "./peopleTexts";
+import { preflightDe, preflightEn } from "./preflightTexts";
+import { preregistrationDe, preregistrationEn } from "./preregistrationTexts";
+import { replayDe, replayEn } from "./replayTexts";
 import { rightsDe, rightsEn } from "./rightsTexts";
 import { safetyDe, safetyEn } from "./safetyTexts";
+import { storageDe, storageEn } from "./storageTexts";
+import { studyDe, studyEn } from "./studyTexts";
+import { tourDe, tourEn } from "./tourTexts";
+import { verificationDe, verificationEn } from "./verificationTexts";
+import { versionsDe, versionsEn } from "./versionTexts";
+import { walkingModelDe, walkingModelEn } from "./walkingModelTexts";
+import { walkingDe, walkingEn } from "./walkingTexts";
+import { walkSetDe, walkSetEn } from "./walkSetTexts";
 
 const allEn = {
   ...en,
@@ -26,12 +46,32 @@ const allEn = {
   ...auditEn,
   ...networkEn,
   ...editorEn,
+  ...fieldsEn,
+  ...versionsEn,
+  ...studyEn,
   ...instrumentsEn,
   ...rightsEn,
   ...safetyEn,
   ...consentEn,
   ...expertEn,
   ...equipmentEn,
+  ...capturesEn,
+  ...captureViewEn,
+  ...walkingEn,
+  ...walkingModelEn,
+  ...walkSetEn,
+  ...jointMapEn,
+  ...verificationEn,
+  ...preflightEn,
+  ...liveEn,
+  ...replayEn,
+  ...answerHintsEn,
+  ...downloadsEn,
+  ...storageEn,
+  ...tourEn,
+  ...analysisEn,
+  ...importsEn,
+  ...preregistrationEn,
 };
 const allDe = {
   ...de,
@@ -40,12 +80,32 @@ const allDe = {
   ...auditDe,
   ...networkDe,
   ...editorDe,
+  ...fieldsDe,
+  ...versionsDe,
+  ...studyDe,
   ...instrumentsDe,
   ...rightsDe,
   ...safetyDe,
   ...consentDe,
   ...expertDe,
   ...equipmentDe,
+  ...capturesDe,
+  ...captureViewDe,
+  ...walkingDe,
+  ...walkingModelDe,
+  ...walkSetDe,
+  ...jointMapDe,
+  ...verificationDe,
+  ...preflightDe,
+  ...liveDe,
+  ...replayDe,
+  ...answerHintsDe,
+  ...downloadsDe,
+  ...storageDe,
+  ...tourDe,
+  ...analysisDe,
+  ...importsDe,
+  ...preregistrationDe,
 };
 
 export type Key = KeyOf<typeof allEn>;

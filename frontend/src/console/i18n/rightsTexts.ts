@@ -78,7 +78,7 @@ export const rightsEn = {
   "withdrew.erased": "The participant's data were erased",
   "withdrew.erased.body": "On {{date}} by {{by}}. Only the skeleton of the session is left.",
   "export.file.corrections": "corrections.csv",
-  "export.about.corrections": "Answers that were corrected: before, after, why, by whom",
+  "export.about.corrections": "Answers that were corrected: before, after, why, by whom.",
 };
 
 export const rightsDe: Readonly<Record<keyof typeof rightsEn, string>> = {
@@ -161,5 +161,5 @@ export const rightsDe: Readonly<Record<keyof typeof rightsEn, string>> = {
   "withdrew.erased": "Die Daten der Person wurden gelöscht",
   "withdrew.erased.body": "Am {{date}} von {{by}}. Nur das Gerüst der Sitzung ist geblieben.",
   "export.file.corrections": "corrections.csv",
-  "export.about.corrections": "Berichtigte Antworten: vorher, nachher, warum, durch wen",
+  "export.about.corrections": "Berichtigte Antworten: vorher, nachher, warum, durch wen.",
 };

@@ -5,6 +5,7 @@ import { instruments, type TryResult } from "@shared/api/drafts";
 import type { Administration, InstrumentPreview } from "@shared/api/types";
 import { number } from "@shared/format";
 import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
+import { answersOf } from "@shared/forms/questions";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { inLanguage } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
@@ -16,9 +17,6 @@ import { useTexts } from "../i18n";
 import classes from "./Instruments.module.css";
 
 const FormView = lazy(async () => ({ default: (await import("@shared/forms/FormView")).FormView }));
-const answersOf = async (
-  ...given: Parameters<typeof import("@shared/forms/surveyJson").answersOf>
-) => (await import("@shared/forms/surveyJson")).answersOf(...given);
 
 interface TryItProps {
   readonly preview: InstrumentPreview;
@@ -126,7 +124,7 @@ function Scores({ preview, yaml, draft }: TryItProps & { readonly draft: FormDra
   const [settled] = useDebouncedValue(draft.data, 250);
   const query = useQuery({
     queryKey: ["try", yaml, settled],
-    queryFn: async () => instruments.score(yaml, await answersOf(preview.instrument, settled)),
+    queryFn: () => instruments.score(yaml, answersOf(preview.instrument, settled)),
     placeholderData: keepPreviousData,
     gcTime: 0,
   });

@@ -6,6 +6,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { useShown } from "../ui/useShown";
 import { CopyList } from "./CopyList";
 import classes from "./Rights.module.css";
 import { Tombstone } from "./Tombstone";
@@ -19,12 +20,13 @@ interface EraseDialogProps {
 
 export function EraseDialog({ studyKey, participant, onClose }: EraseDialogProps): JSX.Element {
   const { t } = useTexts();
+  const named = useShown(participant);
   return (
     <Modal
       opened={participant !== null}
       onClose={onClose}
       size="lg"
-      title={participant === null ? "" : t("erase.title", { code: participant.code })}
+      title={named && t("erase.title", { code: named.code })}
       closeOnClickOutside={false}
       closeButtonProps={{ "aria-label": t("action.close") }}
     >

@@ -5,16 +5,16 @@ import type {
   Account,
   Administration,
   Alarm,
+  Check,
   CheckResult,
   CodebookColumn,
   Command,
-  Dashboard,
-  DataKind,
   Device,
   Kind,
   Ledger,
   Network,
   Pairing,
+  Preflight,
   Receipt,
   SessionEvent,
   SessionSummary,
@@ -63,12 +63,6 @@ export const studies = {
         body: { time_scale: 1, ...wish },
       }),
     ),
-  dashboard: (key: string, kind: DataKind) =>
-    answer<Dashboard>(
-      server.GET("/api/studies/{key}/dashboard", { params: { path: { key }, query: { kind } } }),
-    ),
-  exportUrl: (key: string, kind: DataKind) =>
-    `/api/studies/${encodeURIComponent(key)}/export?kind=${kind}`,
   codebook: (key: string) =>
     answer<readonly CodebookColumn[]>(server.GET("/api/studies/{key}/codebook", study(key))),
 };
@@ -102,10 +96,22 @@ export const sessions = {
     answer<Administration | null>(
       server.GET("/api/sessions/{session_id}/administration", session(id)),
     ),
+  answerHelp: (id: string) =>
+    answer<void>(server.POST("/api/sessions/{session_id}/help/answered", session(id))),
   submit: (id: string, submission: Submission) =>
     answer<Receipt>(
       server.POST("/api/sessions/{session_id}/submissions", { ...session(id), body: submission }),
     ),
+  preflight: (id: string) =>
+    answer<Preflight>(server.GET("/api/sessions/{session_id}/preflight", session(id))),
+  override: (id: string, check: Check["key"], reason: string) =>
+    answer<Check>(
+      server.POST("/api/sessions/{session_id}/preflight/overrides", {
+        ...session(id),
+        body: { check, reason },
+      }),
+    ),
+  poseUrl: (id: string) => `/api/sessions/${encodeURIComponent(id)}/pose`,
   liveUrl: (id: string) => `/api/sessions/${encodeURIComponent(id)}/live`,
 };
 
@@ -119,6 +125,8 @@ export const tablet = {
     answer<TabletState>(server.PUT("/api/tablet/language", { body: { language } })),
   submit: (submission: Submission) =>
     answer<Receipt>(server.POST("/api/tablet/submissions", { body: submission })),
+  help: (asked: boolean) =>
+    answer<TabletState>(server.PUT("/api/tablet/help", { body: { asked } })),
   acknowledge: (stepIndex: number) =>
     answer<TabletState>(
       server.POST("/api/tablet/acknowledge", { body: { step_index: stepIndex } }),

@@ -104,6 +104,150 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/avatars": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Avatars
+         * @description Every avatar's configuration, as its newest version is.
+         */
+        readonly get: operations["get_avatars_api_avatars_get"];
+        readonly put?: never;
+        /**
+         * Post Avatar
+         * @description Save a configuration under a new key.
+         */
+        readonly post: operations["post_avatar_api_avatars_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatars/{key}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Avatar
+         * @description One avatar with all its versions, and the newest in full.
+         */
+        readonly get: operations["get_avatar_api_avatars__key__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatars/{key}/model": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Avatar Model
+         * @description The avatar of a stature as a MuJoCo model, the newest version if none is named.
+         */
+        readonly get: operations["get_avatar_model_api_avatars__key__model_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatars/{key}/versions": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Avatar Version
+         * @description Append a version; the content of the newest gives the newest.
+         */
+        readonly post: operations["post_avatar_version_api_avatars__key__versions_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatars/{key}/versions/{number}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Avatar Version
+         * @description One version in full.
+         */
+        readonly get: operations["get_avatar_version_api_avatars__key__versions__number__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatars/{key}/versions/{number}/file": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Avatar File
+         * @description A version as a JSON file to keep, which can be brought in again.
+         */
+        readonly get: operations["get_avatar_file_api_avatars__key__versions__number__file_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/avatars/check": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Avatar Check
+         * @description Read a file without storing it: its configuration, or every problem with its place.
+         */
+        readonly post: operations["post_avatar_check_api_avatars_check_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/calibrations": {
         readonly parameters: {
             readonly query?: never;
@@ -142,6 +286,189 @@ export interface paths {
          * @description Say that a measurement was a mistake; it stays in the history.
          */
         readonly post: operations["post_retirement_api_calibrations__calibration_id__retire_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/captures": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Captures
+         * @description The captures of the lab, the newest first.
+         */
+        readonly get: operations["get_captures_api_captures_get"];
+        readonly put?: never;
+        /**
+         * Post Capture
+         * @description Store a capture file, which is the body of the request.
+         *
+         *     Where one file is not enough (an AMC needs its ASF) the body goes on with the other one: its
+         *     name is `companion`, and `companion_bytes` tells how many of the last bytes are it.
+         */
+        readonly post: operations["post_capture_api_captures_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/captures/{capture_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Capture
+         * @description One capture and what reading it found.
+         */
+        readonly get: operations["get_capture_api_captures__capture_id__get"];
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Capture
+         * @description Delete a capture, and its file unless another capture uses it.
+         */
+        readonly delete: operations["delete_capture_api_captures__capture_id__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        /**
+         * Patch Capture
+         * @description Change the title, or read the file by other conventions.
+         */
+        readonly patch: operations["patch_capture_api_captures__capture_id__patch"];
+        readonly trace?: never;
+    };
+    readonly "/api/captures/{capture_id}/file": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get File
+         * @description The file, or its companion, as it was uploaded.
+         */
+        readonly get: operations["get_file_api_captures__capture_id__file_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/captures/{capture_id}/joint-map": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Joint Map
+         * @description The joint map of the capture's skeleton: what was saved, else what is proposed.
+         */
+        readonly get: operations["get_joint_map_api_captures__capture_id__joint_map_get"];
+        /**
+         * Put Joint Map
+         * @description Save a joint map for every capture of this skeleton, as a new version.
+         */
+        readonly put: operations["put_joint_map_api_captures__capture_id__joint_map_put"];
+        readonly post?: never;
+        /**
+         * Delete Joint Map
+         * @description Go back to the proposal, as a new version.
+         */
+        readonly delete: operations["delete_joint_map_api_captures__capture_id__joint_map_delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/captures/{capture_id}/motion": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Motion
+         * @description Positions over time for a preview: as recorded, or of the capture's skeleton.
+         */
+        readonly get: operations["get_motion_api_captures__capture_id__motion_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/captures/{capture_id}/retargeted": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Retargeted
+         * @description The movement on an avatar, to keep.
+         */
+        readonly get: operations["get_retargeted_api_captures__capture_id__retargeted_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/captures/{capture_id}/retargeted-motion": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Retargeted Motion
+         * @description Positions over time of an avatar's joints, for a preview.
+         */
+        readonly get: operations["get_retargeted_motion_api_captures__capture_id__retargeted_motion_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/captures/{capture_id}/verification": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Verification
+         * @description Whether the movement keeps its characteristics on avatars of these statures.
+         */
+        readonly get: operations["get_verification_api_captures__capture_id__verification_get"];
+        readonly put?: never;
+        readonly post?: never;
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -188,6 +515,70 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/exports": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Exports
+         * @description The caller's exports, newest first: waiting, under way, ready or failed.
+         */
+        readonly get: operations["get_exports_api_exports_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/exports/{export_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get One Export
+         * @description How far one is.
+         */
+        readonly get: operations["get_one_export_api_exports__export_id__get"];
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Export
+         * @description Stop making it, or remove the file.
+         */
+        readonly delete: operations["delete_export_api_exports__export_id__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/exports/{export_id}/file": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Export File
+         * @description The file; a download that broke off goes on where it was (`Range`, `If-Range`).
+         */
+        readonly get: operations["get_export_file_api_exports__export_id__file_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/health": {
         readonly parameters: {
             readonly query?: never;
@@ -200,6 +591,70 @@ export interface paths {
          * @description Whether the server and its database answer.
          */
         readonly get: operations["get_health_api_health_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/humanoids": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Humanoids
+         * @description The humanoid models of the lab, the newest first.
+         */
+        readonly get: operations["get_humanoids_api_humanoids_get"];
+        readonly put?: never;
+        /**
+         * Post Humanoid
+         * @description Store a humanoid model, which is the body of the request: GLB, glTF in one file, or VRM.
+         */
+        readonly post: operations["post_humanoid_api_humanoids_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/humanoids/{content_hash}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Humanoid
+         * @description One model: the body parts it has and lacks, its lengths and convex pieces.
+         */
+        readonly get: operations["get_humanoid_api_humanoids__content_hash__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/humanoids/{content_hash}/file": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Humanoid File
+         * @description The model's file as it was uploaded.
+         */
+        readonly get: operations["get_humanoid_file_api_humanoids__content_hash__file_get"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -636,6 +1091,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/sessions/{session_id}/help/answered": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Help Answered
+         * @description Say that somebody went to the participant; the tablet says so, too.
+         */
+        readonly post: operations["post_help_answered_api_sessions__session_id__help_answered_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/sessions/{session_id}/live": {
         readonly parameters: {
             readonly query?: never;
@@ -673,6 +1148,88 @@ export interface paths {
          * @description Show a new code for a device of this session; an older unused code stops working.
          */
         readonly post: operations["post_pairing_api_sessions__session_id__pairings_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/sessions/{session_id}/phases/{phase_id}/movement": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Movement
+         * @description Where the joints of participant and avatar were, to be drawn.
+         */
+        readonly get: operations["get_movement_api_sessions__session_id__phases__phase_id__movement_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/sessions/{session_id}/phases/{phase_id}/replay": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Replay
+         * @description What happened in a phase that is over, on the phase's own time.
+         */
+        readonly get: operations["get_replay_api_sessions__session_id__phases__phase_id__replay_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/sessions/{session_id}/preflight": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Preflight
+         * @description Every check, made now: devices, signal, storage, latency, and the study's content.
+         *
+         *     It writes 64 kB to the database and to the data folder, reads them back and removes them.
+         */
+        readonly get: operations["get_preflight_api_sessions__session_id__preflight_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/sessions/{session_id}/preflight/overrides": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Override
+         * @description Go on although a check is not green, for a reason that goes on record.
+         */
+        readonly post: operations["post_override_api_sessions__session_id__preflight_overrides_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -775,6 +1332,26 @@ export interface paths {
          * @description Correct an answer: the first one is kept, the scores are computed anew.
          */
         readonly post: operations["post_correction_api_sessions__session_id__submissions__submission_id__corrections_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/storage": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Storage
+         * @description Tables, folders, disk, studies and the largest sessions; `anew` measures once more.
+         */
+        readonly get: operations["get_storage_api_storage_get"];
+        readonly put?: never;
+        readonly post?: never;
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -895,8 +1472,31 @@ export interface paths {
         /**
          * Get Dashboard
          * @description The figures of a study's sessions of one kind, as drawn last; ask again while not current.
+         *
+         *     The filter chooses sessions and rows before anything is drawn. One group of the figures is there
+         *     sooner than all of them.
          */
         readonly get: operations["get_dashboard_api_studies__key__dashboard_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/dashboard/{figure}/rows": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Figure Rows
+         * @description The rows that a figure is drawn from, as CSV; comment lines above them say what they are.
+         */
+        readonly get: operations["get_figure_rows_api_studies__key__dashboard__figure__rows_get"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -963,6 +1563,170 @@ export interface paths {
         readonly get: operations["get_export_api_studies__key__export_get"];
         readonly put?: never;
         readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/exports": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Export
+         * @description Have a study's sessions of one kind, or one session, made into a ZIP of CSV files.
+         */
+        readonly post: operations["post_export_api_studies__key__exports_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/imports": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Imports
+         * @description Every import of a study, newest first; undone ones too.
+         */
+        readonly get: operations["get_imports_api_studies__key__imports_get"];
+        readonly put?: never;
+        /**
+         * Post Import
+         * @description Take a file in: every form or none.
+         */
+        readonly post: operations["post_import_api_studies__key__imports_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/imports/{import_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Import
+         * @description One import, and what its scores came to.
+         */
+        readonly get: operations["get_import_api_studies__key__imports__import_id__get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/imports/{import_id}/table": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Import Table
+         * @description The forms of an import as CSV; every row says that it is imported.
+         */
+        readonly get: operations["get_import_table_api_studies__key__imports__import_id__table_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/imports/{import_id}/undo": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Undo
+         * @description Take the forms of an import away; who did it and why stays.
+         */
+        readonly post: operations["post_undo_api_studies__key__imports__import_id__undo_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/imports/check": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Check
+         * @description What an import would do, with every cell that does not fit; nothing is stored.
+         */
+        readonly post: operations["post_check_api_studies__key__imports_check_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/imports/erase": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Erase Imported
+         * @description Take away what all files of a study say of one participant.
+         */
+        readonly post: operations["post_erase_imported_api_studies__key__imports_erase_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/imports/look": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Look
+         * @description What a file holds and probably means; nothing is stored.
+         */
+        readonly post: operations["post_look_api_studies__key__imports_look_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -1051,6 +1815,46 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/studies/{key}/preregistration": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Preregistration
+         * @description What the study declared, what was done, and every deviation.
+         */
+        readonly get: operations["get_preregistration_api_studies__key__preregistration_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/preregistration/report": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Preregistration Report
+         * @description The same as a file for a registry; participants are numbered, not named by their codes.
+         */
+        readonly get: operations["get_preregistration_report_api_studies__key__preregistration_report_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/studies/{key}/restore": {
         readonly parameters: {
             readonly query?: never;
@@ -1095,6 +1899,28 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/studies/{key}/statistics": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Statistics
+         * @description The study's questions, answered from the sessions that count; ask again while not current.
+         *
+         *     It takes no filter: what is tested is not chosen after looking.
+         */
+        readonly get: operations["get_statistics_api_studies__key__statistics_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/studies/{key}/suggestions": {
         readonly parameters: {
             readonly query?: never;
@@ -1113,6 +1939,26 @@ export interface paths {
          * @description Advise about a version of a study, or about one of its steps.
          */
         readonly post: operations["post_suggestion_api_studies__key__suggestions_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/studies/{key}/tryout": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Tryout
+         * @description Send a scripted participant through the study, in a session marked as simulated.
+         */
+        readonly post: operations["post_tryout_api_studies__key__tryout_post"];
         readonly delete?: never;
         readonly options?: never;
         readonly head?: never;
@@ -1299,6 +2145,26 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/tablet/help": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        /**
+         * Put Help
+         * @description Call the experimenter, or take the call back; doing so twice does no harm.
+         */
+        readonly put: operations["put_help_api_tablet_help_put"];
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
     readonly "/api/tablet/language": {
         readonly parameters: {
             readonly query?: never;
@@ -1399,6 +2265,376 @@ export interface paths {
         readonly patch?: never;
         readonly trace?: never;
     };
+    readonly "/api/tryout": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Tryout
+         * @description How the newest one is doing; null where there was none since the server was started.
+         */
+        readonly get: operations["get_tryout_api_tryout_get"];
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Tryout
+         * @description Stop the one that is running, and end its session.
+         */
+        readonly delete: operations["delete_tryout_api_tryout_delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/vr/avatar": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Avatar
+         * @description Build the session's physics avatar for this participant and put it on record.
+         */
+        readonly post: operations["post_avatar_api_vr_avatar_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/models": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Models
+         * @description The models, the newest first; one that is fitted tells how far it is.
+         */
+        readonly get: operations["get_models_api_walking_models_get"];
+        readonly put?: never;
+        /**
+         * Post Model
+         * @description Have a model fitted; the answer comes at once, and the model tells how far it is.
+         */
+        readonly post: operations["post_model_api_walking_models_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/models/{model_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Model
+         * @description One model: what it was fitted on and how, and how well it guesses what it did not see.
+         */
+        readonly get: operations["get_model_api_walking_models__model_id__get"];
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Model
+         * @description Delete a model, or give up fitting it.
+         */
+        readonly delete: operations["delete_model_api_walking_models__model_id__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/models/{model_id}/file": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Model File
+         * @description The model as a file.
+         */
+        readonly get: operations["get_model_file_api_walking_models__model_id__file_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/models/{model_id}/prediction": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Prediction
+         * @description How long people take on a path: a distribution, and walks drawn from it.
+         */
+        readonly post: operations["post_prediction_api_walking_models__model_id__prediction_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/models/{model_id}/resume": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Resume Model
+         * @description Go on where it was stopped, or try again.
+         */
+        readonly post: operations["resume_model_api_walking_models__model_id__resume_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/models/{model_id}/slice": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Slice
+         * @description How suitable steering parameters are for such a walk: a slice of the map.
+         */
+        readonly post: operations["post_slice_api_walking_models__model_id__slice_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/models/{model_id}/stop": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Stop Model
+         * @description Stop fitting; the maps that are finished are kept.
+         */
+        readonly post: operations["stop_model_api_walking_models__model_id__stop_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/paths": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Path
+         * @description The way between two points, or whether a drawn one is free of obstacles.
+         */
+        readonly post: operations["post_path_api_walking_paths_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/populations": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Populations
+         * @description The documented populations of made-up walkers.
+         */
+        readonly get: operations["get_populations_api_walking_populations_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/scenes": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Scenes
+         * @description The scenes: the lab's own and those that come with the product.
+         */
+        readonly get: operations["get_scenes_api_walking_scenes_get"];
+        readonly put?: never;
+        /**
+         * Post Scene
+         * @description Store a scene file; every problem of it is answered with its line.
+         */
+        readonly post: operations["post_scene_api_walking_scenes_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/scenes/{scene_key}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Scene
+         * @description One scene: floor, obstacles, places and paths, in metres seen from above.
+         */
+        readonly get: operations["get_scene_api_walking_scenes__scene_key__get"];
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Scene
+         * @description Delete a scene that the lab brought in.
+         */
+        readonly delete: operations["delete_scene_api_walking_scenes__scene_key__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/scenes/{scene_key}/file": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Scene File
+         * @description The scene's file, to begin another one with.
+         */
+        readonly get: operations["get_scene_file_api_walking_scenes__scene_key__file_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/walk-sets": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Walk Sets
+         * @description The sets of walks, the newest first.
+         */
+        readonly get: operations["get_walk_sets_api_walking_walk_sets_get"];
+        readonly put?: never;
+        /**
+         * Post Walk Set
+         * @description Make walkers up, which is said everywhere, or cut walks from stored captures.
+         */
+        readonly post: operations["post_walk_set_api_walking_walk_sets_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/walk-sets/{set_id}": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Walk Set
+         * @description One set of walks: who, how many, how long.
+         */
+        readonly get: operations["get_walk_set_api_walking_walk_sets__set_id__get"];
+        readonly put?: never;
+        readonly post?: never;
+        /**
+         * Delete Walk Set
+         * @description Delete a set of walks; models that were fitted on it stay.
+         */
+        readonly delete: operations["delete_walk_set_api_walking_walk_sets__set_id__delete"];
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/walking/walk-sets/tracks": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        readonly put?: never;
+        /**
+         * Post Tracks
+         * @description Store a table of tracks (id, time, x, y), which is the body of the request.
+         *
+         *     `stature` may come once for each person, as `A=1.78`: metres.
+         */
+        readonly post: operations["post_tracks_api_walking_walk_sets_tracks_post"];
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -1437,6 +2673,20 @@ export interface components {
         readonly Acknowledgement: {
             /** Step Index */
             readonly step_index: number;
+        };
+        /**
+         * ActiveStretch
+         * @description A stretch in which the phase's clock ran, on both of its times.
+         */
+        readonly ActiveStretch: {
+            /** Begin Active S */
+            readonly begin_active_s: number;
+            /** Begin S */
+            readonly begin_s: number;
+            /** End Active S */
+            readonly end_active_s: number;
+            /** End S */
+            readonly end_s: number;
         };
         /**
          * AddressView
@@ -1509,6 +2759,26 @@ export interface components {
             readonly unit: string | null;
             /** Value */
             readonly value: number | null;
+        };
+        /**
+         * AnswerHint
+         * @description Something about a form's answers that the operator may want to know; see `hints`.
+         *
+         *     alike: `items` ratings on one scale are all `value`. fast: half of the `items` ratings took less
+         *     than `seconds` each. left_out: `items` questions have no answer.
+         */
+        readonly AnswerHint: {
+            /** Items */
+            readonly items: number;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "alike" | "fast" | "left_out";
+            /** Seconds */
+            readonly seconds?: number | null;
+            /** Value */
+            readonly value?: number | null;
         };
         /**
          * AnswerProblemView
@@ -1594,6 +2864,305 @@ export interface components {
             readonly subject: string;
         };
         /**
+         * AvatarCheck
+         * @description Whether a file can be used; `known` are the (key, version) that have its content already.
+         */
+        readonly AvatarCheck: {
+            readonly configuration?: components["schemas"]["AvatarFile"] | null;
+            /** Content Hash */
+            readonly content_hash?: string | null;
+            /**
+             * Known
+             * @default []
+             */
+            readonly known: readonly (readonly [
+                string,
+                number
+            ])[];
+            /** Ok */
+            readonly ok: boolean;
+            /**
+             * Problems
+             * @default []
+             */
+            readonly problems: readonly components["schemas"]["ProblemView"][];
+        };
+        /**
+         * AvatarFile
+         * @description An avatar's configuration.
+         *
+         *     `axes`: those of all body parts that the model has, as in LeftUpperLegX. `hips`: carried with
+         *     the participant's, or welded to them. `target_space`: joints follow the participant's joint
+         *     angles, or parts their orientation in the room. `colliders` holds for all parts but those in
+         *     `part_colliders`. `locked_groups` are held at the angles of `held_deg`, else as in the T-pose.
+         *     `humanoid` is the hash of the model whose body it is, left out for a body of the participant's
+         *     own; `mesh` colliders need one.
+         */
+        readonly AvatarFile: {
+            /** Axes */
+            readonly axes: {
+                readonly [key: string]: components["schemas"]["AxisFile"];
+            };
+            /**
+             * Colliders
+             * @enum {string}
+             */
+            readonly colliders: "simple" | "mesh" | "none";
+            /**
+             * Format
+             * @constant
+             */
+            readonly format: "reembody-avatar";
+            /** Gravity */
+            readonly gravity: boolean;
+            /** Held Deg */
+            readonly held_deg: {
+                readonly [key: string]: number;
+            };
+            /**
+             * Hips
+             * @enum {string}
+             */
+            readonly hips: "carried" | "welded";
+            /** Humanoid */
+            readonly humanoid?: string | null;
+            /** Locked Groups */
+            readonly locked_groups: readonly string[];
+            /** Part Colliders */
+            readonly part_colliders: {
+                readonly [key: string]: "simple" | "mesh" | "none";
+            };
+            /**
+             * Population
+             * @enum {string}
+             */
+            readonly population: "male" | "female" | "average";
+            /** Self Collision */
+            readonly self_collision: boolean;
+            /**
+             * Target Space
+             * @enum {string}
+             */
+            readonly target_space: "local" | "world";
+            /**
+             * Total Mass Kg
+             * @description kg, of the whole body
+             */
+            readonly total_mass_kg: number;
+            /**
+             * Version
+             * @constant
+             */
+            readonly version: 1;
+        };
+        /**
+         * AvatarSummary
+         * @description A configuration in the list, as its newest version is.
+         *
+         *     `axes` counts its driven axes, `locked_axes` those that cannot move; `sessions` the sessions
+         *     of the reader's studies that used any of its versions' contents.
+         */
+        readonly AvatarSummary: {
+            /** Axes */
+            readonly axes: number;
+            /** Key */
+            readonly key: string;
+            /** Locked Axes */
+            readonly locked_axes: number;
+            readonly newest: components["schemas"]["AvatarVersionView"];
+            /** Sessions */
+            readonly sessions: number;
+            /** Title */
+            readonly title: string;
+            /** Versions */
+            readonly versions: number;
+        };
+        /**
+         * AvatarText
+         * @description A configuration file as text.
+         */
+        readonly AvatarText: {
+            /** Text */
+            readonly text: string;
+        };
+        /**
+         * AvatarVersionDetail
+         * @description A version in full. `report`: what tuning measured and with which settings, if it was tuned.
+         *
+         *     `sessions` counts the sessions of the reader's studies that used this content.
+         */
+        readonly AvatarVersionDetail: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            readonly configuration: components["schemas"]["AvatarFile"];
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Key */
+            readonly key: string;
+            /** Note */
+            readonly note: string;
+            /** Number */
+            readonly number: number;
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "shipped" | "tuned" | "by_hand" | "loaded";
+            /** Report */
+            readonly report: {
+                readonly [key: string]: unknown;
+            } | null;
+            /** Sessions */
+            readonly sessions: number;
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * AvatarVersionView
+         * @description One version of a configuration.
+         */
+        readonly AvatarVersionView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Note */
+            readonly note: string;
+            /** Number */
+            readonly number: number;
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "shipped" | "tuned" | "by_hand" | "loaded";
+        };
+        /**
+         * AvatarView
+         * @description A configuration with all its versions, newest first, and the newest in full.
+         */
+        readonly AvatarView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Key */
+            readonly key: string;
+            readonly newest: components["schemas"]["AvatarVersionDetail"];
+            /** Title */
+            readonly title: string;
+            /** Versions */
+            readonly versions: readonly components["schemas"]["AvatarVersionView"][];
+        };
+        /**
+         * AvatarWalkerView
+         * @description How an avatar does it, beside the source.
+         *
+         *     `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same of
+         *     mean steps (null without steps). `lifts_agree`: it lifts each foot as often as the source.
+         *     Slides are speeds of its feet while the *source's* are down: `slide_m_s` as shown here,
+         *     `slide_before_m_s` before the feet were locked, null where they are not. With locked feet
+         *     `lowered_m` is by how much the hips came down at most, and `out_of_reach` counts frames in which
+         *     a foot could not be held.
+         */
+        readonly AvatarWalkerView: {
+            /** Foot Slide M S */
+            readonly foot_slide_m_s: number | null;
+            /** Height Ratio */
+            readonly height_ratio: number | null;
+            /** Leg Length M */
+            readonly leg_length_m: number;
+            /** Leg Ratio */
+            readonly leg_ratio: number;
+            /** Length Ratio */
+            readonly length_ratio: number | null;
+            /** Lifts Agree */
+            readonly lifts_agree: boolean;
+            /** Lowered M */
+            readonly lowered_m: number | null;
+            /** Mean Step Height M */
+            readonly mean_step_height_m: number | null;
+            /** Mean Step Length M */
+            readonly mean_step_length_m: number | null;
+            /** Name */
+            readonly name: string;
+            /** Out Of Reach */
+            readonly out_of_reach: number | null;
+            /** Slide Before M S */
+            readonly slide_before_m_s: number | null;
+            /** Slide M S */
+            readonly slide_m_s: number | null;
+            /** Stature M */
+            readonly stature_m: number;
+            /** Steps */
+            readonly steps: readonly components["schemas"]["WalkStepView"][];
+            /** Thigh Share */
+            readonly thigh_share: number;
+            /** Toe Paths */
+            readonly toe_paths: readonly components["schemas"]["ToePathView"][];
+        };
+        /**
+         * AvatarWish
+         * @description Whose body it is: the participant's stature, and what else was measured of it.
+         *
+         *     `segments_m`: lengths by the names of docs/avatar-configuration.md; the others follow from the
+         *     stature.
+         */
+        readonly AvatarWish: {
+            /**
+             * Segments M
+             * @default {}
+             */
+            readonly segments_m: {
+                readonly [key: string]: number;
+            };
+            /** Stature M */
+            readonly stature_m: number;
+        };
+        /**
+         * AxisFile
+         * @description One driven axis. Equal limits lock it.
+         */
+        readonly AxisFile: {
+            /**
+             * High Deg
+             * @description degrees from the T-pose
+             */
+            readonly high_deg: number;
+            /**
+             * Kd Nm S Per Rad
+             * @description damper, N m s per radian
+             */
+            readonly kd_nm_s_per_rad: number;
+            /**
+             * Kp Nm Per Rad
+             * @description spring, N m per radian
+             */
+            readonly kp_nm_per_rad: number;
+            /**
+             * Low Deg
+             * @description degrees from the T-pose
+             */
+            readonly low_deg: number;
+            /**
+             * Max Torque Nm
+             * @description greatest torque, N m
+             */
+            readonly max_torque_nm: number;
+        };
+        /**
          * CableView
          * @description A headset on this machine's USB cable: run `command`, then open `url` in the headset.
          */
@@ -1642,6 +3211,194 @@ export interface components {
             readonly samples: number;
             /** Sd Ms */
             readonly sd_ms: number;
+        };
+        /**
+         * CaptureChange
+         * @description What is to change; what is left out stays. Another reading reads the file anew.
+         */
+        readonly CaptureChange: {
+            readonly reading?: components["schemas"]["ReadingChoice"] | null;
+            /** Title */
+            readonly title?: string | null;
+        };
+        /**
+         * CapturedPerson
+         * @description A capture, who walks in it, and where it leaves a choice, which tracked body is followed.
+         */
+        readonly CapturedPerson: {
+            /** Body */
+            readonly body?: string | null;
+            /** Capture Id */
+            readonly capture_id: string;
+            /** Stature M */
+            readonly stature_m?: number | null;
+            /** Subject */
+            readonly subject: string;
+        };
+        /**
+         * CaptureListed
+         * @description A capture in the list.
+         *
+         *     `format` is a key such as "bvh" or "motive-csv". `tracks` counts its joints, markers or bodies.
+         *     `has_skeleton`: it can be brought onto avatars. `size_bytes` is that of the file.
+         */
+        readonly CaptureListed: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Companion Name */
+            readonly companion_name: string | null;
+            /** Duration S */
+            readonly duration_s: number;
+            /** File Name */
+            readonly file_name: string;
+            /** Format */
+            readonly format: string;
+            /** Frames */
+            readonly frames: number;
+            /** Has Skeleton */
+            readonly has_skeleton: boolean;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "skeleton" | "markers" | "bodies";
+            /** Rate Hz */
+            readonly rate_hz: number;
+            /** Size Bytes */
+            readonly size_bytes: number;
+            /** Title */
+            readonly title: string;
+            /** Tracks */
+            readonly tracks: number;
+        };
+        /**
+         * CapturePage
+         * @description Captures, the newest first, and how many there are in all.
+         */
+        readonly CapturePage: {
+            /** Captures */
+            readonly captures: readonly components["schemas"]["CaptureListed"][];
+            /** Total */
+            readonly total: number;
+        };
+        /**
+         * CapturesOrigin
+         * @description Walks cut from stored captures.
+         */
+        readonly CapturesOrigin: {
+            /** Captures */
+            readonly captures: readonly components["schemas"]["CapturedPerson"][];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly kind: "captures";
+        };
+        /**
+         * CaptureSummary
+         * @description What reading a capture found.
+         *
+         *     `names` are the joints, markers or rigid bodies of the file. `skeleton` is null where none could
+         *     be fitted; `no_skeleton` then says why. `observed` is the share of values that were seen.
+         */
+        readonly CaptureSummary: {
+            readonly conventions: components["schemas"]["ConventionsView"];
+            /** Names */
+            readonly names: readonly string[];
+            /** No Skeleton */
+            readonly no_skeleton: string | null;
+            /** Notes */
+            readonly notes: readonly string[];
+            /** Observed */
+            readonly observed: number;
+            readonly skeleton: components["schemas"]["SkeletonView"] | null;
+        };
+        /**
+         * CaptureView
+         * @description A capture with what reading it found. `content_hash` is the SHA-256 of the file.
+         */
+        readonly CaptureView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Companion Name */
+            readonly companion_name: string | null;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Duration S */
+            readonly duration_s: number;
+            /** File Name */
+            readonly file_name: string;
+            /** Format */
+            readonly format: string;
+            /** Frames */
+            readonly frames: number;
+            /** Has Skeleton */
+            readonly has_skeleton: boolean;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "skeleton" | "markers" | "bodies";
+            /** Rate Hz */
+            readonly rate_hz: number;
+            readonly reading: components["schemas"]["ReadingChoice"];
+            /** Size Bytes */
+            readonly size_bytes: number;
+            readonly summary: components["schemas"]["CaptureSummary"];
+            /** Title */
+            readonly title: string;
+            /** Tracks */
+            readonly tracks: number;
+        };
+        /**
+         * CellProblem
+         * @description Why something in the file cannot be taken in as it is.
+         */
+        readonly CellProblem: {
+            /** Column */
+            readonly column: string;
+            /** Line */
+            readonly line: number;
+            /** Message */
+            readonly message: string;
+            /** Remedy */
+            readonly remedy: string;
+            /** Value */
+            readonly value: string;
+        };
+        /**
+         * CensusView
+         * @description How long the planned paths are; a length on an edge belongs to the interval above it.
+         */
+        readonly CensusView: {
+            /** Count */
+            readonly count: number;
+            /** Counts */
+            readonly counts: readonly number[];
+            /** Cutoff M */
+            readonly cutoff_m: number;
+            /** Edges M */
+            readonly edges_m: readonly number[];
+            /** Quartiles M */
+            readonly quartiles_m: readonly number[];
+            /** Share Up To */
+            readonly share_up_to: readonly number[];
+            /** Total M */
+            readonly total_m: number;
         };
         /**
          * CertificateView
@@ -1705,6 +3462,54 @@ export interface components {
             readonly value?: unknown;
         };
         /**
+         * Check
+         * @description One line of the list.
+         *
+         *     `wait`: it cannot be told yet, and comes by itself. `value` with its `unit` is what was found,
+         *     `limit` with `expected` what it must keep to. `details` are names and hashes, in no language.
+         *     `override`: the newest one; it counts while the finding is the one it was said of.
+         */
+        readonly Check: {
+            /**
+             * Code
+             * @enum {string}
+             */
+            readonly code: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.ok" | "language.missing" | "language.ok";
+            /**
+             * Details
+             * @default []
+             */
+            readonly details: readonly string[];
+            /** Expected */
+            readonly expected?: ("at_least" | "at_most") | null;
+            /**
+             * Key
+             * @enum {string}
+             */
+            readonly key: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
+            /** Limit */
+            readonly limit?: number | null;
+            readonly override?: components["schemas"]["Override"] | null;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "ok" | "wait" | "fail" | "overridden";
+            /** Unit */
+            readonly unit?: ("s" | "ms" | "Hz" | "GB" | "joints" | "phases" | "instruments" | "texts") | null;
+            /** Value */
+            readonly value?: number | null;
+        };
+        /**
+         * CheckRequest
+         * @description A file and what its columns mean.
+         */
+        readonly CheckRequest: {
+            readonly mapping: components["schemas"]["Mapping"];
+            /** Text */
+            readonly text: string;
+        };
+        /**
          * CheckResult
          * @description Whether a file can be used, with every problem and its place.
          *
@@ -1737,6 +3542,68 @@ export interface components {
             readonly tree?: {
                 readonly [key: string]: unknown;
             } | null;
+        };
+        /**
+         * CheckView
+         * @description What an import would do. Nothing was stored. With problems it would be refused.
+         *
+         *     `reversed_items`: the instrument's formulas turn them round. `notes`: to be looked at.
+         */
+        readonly CheckView: {
+            /** Conditions */
+            readonly conditions: readonly components["schemas"]["ConditionCount"][];
+            /** First Forms */
+            readonly first_forms: readonly components["schemas"]["FormPreview"][];
+            /** Forms */
+            readonly forms: number;
+            /** Missing Answers */
+            readonly missing_answers: number;
+            /** N Problems */
+            readonly n_problems: number;
+            /** Notes */
+            readonly notes: readonly string[];
+            /** Participants */
+            readonly participants: number;
+            /** Problems */
+            readonly problems: readonly components["schemas"]["CellProblem"][];
+            /** Reversed Items */
+            readonly reversed_items: readonly string[];
+            readonly shift: components["schemas"]["Shift"] | null;
+            /** Skipped Rows */
+            readonly skipped_rows: number;
+            /** Unknown Words */
+            readonly unknown_words: readonly string[];
+        };
+        /**
+         * ClientRun
+         * @description One run of the headset's program in the phase, from its first to its last moment here.
+         *
+         *     `begin_utc`: when it began, by the server's clock; null where that cannot be said.
+         *     `uncertainty_ms`: how well; null where no clock was compared and it is when the message came.
+         */
+        readonly ClientRun: {
+            /** Begin S */
+            readonly begin_s: number;
+            /** Begin Utc */
+            readonly begin_utc: string | null;
+            /** End S */
+            readonly end_s: number;
+            /** Epoch */
+            readonly epoch: number;
+            /** Uncertainty Ms */
+            readonly uncertainty_ms: number | null;
+        };
+        /**
+         * ColumnSet
+         * @description Columns that make one form: item -> column. `condition`: of all forms of these columns.
+         */
+        readonly ColumnSet: {
+            /** Condition */
+            readonly condition?: string | null;
+            /** Items */
+            readonly items: {
+                readonly [key: string]: string;
+            };
         };
         /**
          * ColumnView
@@ -1796,6 +3663,36 @@ export interface components {
             readonly rederived: number;
             /** Stored */
             readonly stored: number;
+        };
+        /**
+         * ConditionCount
+         * @description A condition of the file; `in_study`: it is one of the study's.
+         */
+        readonly ConditionCount: {
+            /** Condition */
+            readonly condition: string;
+            /** Forms */
+            readonly forms: number;
+            /** In Study */
+            readonly in_study: boolean;
+        };
+        /**
+         * ConditionMean
+         * @description A score in a condition, over participants; `low` and `high`: 95 % interval of the mean.
+         */
+        readonly ConditionMean: {
+            /** Condition */
+            readonly condition: string;
+            /** High */
+            readonly high: number | null;
+            /** Low */
+            readonly low: number | null;
+            /** Mean */
+            readonly mean: number;
+            /** N */
+            readonly n: number;
+            /** Sd */
+            readonly sd: number | null;
         };
         /**
          * ConsentForm
@@ -1888,6 +3785,29 @@ export interface components {
             readonly text_matches: boolean;
             /** Title */
             readonly title: string;
+        };
+        /**
+         * ConventionsView
+         * @description By which conventions a file was read; everything after is y up, right-handed, SI.
+         */
+        readonly ConventionsView: {
+            readonly axes: components["schemas"]["ConventionView"];
+            readonly length: components["schemas"]["ConventionView"];
+            readonly rate: components["schemas"]["ConventionView"];
+            readonly rotations: components["schemas"]["ConventionView"];
+        };
+        /**
+         * ConventionView
+         * @description One thing that had to be known to read the file, and who says so.
+         */
+        readonly ConventionView: {
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "file" | "format" | "guessed" | "chosen";
+            /** Value */
+            readonly value: string;
         };
         /**
          * CopyLeft
@@ -2010,6 +3930,7 @@ export interface components {
         readonly DashboardView: {
             /** Avatar */
             readonly avatar: readonly string[];
+            readonly choices: components["schemas"]["FilterChoices"];
             /** Current */
             readonly current: boolean;
             /**
@@ -2019,6 +3940,7 @@ export interface components {
             readonly drawn_at: string;
             /** Figures */
             readonly figures: readonly components["schemas"]["FigureView"][];
+            readonly filter: components["schemas"]["FigureFilter"];
             /** Kind */
             readonly kind: string;
             /** N Completed */
@@ -2040,6 +3962,51 @@ export interface components {
              * @enum {string}
              */
             readonly status: "adopted" | "declined";
+        };
+        /**
+         * DeclarationView
+         * @description What is declared, by the first version that said just this; `content_hash` names it.
+         *
+         *     `section` is the study file's own. `frozen_at`: when the first session of that version started.
+         */
+        readonly DeclarationView: {
+            /** Alpha */
+            readonly alpha: number;
+            /** Content Hash */
+            readonly content_hash: string;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Frozen At */
+            readonly frozen_at: string | null;
+            /** Planned N */
+            readonly planned_n: number;
+            /** Primary Words */
+            readonly primary_words: string;
+            /** Registration */
+            readonly registration: string;
+            /** Rules */
+            readonly rules: readonly string[];
+            readonly section: components["schemas"]["Preregistration"];
+            /** Version */
+            readonly version: number;
+        };
+        /**
+         * DeviationView
+         * @description A difference between what was declared and what was done; notes are none, but told too.
+         */
+        readonly DeviationView: {
+            /**
+             * Code
+             * @enum {string}
+             */
+            readonly code: "declared_late" | "changed_since_start" | "declaration_changed" | "n_short" | "n_over" | "left_out_by_hand" | "not_judged" | "missing_values" | "corrected" | "still_open" | "not_registered" | "exploratory";
+            /** Is Note */
+            readonly is_note: boolean;
+            /** Text */
+            readonly text: string;
         };
         /**
          * DeviceView
@@ -2083,6 +4050,25 @@ export interface components {
             readonly path: string;
         };
         /**
+         * DiskView
+         * @description The disk of the data folder; `warn_below_bytes` as the pre-flight has it.
+         *
+         *     `holds_database` is false where the database is on a server of its own, whose disk nobody sees
+         *     from here.
+         */
+        readonly DiskView: {
+            /** Free Bytes */
+            readonly free_bytes: number;
+            /** Holds Database */
+            readonly holds_database: boolean;
+            /** Is Low */
+            readonly is_low: boolean;
+            /** Total Bytes */
+            readonly total_bytes: number;
+            /** Warn Below Bytes */
+            readonly warn_below_bytes: number;
+        };
+        /**
          * DraftFile
          * @description A draft to compare with the newest version.
          */
@@ -2119,6 +4105,24 @@ export interface components {
             readonly changes: readonly components["schemas"]["ChangeRequest"][];
             /** Yaml */
             readonly yaml: string;
+        };
+        /**
+         * ErasedImported
+         * @description How many forms went.
+         */
+        readonly ErasedImported: {
+            /** Forms */
+            readonly forms: number;
+        };
+        /**
+         * EraseImportedRequest
+         * @description Whose imported answers go; `confirm` is the code, typed again.
+         */
+        readonly EraseImportedRequest: {
+            /** Confirm */
+            readonly confirm: string;
+            /** Participant Code */
+            readonly participant_code: string;
         };
         /**
          * ErasureRequest
@@ -2209,8 +4213,151 @@ export interface components {
             readonly type: string;
         };
         /**
+         * ExclusionRule
+         * @description Whom the primary test leaves out: a session of which any task phase breaks the rule.
+         *
+         *     complete_session: was not completed. minimum_frame_rate_hz, minimum_share_of_frames: of the
+         *     avatar's recorded frames; the share is active time outside gaps. maximum_latency_error_ms:
+         *     achieved against ordered latency. minimum_active_time_s: of a task phase.
+         *     maximum_straight_lined_forms: forms of a session whose ratings are all alike.
+         */
+        readonly ExclusionRule: {
+            /** Limit */
+            readonly limit?: number | null;
+            /**
+             * Rule
+             * @enum {string}
+             */
+            readonly rule: "complete_session" | "minimum_frame_rate_hz" | "minimum_share_of_frames" | "maximum_latency_error_ms" | "minimum_active_time_s" | "maximum_straight_lined_forms";
+        };
+        /**
+         * ExclusionView
+         * @description A session that the primary test leaves out: by which rule, and what was found.
+         */
+        readonly ExclusionView: {
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Reason */
+            readonly reason: string;
+            /** Rule */
+            readonly rule: string;
+        };
+        /**
+         * ExportTrouble
+         * @description Why a file could not be made, and what to do about it.
+         */
+        readonly ExportTrouble: {
+            /** Message */
+            readonly message: string;
+            /** Remedy */
+            readonly remedy: string;
+        };
+        /**
+         * ExportView
+         * @description An export and how far it is.
+         *
+         *     `rows` of movement are written of `rows_total`; other tables are small beside them. `bytes` are
+         *     on the disk; `bytes_expected` is told from the bytes a row has taken so far, `remaining_s` from
+         *     the time, both None while too little is known. `sha256` is of the file. `expires_at`: when the
+         *     server removes it.
+         */
+        readonly ExportView: {
+            /**
+             * Asked At
+             * Format: date-time
+             */
+            readonly asked_at: string;
+            /** Bytes */
+            readonly bytes: number;
+            /** Bytes Expected */
+            readonly bytes_expected: number | null;
+            /** Bytes Per S */
+            readonly bytes_per_s: number | null;
+            /** Elapsed S */
+            readonly elapsed_s: number;
+            /** Expires At */
+            readonly expires_at: string | null;
+            /** Fetched At */
+            readonly fetched_at: string | null;
+            /** File Name */
+            readonly file_name: string;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test" | "all";
+            /** Remaining S */
+            readonly remaining_s: number | null;
+            /** Rows */
+            readonly rows: number;
+            /** Rows Total */
+            readonly rows_total: number;
+            /** Session Id */
+            readonly session_id: string | null;
+            /** Sessions */
+            readonly sessions: number;
+            /** Sessions Total */
+            readonly sessions_total: number;
+            /** Sha256 */
+            readonly sha256: string | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "queued" | "making" | "ready" | "failed";
+            /** Study Key */
+            readonly study_key: string;
+            readonly trouble: components["schemas"]["ExportTrouble"] | null;
+        };
+        /**
+         * ExportWish
+         * @description What to export: a study's sessions of one kind, or one session of that kind alone.
+         */
+        readonly ExportWish: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test" | "all";
+            /** Session Id */
+            readonly session_id?: string | null;
+        };
+        /**
+         * FigureFilter
+         * @description Which sessions and rows are drawn; everything unless named.
+         *
+         *     `rows`: "valid" leaves out what does not count (broken-off sessions, superseded and skipped
+         *     steps), "all" draws it too. `since` and `until`: days, both included, on which a session was
+         *     created, in UTC. `order`: added latencies in ms in the order of the blocks, as in "0 125 350".
+         */
+        readonly FigureFilter: {
+            /** Limb */
+            readonly limb?: ("hand" | "foot") | null;
+            /** Order */
+            readonly order?: string | null;
+            /**
+             * Participant
+             * @default []
+             */
+            readonly participant: readonly string[];
+            /**
+             * Rows
+             * @default valid
+             * @enum {string}
+             */
+            readonly rows: "valid" | "all";
+            /** Since */
+            readonly since?: string | null;
+            /** Until */
+            readonly until?: string | null;
+        };
+        /**
          * FigureView
          * @description A figure for plotly.js, or in plain words what is missing for it; `n` participants.
+         *
+         *     `wide`: it needs the width of the page.
          */
         readonly FigureView: {
             /** Caption */
@@ -2221,12 +4368,136 @@ export interface components {
             readonly figure: {
                 readonly [key: string]: unknown;
             } | null;
+            /**
+             * Group
+             * @enum {string}
+             */
+            readonly group: "progress" | "embodiment" | "answers" | "tasks" | "movement" | "quality";
             /** Key */
             readonly key: string;
             /** N */
             readonly n: number;
             /** Title */
             readonly title: string;
+            /** Wide */
+            readonly wide: boolean;
+        };
+        /**
+         * FileColumn
+         * @description A column: its name, the question that stands below it, and some of what is in it.
+         */
+        readonly FileColumn: {
+            /** Distinct */
+            readonly distinct: number;
+            /** Examples */
+            readonly examples: readonly string[];
+            /** Filled */
+            readonly filled: number;
+            /** Label */
+            readonly label: string;
+            /** Name */
+            readonly name: string;
+        };
+        /**
+         * FilterChoices
+         * @description What can be chosen from: codes, orders as "0 125 350", limbs, first and last day (UTC).
+         */
+        readonly FilterChoices: {
+            /** First Day */
+            readonly first_day: string | null;
+            /** Last Day */
+            readonly last_day: string | null;
+            /** Limbs */
+            readonly limbs: readonly string[];
+            /** Orders */
+            readonly orders: readonly string[];
+            /** Participants */
+            readonly participants: readonly string[];
+        };
+        /**
+         * FitChoice
+         * @description How to fit; the defaults are the paper's, but for the reading, which is chosen.
+         *
+         *     `steps`: values of each steering parameter, whose cube is the size of a map. `k`: neighbours.
+         *     `entries`: of the blending space, blends included. `reading`: how deviations are read as
+         *     suitability; "chosen" decides it by predicting people who were left out.
+         */
+        readonly FitChoice: {
+            /**
+             * Entries
+             * @default 5000
+             */
+            readonly entries: number;
+            /**
+             * K
+             * @default 100
+             */
+            readonly k: number;
+            /**
+             * Reading
+             * @default chosen
+             * @enum {string}
+             */
+            readonly reading: "chosen" | "paper" | "time-aware";
+            /**
+             * Seed
+             * @default 1
+             */
+            readonly seed: number;
+            /**
+             * Steps
+             * @default 10
+             */
+            readonly steps: number;
+        };
+        /**
+         * FittedOn
+         * @description The set of walks as it was called when the fit was ordered; `id` is null once it is gone.
+         */
+        readonly FittedOn: {
+            /** Id */
+            readonly id: string | null;
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "population" | "captures" | "tracks";
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * FixedView
+         * @description What a model that does not draw says: one duration, of one steering vector.
+         */
+        readonly FixedView: {
+            /** Duration S */
+            readonly duration_s: number;
+            /** Vector */
+            readonly vector: readonly number[];
+        };
+        /**
+         * FormPreview
+         * @description A form as it would be stored.
+         */
+        readonly FormPreview: {
+            /** Answered On */
+            readonly answered_on: string | null;
+            /** Answers */
+            readonly answers: {
+                readonly [key: string]: number | string | null;
+            };
+            /** Condition */
+            readonly condition: string;
+            /** In Study */
+            readonly in_study: boolean;
+            /** Line */
+            readonly line: number;
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Scores */
+            readonly scores: {
+                readonly [key: string]: number | null;
+            };
         };
         /**
          * FormulaView
@@ -2308,6 +4579,168 @@ export interface components {
             readonly qr_svg: string;
             /** Url */
             readonly url: string;
+        };
+        /**
+         * HelpWish
+         * @description Whether the experimenter is wanted.
+         */
+        readonly HelpWish: {
+            /** Asked */
+            readonly asked: boolean;
+        };
+        /**
+         * HumanoidListed
+         * @description A model in the list.
+         *
+         *     `content_hash` is the SHA-256 of its file, by which configurations name it. `stature_m` is its
+         *     own; an avatar has its participant's. `bones_by`: whether VRM's map or the bones' names told
+         *     which is which. Counts are of body parts that the model has, and of those with a convex piece.
+         */
+        readonly HumanoidListed: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /**
+             * Bones By
+             * @enum {string}
+             */
+            readonly bones_by: "vrm" | "names";
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** File Name */
+            readonly file_name: string;
+            /** Left Fingers */
+            readonly left_fingers: number;
+            /** Parts */
+            readonly parts: number;
+            /** Pieces */
+            readonly pieces: number;
+            /** Right Fingers */
+            readonly right_fingers: number;
+            /** Size Bytes */
+            readonly size_bytes: number;
+            /** Stature M */
+            readonly stature_m: number;
+        };
+        /**
+         * HumanoidPage
+         * @description Models, the newest first, and how many there are in all.
+         */
+        readonly HumanoidPage: {
+            /** Humanoids */
+            readonly humanoids: readonly components["schemas"]["HumanoidListed"][];
+            /** Total */
+            readonly total: number;
+        };
+        /**
+         * HumanoidView
+         * @description A model in full.
+         *
+         *     `present` and `absent` are the body parts it has and lacks; `simple` has too little skin for a
+         *     piece, so those keep capsules and boxes. `segments_m` are its lengths. `notes` are sentences on
+         *     what was found odd while reading.
+         */
+        readonly HumanoidView: {
+            /** Absent */
+            readonly absent: readonly string[];
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /**
+             * Bones By
+             * @enum {string}
+             */
+            readonly bones_by: "vrm" | "names";
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Convex Pieces */
+            readonly convex_pieces: readonly components["schemas"]["PieceView"][];
+            /** File Name */
+            readonly file_name: string;
+            /** Left Fingers */
+            readonly left_fingers: number;
+            /** Notes */
+            readonly notes: readonly string[];
+            /** Parts */
+            readonly parts: number;
+            /** Pieces */
+            readonly pieces: number;
+            /** Present */
+            readonly present: readonly string[];
+            /** Right Fingers */
+            readonly right_fingers: number;
+            /** Segments M */
+            readonly segments_m: {
+                readonly [key: string]: number;
+            };
+            /** Simple */
+            readonly simple: readonly string[];
+            /** Size Bytes */
+            readonly size_bytes: number;
+            /** Stature M */
+            readonly stature_m: number;
+        };
+        /**
+         * ImportDetail
+         * @description An import and what its scores came to.
+         */
+        readonly ImportDetail: {
+            /** Results */
+            readonly results: readonly components["schemas"]["ScoreResult"][];
+            readonly view: components["schemas"]["ImportView"];
+        };
+        /**
+         * ImportRequest
+         * @description The same, to be taken in.
+         */
+        readonly ImportRequest: {
+            /** File Name */
+            readonly file_name: string;
+            readonly mapping: components["schemas"]["Mapping"];
+            /** Text */
+            readonly text: string;
+        };
+        /**
+         * ImportView
+         * @description An import. Undone ones have no forms any more.
+         */
+        readonly ImportView: {
+            /** Content Hash */
+            readonly content_hash: string;
+            /** File Name */
+            readonly file_name: string;
+            /** Forms */
+            readonly forms: number;
+            /** Id */
+            readonly id: string;
+            /**
+             * Imported At
+             * Format: date-time
+             */
+            readonly imported_at: string;
+            /** Imported By */
+            readonly imported_by: string;
+            /** Instrument */
+            readonly instrument: string;
+            /** Instrument Version */
+            readonly instrument_version: number;
+            readonly mapping: components["schemas"]["Mapping"];
+            /** Participants */
+            readonly participants: number;
+            /** Undone At */
+            readonly undone_at: string | null;
+            /** Undone By */
+            readonly undone_by: string | null;
+            /** Undone Reason */
+            readonly undone_reason: string | null;
         };
         /**
          * InstrumentChange
@@ -2580,6 +5013,82 @@ export interface components {
             readonly scored: boolean;
         };
         /**
+         * ItemTrace
+         * @description How one item was answered.
+         *
+         *     `response_s`: seconds from when the item was the next to be answered (its page was shown, or
+         *     another item of the page was answered) to its first answer, where one was given; of typed
+         *     answers to the end of the first writing. `changes`: how often the answer was changed afterwards;
+         *     typed answers count each return to the field once.
+         */
+        readonly ItemTrace: {
+            /** Changes */
+            readonly changes: number;
+            /** Response S */
+            readonly response_s: number;
+        };
+        /**
+         * JointMapView
+         * @description Which joint of a skeleton plays which part of the body, for every capture of this skeleton.
+         *
+         *     `version` counts what was saved, 0 before; `chosen` is false while the map is the proposal.
+         *     `sources` tells of each mapped body joint whether its name, its place in the hierarchy, or
+         *     somebody chose it. `usable` is false where too little is mapped to bring it onto an avatar, and
+         *     `missing` says what.
+         */
+        readonly JointMapView: {
+            /** At */
+            readonly at: string | null;
+            /** Body Joints */
+            readonly body_joints: readonly string[];
+            /** By */
+            readonly by: string | null;
+            /** Captures */
+            readonly captures: number;
+            /** Chosen */
+            readonly chosen: boolean;
+            /** Fingerprint */
+            readonly fingerprint: string;
+            /** Joint Map */
+            readonly joint_map: {
+                readonly [key: string]: string;
+            };
+            /** Missing */
+            readonly missing: readonly string[];
+            /** Proposal */
+            readonly proposal: {
+                readonly [key: string]: string;
+            };
+            /** Rig Joints */
+            readonly rig_joints: readonly string[];
+            /** Rig Parents */
+            readonly rig_parents: readonly number[];
+            /** Sources */
+            readonly sources: {
+                readonly [key: string]: "name" | "hierarchy" | "chosen";
+            };
+            /** Unmapped Body Joints */
+            readonly unmapped_body_joints: readonly string[];
+            /** Unmapped Rig Joints */
+            readonly unmapped_rig_joints: readonly string[];
+            /** Usable */
+            readonly usable: boolean;
+            /** Version */
+            readonly version: number;
+        };
+        /**
+         * JointMapWish
+         * @description A joint map to save: body joint -> joint of the skeleton, decided on `version`.
+         */
+        readonly JointMapWish: {
+            /** Joint Map */
+            readonly joint_map: {
+                readonly [key: string]: string;
+            };
+            /** Version */
+            readonly version: number;
+        };
+        /**
          * LanguageChoice
          * @description The language to go on in.
          */
@@ -2634,6 +5143,297 @@ export interface components {
             readonly when_full: string;
         };
         /**
+         * LeftOutFigures
+         * @description Guessed by neighbours, between nodes by radial basis functions, and from other people.
+         */
+        readonly LeftOutFigures: {
+            readonly neighbours: components["schemas"]["LeftOutView"];
+            readonly nodes: components["schemas"]["LeftOutView"];
+            readonly people: components["schemas"]["LeftOutView"];
+        };
+        /**
+         * LeftOutView
+         * @description Deviations of suitability in percent of its range, over entries that were left out.
+         */
+        readonly LeftOutView: {
+            /** Entries */
+            readonly entries: number;
+            /** Mean Percent */
+            readonly mean_percent: number;
+            /** Sd Percent */
+            readonly sd_percent: number;
+        };
+        /**
+         * LegAnglesView
+         * @description Angles of one leg in degrees over time; figure 8 of the paper.
+         *
+         *     Forward and bent are positive; 0 is a straight hip, a straight knee, an ankle at right angles.
+         */
+        readonly LegAnglesView: {
+            /** Ankle Deg */
+            readonly ankle_deg: readonly number[];
+            /** Hip Deg */
+            readonly hip_deg: readonly number[];
+            /** Knee Deg */
+            readonly knee_deg: readonly number[];
+            /**
+             * Side
+             * @enum {string}
+             */
+            readonly side: "left" | "right";
+        };
+        /**
+         * LookRequest
+         * @description A file that is only looked at.
+         */
+        readonly LookRequest: {
+            /** Header Rows */
+            readonly header_rows?: number | null;
+            /** Instrument */
+            readonly instrument?: string | null;
+            /** Text */
+            readonly text: string;
+        };
+        /**
+         * LookView
+         * @description What a file holds, and a proposal for what it means.
+         *
+         *     `remembered`: the proposal is that of an earlier import. `proposal` has None where no column
+         *     could be told for the participants or for any item.
+         */
+        readonly LookView: {
+            /** Columns */
+            readonly columns: readonly components["schemas"]["FileColumn"][];
+            /** Condition Words */
+            readonly condition_words: readonly string[];
+            /** First Rows */
+            readonly first_rows: readonly (readonly string[])[];
+            /** Header Rows */
+            readonly header_rows: number;
+            /** Instrument */
+            readonly instrument: string;
+            readonly proposal: components["schemas"]["Mapping"] | null;
+            /** Remembered */
+            readonly remembered: boolean;
+            /** Rows */
+            readonly rows: number;
+            readonly same_file: components["schemas"]["ImportView"] | null;
+            /** Separator */
+            readonly separator: string;
+            /** Words */
+            readonly words: readonly string[];
+        };
+        /**
+         * Mapping
+         * @description What the columns and words of a file mean.
+         *
+         *     A tidy file has one set of columns and a column of conditions; a wide one has a set of columns
+         *     for each condition. `conditions`: word of the file -> key of a condition of the study. `words`:
+         *     answer in words -> number. Numbers x become multiply * x + add, for scales that count elsewhere
+         *     from 1. `turned`: items that the file has turned round already; they are turned back, since the
+         *     formulas of the instrument turn them.
+         */
+        readonly Mapping: {
+            /**
+             * Add
+             * @default 0
+             */
+            readonly add: number;
+            /** Condition */
+            readonly condition?: string | null;
+            /**
+             * Conditions
+             * @default {}
+             */
+            readonly conditions: {
+                readonly [key: string]: string;
+            };
+            /** Date */
+            readonly date?: string | null;
+            /**
+             * Date Order
+             * @default iso
+             * @enum {string}
+             */
+            readonly date_order: "iso" | "day_first" | "month_first";
+            /**
+             * Header Rows
+             * @default 1
+             */
+            readonly header_rows: number;
+            /** Instrument */
+            readonly instrument: string;
+            /**
+             * Multiply
+             * @default 1
+             */
+            readonly multiply: number;
+            /** Participant */
+            readonly participant: string;
+            /** Sets */
+            readonly sets: readonly components["schemas"]["ColumnSet"][];
+            /**
+             * Turned
+             * @default []
+             */
+            readonly turned: readonly string[];
+            /**
+             * Words
+             * @default {}
+             */
+            readonly words: {
+                readonly [key: string]: number;
+            };
+        };
+        /**
+         * MeasureView
+         * @description What was asked of one measure; `left_out` says in words who is not in it, and why.
+         */
+        readonly MeasureView: {
+            /** About */
+            readonly about: string;
+            /** Key */
+            readonly key: string;
+            /** Left Out */
+            readonly left_out: readonly string[];
+            /** N */
+            readonly n: number;
+            /** Results */
+            readonly results: readonly components["schemas"]["ResultView"][];
+            /** Title */
+            readonly title: string;
+            /** Unit */
+            readonly unit: string;
+        };
+        /**
+         * ModelListed
+         * @description A model in a list; `progress` while it is fitted, `trouble` where that failed.
+         */
+        readonly ModelListed: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "human" | "synthetic";
+            /** People */
+            readonly people: number | null;
+            readonly progress: components["schemas"]["ProgressView"] | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "fitting" | "stopped" | "ready" | "failed";
+            /** Title */
+            readonly title: string;
+            /** Trouble */
+            readonly trouble: string | null;
+            readonly walk_set: components["schemas"]["FittedOn"];
+            /** Walks */
+            readonly walks: number | null;
+        };
+        /**
+         * ModelSummary
+         * @description What a fitted model is; `model_hash` is the one that its file names itself by.
+         */
+        readonly ModelSummary: {
+            readonly census: components["schemas"]["CensusView"];
+            /** Dependencies */
+            readonly dependencies: {
+                readonly [key: string]: components["schemas"]["Range"];
+            };
+            readonly duration_s: components["schemas"]["Range"];
+            /** Entries */
+            readonly entries: number;
+            /** K */
+            readonly k: number;
+            readonly left_out: components["schemas"]["LeftOutFigures"];
+            /** Model Hash */
+            readonly model_hash: string;
+            /** Parameters */
+            readonly parameters: readonly components["schemas"]["ParameterView"][];
+            /** People */
+            readonly people: number;
+            readonly reading: components["schemas"]["ReadingView"];
+            /** Readings */
+            readonly readings: readonly components["schemas"]["ReadingScoreView"][];
+            /** Static Vector */
+            readonly static_vector: readonly number[];
+            /** Walks */
+            readonly walks: number;
+        };
+        /**
+         * ModelView
+         * @description A model; `content_hash` and `size_bytes` are of its file.
+         */
+        readonly ModelView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string | null;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "human" | "synthetic";
+            readonly options: components["schemas"]["FitChoice"];
+            /** People */
+            readonly people: number | null;
+            readonly progress: components["schemas"]["ProgressView"] | null;
+            readonly scene: components["schemas"]["SceneNamed"] | null;
+            /** Size Bytes */
+            readonly size_bytes: number | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "fitting" | "stopped" | "ready" | "failed";
+            readonly summary: components["schemas"]["ModelSummary"] | null;
+            /** Title */
+            readonly title: string;
+            /** Trouble */
+            readonly trouble: string | null;
+            readonly walk_set: components["schemas"]["FittedOn"];
+            /** Walks */
+            readonly walks: number | null;
+        };
+        /**
+         * Moment
+         * @description Something that the phase's clock did, and why.
+         */
+        readonly Moment: {
+            /** Active S */
+            readonly active_s: number;
+            /** Cause */
+            readonly cause: string | null;
+            /** T S */
+            readonly t_s: number;
+            /**
+             * What
+             * @enum {string}
+             */
+            readonly what: "started" | "paused" | "resumed" | "walk_back_started" | "walk_back_ended" | "time_up" | "ended" | "voided";
+        };
+        /**
          * NetworkView
          * @description How devices reach the server now.
          *
@@ -2652,6 +5452,46 @@ export interface components {
              * @enum {string}
              */
             readonly mode: "loopback" | "lan" | "without_tls";
+        };
+        /**
+         * NewAvatar
+         * @description A configuration under a new key; `title` is what people call it.
+         */
+        readonly NewAvatar: {
+            readonly configuration: components["schemas"]["AvatarFile"];
+            /** Key */
+            readonly key: string;
+            /**
+             * Note
+             * @default
+             */
+            readonly note: string;
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "tuned" | "by_hand" | "loaded";
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * NewAvatarVersion
+         * @description A configuration to append; `based_on` is the version that was on the page, 0 for none.
+         */
+        readonly NewAvatarVersion: {
+            /** Based On */
+            readonly based_on: number;
+            readonly configuration: components["schemas"]["AvatarFile"];
+            /**
+             * Note
+             * @default
+             */
+            readonly note: string;
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "tuned" | "by_hand" | "loaded";
         };
         /**
          * NewCalibration
@@ -2717,6 +5557,19 @@ export interface components {
             readonly studies?: readonly string[] | null;
         };
         /**
+         * NewModel
+         * @description A model to be fitted; `scene` is where tracks were walked, null for the open floor.
+         */
+        readonly NewModel: {
+            readonly options?: components["schemas"]["FitChoice"];
+            /** Scene */
+            readonly scene?: string | null;
+            /** Title */
+            readonly title: string;
+            /** Walk Set Id */
+            readonly walk_set_id: string;
+        };
+        /**
          * NewPairing
          * @description A wish to pair a device.
          */
@@ -2736,6 +5589,14 @@ export interface components {
             readonly current: string;
             /** New */
             readonly new: string;
+        };
+        /**
+         * NewScene
+         * @description The text of a scene file.
+         */
+        readonly NewScene: {
+            /** Text */
+            readonly text: string;
         };
         /**
          * NewSession
@@ -2781,6 +5642,16 @@ export interface components {
             readonly version?: number | null;
         };
         /**
+         * NewWalkSet
+         * @description Walks to be made or to be cut from captures; tables of tracks are uploaded.
+         */
+        readonly NewWalkSet: {
+            /** Origin */
+            readonly origin: components["schemas"]["PopulationOrigin"] | components["schemas"]["CapturesOrigin"];
+            /** Title */
+            readonly title: string;
+        };
+        /**
          * NoteView
          * @description A note of the lab.
          */
@@ -2796,6 +5667,49 @@ export interface components {
             readonly id: string;
             /** Text */
             readonly text: string;
+        };
+        /**
+         * ObstacleView
+         * @description Something nobody walks through: a convex outline, metres.
+         */
+        readonly ObstacleView: {
+            /** Corners M */
+            readonly corners_m: readonly (readonly number[])[];
+            /** Name */
+            readonly name: string;
+        };
+        /**
+         * Override
+         * @description Somebody goes on all the same, although this was `found`.
+         */
+        readonly Override: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /**
+             * Found
+             * @enum {string}
+             */
+            readonly found: "tablet.unpaired" | "tablet.away" | "tablet.ok" | "headset.unpaired" | "headset.away" | "headset.ok" | "frame_rate.no_headset" | "frame_rate.no_movement" | "frame_rate.measuring" | "frame_rate.low" | "frame_rate.ok" | "clock.no_headset" | "clock.measuring" | "clock.uncertain" | "clock.ok" | "trackers.no_movement" | "trackers.frozen" | "trackers.bad_values" | "trackers.ok" | "storage.failing" | "storage.differs" | "storage.ok" | "disk.low" | "disk.elsewhere" | "disk.ok" | "latency.unmeasured" | "latency.calibrated" | "latency.off" | "latency.ok" | "instruments.damaged" | "instruments.none" | "instruments.ok" | "configuration.differs" | "configuration.ok" | "language.missing" | "language.ok";
+            /** Reason */
+            readonly reason: string;
+        };
+        /**
+         * OverrideRequest
+         * @description Go on although a check is not green.
+         */
+        readonly OverrideRequest: {
+            /**
+             * Check
+             * @enum {string}
+             */
+            readonly check: "tablet" | "headset" | "frame_rate" | "clock" | "trackers" | "storage" | "disk" | "latency" | "instruments" | "configuration" | "language";
+            /** Reason */
+            readonly reason: string;
         };
         /**
          * PairedView
@@ -2856,6 +5770,26 @@ export interface components {
             readonly name: string;
         };
         /**
+         * PairView
+         * @description Two conditions against each other.
+         */
+        readonly PairView: {
+            /** A */
+            readonly a: string;
+            /** B */
+            readonly b: string;
+            /** N */
+            readonly n: number;
+            /** P */
+            readonly p: number;
+            /** P Holm */
+            readonly p_holm: number;
+            /** Rank Biserial */
+            readonly rank_biserial: number;
+            /** W */
+            readonly w: number;
+        };
+        /**
          * PaperConsent
          * @description A consent that was signed on paper: where the sheet is kept, and why on paper.
          */
@@ -2864,6 +5798,22 @@ export interface components {
             readonly place: string;
             /** Reason */
             readonly reason: string;
+        };
+        /**
+         * ParameterView
+         * @description A steering parameter, its bounds, and its values on the grid.
+         */
+        readonly ParameterView: {
+            /** High */
+            readonly high: number;
+            /** Low */
+            readonly low: number;
+            /** Name */
+            readonly name: string;
+            /** Unit */
+            readonly unit: string;
+            /** Values */
+            readonly values: readonly number[];
         };
         /**
          * ParticipantSession
@@ -2905,6 +5855,48 @@ export interface components {
             readonly kind: string;
             /** Sessions */
             readonly sessions: readonly components["schemas"]["ParticipantSession"][];
+        };
+        /**
+         * PartView
+         * @description Something that takes room; `files`: how many, of a folder.
+         */
+        readonly PartView: {
+            /** Bytes */
+            readonly bytes: number;
+            /** Files */
+            readonly files?: number | null;
+            /** Place */
+            readonly place: ("samples" | "results" | "answers" | "events" | "captures" | "setup") | ("unused" | "log" | "database" | "backups" | "scratch");
+        };
+        /**
+         * PathAsked
+         * @description A path: drawn, or planned between its first and its last point.
+         *
+         *     `scene` null: the open floor. `points_m`: x to the right, y ahead.
+         */
+        readonly PathAsked: {
+            /**
+             * Planned
+             * @default false
+             */
+            readonly planned: boolean;
+            /** Points M */
+            readonly points_m: readonly (readonly [
+                number,
+                number
+            ])[];
+            /** Scene */
+            readonly scene?: string | null;
+        };
+        /**
+         * PathView
+         * @description A path and its length.
+         */
+        readonly PathView: {
+            /** Length M */
+            readonly length_m: number;
+            /** Points M */
+            readonly points_m: readonly (readonly number[])[];
         };
         /**
          * PersonChange
@@ -3004,6 +5996,212 @@ export interface components {
             readonly step_index: number;
         };
         /**
+         * PieceView
+         * @description The convex piece of one part: its corners, and how far skin is outside of it at most.
+         */
+        readonly PieceView: {
+            /** Corners */
+            readonly corners: number;
+            /** Outside M */
+            readonly outside_m: number;
+            /** Part */
+            readonly part: string;
+        };
+        /**
+         * PopulationOrigin
+         * @description Made-up walkers: whom, how often each walks each path, and in which scene.
+         *
+         *     `scene` null: the paper's laboratory of sixteen straight and curved walks.
+         */
+        readonly PopulationOrigin: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly kind: "population";
+            /**
+             * People
+             * @default 12
+             */
+            readonly people: number;
+            /** Population */
+            readonly population: string;
+            /**
+             * Repetitions
+             * @default 2
+             */
+            readonly repetitions: number;
+            /** Scene */
+            readonly scene?: string | null;
+            /**
+             * Seed
+             * @default 1
+             */
+            readonly seed: number;
+        };
+        /**
+         * PopulationView
+         * @description A documented population of made-up walkers.
+         */
+        readonly PopulationView: {
+            /** About */
+            readonly about: string;
+            /** Name */
+            readonly name: string;
+        };
+        /**
+         * PredictionAsked
+         * @description How long do people take on this path?
+         *
+         *     `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, the same
+         *     seed gives the same; `shown` of them are followed along the path.
+         */
+        readonly PredictionAsked: {
+            /**
+             * Count
+             * @default 500
+             */
+            readonly count: number;
+            /**
+             * Planned
+             * @default false
+             */
+            readonly planned: boolean;
+            /** Points M */
+            readonly points_m: readonly (readonly [
+                number,
+                number
+            ])[];
+            /** Scene */
+            readonly scene?: string | null;
+            /**
+             * Seed
+             * @default 1
+             */
+            readonly seed: number;
+            /**
+             * Shown
+             * @default 20
+             */
+            readonly shown: number;
+            /** Stature M */
+            readonly stature_m?: number | null;
+        };
+        /**
+         * PredictionView
+         * @description The distribution of durations on a path by P_prob, beside P_stat and P_adapt.
+         *
+         *     `assumed`: dependencies that were not given. `outside`: those beyond the walks that the model
+         *     was fitted on, where it guesses. `lost`: draws that did not arrive and were drawn again.
+         *     `durations_s` are sorted. `kinds`: synthetic where made-up walkers are among the model's people.
+         */
+        readonly PredictionView: {
+            readonly adapt: components["schemas"]["FixedView"];
+            /** Assumed */
+            readonly assumed: readonly string[];
+            /** Count */
+            readonly count: number;
+            /** Dependencies */
+            readonly dependencies: {
+                readonly [key: string]: number;
+            };
+            /** Durations S */
+            readonly durations_s: readonly number[];
+            /** Kinds */
+            readonly kinds: readonly ("human" | "synthetic")[];
+            /** Lost */
+            readonly lost: number;
+            /** Mean S */
+            readonly mean_s: number;
+            /** Outside */
+            readonly outside: readonly string[];
+            /** Points M */
+            readonly points_m: readonly (readonly number[])[];
+            readonly quantiles_s: components["schemas"]["Quantiles"];
+            /** Seed */
+            readonly seed: number;
+            readonly stat: components["schemas"]["FixedView"];
+            /** Walkers */
+            readonly walkers: readonly components["schemas"]["SampledWalk"][];
+        };
+        /**
+         * Preflight
+         * @description The whole list, made anew. `clear`: nothing has failed, or what did was overridden.
+         *
+         *     `asks`: whether a start with failures is asked about. Only sessions with people are: the others
+         *     show the list and never stand in the way.
+         */
+        readonly Preflight: {
+            /** Asks */
+            readonly asks: boolean;
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** Checks */
+            readonly checks: readonly components["schemas"]["Check"][];
+            /** Clear */
+            readonly clear: boolean;
+        };
+        /**
+         * Preregistration
+         * @description What is declared. `planned_n`: participants in the primary test. `registration`: where it
+         *     was registered, once it was.
+         */
+        readonly Preregistration: {
+            /**
+             * Alpha
+             * @description above 0, at most 0.2
+             */
+            readonly alpha: number;
+            /**
+             * Exclusions
+             * @default []
+             */
+            readonly exclusions: readonly components["schemas"]["ExclusionRule"][];
+            /**
+             * Planned N
+             * @description participants, 2 to 10000
+             */
+            readonly planned_n: number;
+            readonly primary: components["schemas"]["PrimaryTest"];
+            /**
+             * Registration
+             * @default
+             */
+            readonly registration: string;
+        };
+        /**
+         * PreregistrationView
+         * @description Declared, done, and how the two differ. `why_no_result`: instead of a result.
+         */
+        readonly PreregistrationView: {
+            /**
+             * As Of
+             * Format: date-time
+             */
+            readonly as_of: string;
+            readonly declaration: components["schemas"]["DeclarationView"] | null;
+            /** Deviations */
+            readonly deviations: readonly components["schemas"]["DeviationView"][];
+            /** Excluded */
+            readonly excluded: readonly components["schemas"]["ExclusionView"][];
+            /** Included */
+            readonly included: number;
+            /** Kind */
+            readonly kind: string;
+            readonly result: components["schemas"]["PrimaryResult"] | null;
+            /** Sessions */
+            readonly sessions: number;
+            /** Simulated */
+            readonly simulated: boolean;
+            /** Study Key */
+            readonly study_key: string;
+            /** Why No Result */
+            readonly why_no_result: string | null;
+        };
+        /**
          * Preview
          * @description An instrument as a form: its content, and the items in one possible order.
          */
@@ -3024,6 +6222,76 @@ export interface components {
             readonly scores: readonly components["schemas"]["FormulaView"][];
             /** Seed */
             readonly seed: number;
+        };
+        /**
+         * PrimaryResult
+         * @description The declared test, made. `sentence` is for a paper; `holds`: p is at most alpha.
+         *
+         *     `rows`: single comparisons or the effect, under `columns`.
+         */
+        readonly PrimaryResult: {
+            /** Columns */
+            readonly columns: readonly string[];
+            /** Holds */
+            readonly holds: boolean;
+            /** Method */
+            readonly method: string;
+            /** N */
+            readonly n: number;
+            /** Rows */
+            readonly rows: readonly (readonly string[])[];
+            /** Sentence */
+            readonly sentence: string;
+        };
+        /**
+         * PrimaryTest
+         * @description The one test that the study is about.
+         *
+         *     `measure`: a score of an instrument that is asked after a task, contact time (s) or completions.
+         *     `limb`: of which task; "both" is the mean of a participant's tasks. `factor` is the added
+         *     latency. `direction`: of the measure as latency grows; "against_reference" compares each
+         *     condition with `reference` by exact signed-rank tests, and `correction` adjusts for all of them.
+         */
+        readonly PrimaryTest: {
+            /**
+             * Correction
+             * @default none
+             * @enum {string}
+             */
+            readonly correction: "holm" | "none";
+            /**
+             * Direction
+             * @default two_sided
+             * @enum {string}
+             */
+            readonly direction: "two_sided" | "rises" | "falls";
+            /**
+             * Factor
+             * @default latency
+             * @constant
+             */
+            readonly factor: "latency";
+            /** Instrument */
+            readonly instrument?: string | null;
+            /**
+             * Limb
+             * @enum {string}
+             */
+            readonly limb: "hand" | "foot" | "both";
+            /**
+             * Measure
+             * @enum {string}
+             */
+            readonly measure: "score" | "contact_time" | "completions";
+            /** Reference */
+            readonly reference?: string | null;
+            /** Score */
+            readonly score?: string | null;
+            /**
+             * Test
+             * @enum {string}
+             */
+            readonly test: "friedman" | "page_trend" | "rm_anova" | "against_reference";
         };
         /**
          * ProblemView
@@ -3049,6 +6317,21 @@ export interface components {
             readonly value?: unknown;
         };
         /**
+         * ProgressView
+         * @description How far a fit is; `maps_total` is 0 while it is not known.
+         */
+        readonly ProgressView: {
+            /** Maps */
+            readonly maps: number;
+            /** Maps Total */
+            readonly maps_total: number;
+            /**
+             * Stage
+             * @enum {string}
+             */
+            readonly stage: "waiting" | "walks" | "maps" | "blending";
+        };
+        /**
          * ProvenanceView
          * @description Where an instrument comes from, and how far that was checked.
          */
@@ -3061,6 +6344,75 @@ export interface components {
             readonly source: string;
             /** Verified */
             readonly verified: string;
+        };
+        /**
+         * Quantiles
+         * @description Seconds: 50 % of the walks take from p25 to p75, 90 % from p05 to p95.
+         */
+        readonly Quantiles: {
+            /** P05 */
+            readonly p05: number;
+            /** P25 */
+            readonly p25: number;
+            /** P50 */
+            readonly p50: number;
+            /** P75 */
+            readonly p75: number;
+            /** P95 */
+            readonly p95: number;
+        };
+        /**
+         * Range
+         * @description Smallest, middle and largest value, and the mean.
+         */
+        readonly Range: {
+            /** High */
+            readonly high: number;
+            /** Low */
+            readonly low: number;
+            /** Mean */
+            readonly mean: number;
+            /** Median */
+            readonly median: number;
+        };
+        /**
+         * ReadingChoice
+         * @description What somebody says about a file where the file does not, or says it wrongly.
+         *
+         *     `metres_per_unit`: the length of the file's unit; null to take the file's or a plausible one.
+         *     `up`: the file's upward axis; null to take the file's or its format's.
+         */
+        readonly ReadingChoice: {
+            /** Metres Per Unit */
+            readonly metres_per_unit?: number | null;
+            /** Up */
+            readonly up?: ("x" | "y" | "z") | null;
+        };
+        /**
+         * ReadingScoreView
+         * @description A reading and its mean error, CRPS in seconds, on people who were left out.
+         */
+        readonly ReadingScoreView: {
+            /** Crps S */
+            readonly crps_s: number;
+            readonly reading: components["schemas"]["ReadingView"];
+        };
+        /**
+         * ReadingView
+         * @description How deviations are read as suitability.
+         */
+        readonly ReadingView: {
+            /**
+             * Normalisation
+             * @enum {string}
+             */
+            readonly normalisation: "max" | "min-max";
+            /** Power */
+            readonly power: number;
+            /** Threshold */
+            readonly threshold: number;
+            /** Time Constant S */
+            readonly time_constant_s: number | null;
         };
         /**
          * Receipt
@@ -3100,6 +6452,187 @@ export interface components {
             readonly value: unknown;
         };
         /**
+         * Replay
+         * @description One phase. Latency, contacts, completions and scene are left out of a `participant` view.
+         *
+         *     `forms`: scores of the forms filled in after this phase and before the next, in order;
+         *     `administrations` names all of them, with or without scores. `stature_m` is the body's that is
+         *     drawn; where it is not known, a usual one is taken. `time_scale`: seconds of the headset's clock
+         *     per second of the server's.
+         */
+        readonly Replay: {
+            /** Active */
+            readonly active: readonly components["schemas"]["ActiveStretch"][];
+            /** Active S */
+            readonly active_s: number;
+            /** Administrations */
+            readonly administrations: readonly string[];
+            /** Attempt */
+            readonly attempt: number;
+            /** Completions */
+            readonly completions: readonly components["schemas"]["ReplayCompletion"][];
+            /** Contacts */
+            readonly contacts: readonly components["schemas"]["ReplayContact"][];
+            /** Duration S */
+            readonly duration_s: number;
+            /** Forms */
+            readonly forms: readonly components["schemas"]["StoredScores"][];
+            /** Has Movement */
+            readonly has_movement: boolean;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "consent" | "form" | "instructions" | "height" | "materialise" | "free_roam" | "practice" | "task" | "questionnaire" | "debrief";
+            /** Latency Ms */
+            readonly latency_ms: number | null;
+            /** Limb */
+            readonly limb: ("hand" | "foot") | null;
+            /** Moments */
+            readonly moments: readonly components["schemas"]["Moment"][];
+            /** Notes */
+            readonly notes: readonly components["schemas"]["ReplayNote"][];
+            /** Phase Id */
+            readonly phase_id: number;
+            /** Runs */
+            readonly runs: readonly components["schemas"]["ClientRun"][];
+            /** Session Id */
+            readonly session_id: string;
+            /** Stature Known */
+            readonly stature_known: boolean;
+            /** Stature M */
+            readonly stature_m: number;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "preparing" | "running" | "paused" | "walk_back" | "freezing" | "done" | "voided";
+            /** Step Index */
+            readonly step_index: number;
+            /** Surfaces */
+            readonly surfaces: readonly components["schemas"]["ReplaySurface"][];
+            /** Time Scale */
+            readonly time_scale: number;
+            /**
+             * View
+             * @enum {string}
+             */
+            readonly view: "full" | "participant";
+        };
+        /**
+         * ReplayCompletion
+         * @description A completed task.
+         */
+        readonly ReplayCompletion: {
+            /** Active S */
+            readonly active_s: number;
+            /** Duration S */
+            readonly duration_s: number;
+            /** Number */
+            readonly number: number;
+            /** Out Of Order Touches */
+            readonly out_of_order_touches: number;
+            /** T S */
+            readonly t_s: number;
+        };
+        /**
+         * ReplayContact
+         * @description One part of the avatar at one surface; `effect` is what the task made of it.
+         */
+        readonly ReplayContact: {
+            /** Begin Active S */
+            readonly begin_active_s: number;
+            /** Begin S */
+            readonly begin_s: number;
+            /** Body Part */
+            readonly body_part: string;
+            /** Box */
+            readonly box: number | null;
+            /** Effect */
+            readonly effect: string;
+            /** End Active S */
+            readonly end_active_s: number;
+            /** End S */
+            readonly end_s: number;
+            /** Surface */
+            readonly surface: string;
+            /** Surface Kind */
+            readonly surface_kind: string;
+        };
+        /**
+         * ReplayNote
+         * @description A note of the lab that was written during the phase.
+         */
+        readonly ReplayNote: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Id */
+            readonly id: string;
+            /** T S */
+            readonly t_s: number;
+            /** Text */
+            readonly text: string;
+        };
+        /**
+         * ReplaySurface
+         * @description A block of the task's scene: its centre and half its size, metres, in the movement's world.
+         *
+         *     `kind`: panel, side, target or start. `box` is null for target and start.
+         */
+        readonly ReplaySurface: {
+            /** Box */
+            readonly box: number | null;
+            /** Center M */
+            readonly center_m: readonly [
+                number,
+                number,
+                number
+            ];
+            /** Half Size M */
+            readonly half_size_m: readonly [
+                number,
+                number,
+                number
+            ];
+            /** Key */
+            readonly key: string;
+            /** Kind */
+            readonly kind: string;
+        };
+        /**
+         * ResultView
+         * @description One answer: a sentence for a reader, a table for a reviewer, a line for a paper.
+         *
+         *     `exploratory`: looked at, not declared. `warnings`: what speaks against relying on it.
+         */
+        readonly ResultView: {
+            /** Apa */
+            readonly apa: string;
+            /** Columns */
+            readonly columns: readonly string[];
+            /** Exploratory */
+            readonly exploratory: boolean;
+            /** Key */
+            readonly key: string;
+            /** Method */
+            readonly method: string;
+            /** Rows */
+            readonly rows: readonly (readonly string[])[];
+            /** Sentence */
+            readonly sentence: string;
+            /** Source */
+            readonly source: string;
+            /** Title */
+            readonly title: string;
+            /** Warnings */
+            readonly warnings: readonly string[];
+        };
+        /**
          * Retirement
          * @description Why a measurement must not be used any more.
          */
@@ -3114,6 +6647,114 @@ export interface components {
         readonly Reveal: {
             /** Reason */
             readonly reason: string;
+        };
+        /**
+         * SampledWalk
+         * @description One walk that was drawn; `xy_m` from 0 in steps of `step_s`, the last point at arrival.
+         */
+        readonly SampledWalk: {
+            /** Duration S */
+            readonly duration_s: number;
+            /** Step S */
+            readonly step_s: number;
+            /** Vector */
+            readonly vector: readonly number[];
+            /** Xy M */
+            readonly xy_m: readonly (readonly number[])[];
+        };
+        /**
+         * SceneListed
+         * @description A scene in a list; `by` and `at` are null for those that come with the product.
+         */
+        readonly SceneListed: {
+            /** At */
+            readonly at: string | null;
+            /** By */
+            readonly by: string | null;
+            /** Key */
+            readonly key: string;
+            /** Shipped */
+            readonly shipped: boolean;
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * SceneNamed
+         * @description The scene in which the walks were planned, and the hash of its file then.
+         */
+        readonly SceneNamed: {
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Key */
+            readonly key: string;
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * ScenePathView
+         * @description A walk that people are asked for, between two places.
+         */
+        readonly ScenePathView: {
+            /** Goal */
+            readonly goal: string;
+            /** Name */
+            readonly name: string;
+            /** Start */
+            readonly start: string;
+        };
+        /**
+         * SceneView
+         * @description A scene; `bounds_m` is left, near, right, far, x to the right and y ahead.
+         */
+        readonly SceneView: {
+            /** About */
+            readonly about: string;
+            /** At */
+            readonly at: string | null;
+            /** Bounds M */
+            readonly bounds_m: readonly number[];
+            /** By */
+            readonly by: string | null;
+            /** Clearance M */
+            readonly clearance_m: number;
+            /** Content Hash */
+            readonly content_hash: string;
+            /** Key */
+            readonly key: string;
+            /** Obstacles */
+            readonly obstacles: readonly components["schemas"]["ObstacleView"][];
+            /** Paths */
+            readonly paths: readonly components["schemas"]["ScenePathView"][];
+            /** Places */
+            readonly places: {
+                readonly [key: string]: readonly number[];
+            };
+            /** Shipped */
+            readonly shipped: boolean;
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * ScoreResult
+         * @description What a score came to. `test` is a sentence for a paper; without one `why_not` says why.
+         */
+        readonly ScoreResult: {
+            /** Left Out */
+            readonly left_out: readonly string[];
+            /** Means */
+            readonly means: readonly components["schemas"]["ConditionMean"][];
+            /** N */
+            readonly n: number;
+            /** Pairs */
+            readonly pairs: readonly components["schemas"]["PairView"][];
+            /** Score */
+            readonly score: string;
+            /** Test */
+            readonly test: string | null;
+            /** Title */
+            readonly title: string;
+            /** Why Not */
+            readonly why_not: string | null;
         };
         /**
          * ScoreStep
@@ -3172,6 +6813,31 @@ export interface components {
             readonly total: number;
         };
         /**
+         * SessionAvatar
+         * @description A physics avatar in its study's scene, to be simulated as it stands.
+         *
+         *     `mjcf` is the MuJoCo model with the boxes of all tasks, each named after its surface; the client
+         *     shows those of the present phase. `model_hash` is the SHA-256 of its bytes and
+         *     `configuration_hash` that of the configuration, both as they are on record. Added latency is set
+         *     while it runs, up to `longest_delay_s`. `standing_hips_m`: how high its hips are when it stands;
+         *     a model may have other legs than the participant, whose hips' height is scaled to it.
+         */
+        readonly SessionAvatar: {
+            readonly configuration: components["schemas"]["AvatarFile"];
+            /** Configuration Hash */
+            readonly configuration_hash: string;
+            /** Longest Delay S */
+            readonly longest_delay_s: number;
+            /** Mjcf */
+            readonly mjcf: string;
+            /** Model Hash */
+            readonly model_hash: string;
+            /** Standing Hips M */
+            readonly standing_hips_m: number;
+            /** Stature M */
+            readonly stature_m: number;
+        };
+        /**
          * SessionReceipt
          * @description What a session's record holds and what it lacks.
          *
@@ -3203,6 +6869,30 @@ export interface components {
             readonly streams: readonly components["schemas"]["StreamReceipt"][];
             /** Study */
             readonly study: string;
+        };
+        /**
+         * SessionRoom
+         * @description What one session takes.
+         */
+        readonly SessionRoom: {
+            /** Bytes */
+            readonly bytes: number;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "people" | "simulated" | "test" | "expert";
+            /** Participant Code */
+            readonly participant_code: string;
+            /** Study Key */
+            readonly study_key: string;
         };
         /**
          * SessionSummary
@@ -3252,6 +6942,8 @@ export interface components {
             readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "note") | "enter_answers")[];
             /** Avatar */
             readonly avatar: string;
+            /** Avatar Configuration Hash */
+            readonly avatar_configuration_hash: string | null;
             /** Blinded */
             readonly blinded: boolean;
             /**
@@ -3308,11 +7000,83 @@ export interface components {
             readonly version: number;
         };
         /**
+         * Shift
+         * @description Numbers x of the file would fit as multiply * x + add.
+         */
+        readonly Shift: {
+            /** Add */
+            readonly add: number;
+            /** Multiply */
+            readonly multiply: number;
+            /** Why */
+            readonly why: string;
+        };
+        /**
          * SignedInView
          * @description The answer to a login.
          */
         readonly SignedInView: {
             readonly account: components["schemas"]["AccountView"];
+        };
+        /**
+         * SkeletonView
+         * @description The skeleton of a capture: its file's own, or one that was fitted to markers or bodies.
+         *
+         *     `parents` are indices into `joints`, -1 for the root. `unfitted` are joints that the markers do
+         *     not show; `residual_m` tells how far the fitted skeleton is from what was recorded (root mean
+         *     square), null for a skeleton of the file; `notes` what was trimmed, bridged or left out.
+         */
+        readonly SkeletonView: {
+            /** Fingerprint */
+            readonly fingerprint: string;
+            /** Joints */
+            readonly joints: readonly string[];
+            /** Notes */
+            readonly notes: readonly string[];
+            /**
+             * Origin
+             * @enum {string}
+             */
+            readonly origin: "file" | "fitted";
+            /** Parents */
+            readonly parents: readonly number[];
+            /** Residual M */
+            readonly residual_m: number | null;
+            /** Unfitted */
+            readonly unfitted: readonly string[];
+        };
+        /**
+         * SliceAsked
+         * @description A slice of the map that answers for these dependencies, one parameter held.
+         */
+        readonly SliceAsked: {
+            /** Dependencies */
+            readonly dependencies: {
+                readonly [key: string]: number;
+            };
+            /** Held */
+            readonly held: string;
+            /** Value */
+            readonly value: number;
+        };
+        /**
+         * SliceView
+         * @description Suitability over two parameters; rows of `suitability` are values of y.
+         *
+         *     `order`: of a vector's numbers. `largest`: of the whole map, so that slices share a scale.
+         */
+        readonly SliceView: {
+            readonly held: components["schemas"]["ParameterView"];
+            /** Held At */
+            readonly held_at: number;
+            /** Largest */
+            readonly largest: number;
+            /** Order */
+            readonly order: readonly string[];
+            /** Suitability */
+            readonly suitability: readonly (readonly number[])[];
+            readonly x: components["schemas"]["ParameterView"];
+            readonly y: components["schemas"]["ParameterView"];
         };
         /**
          * SlotInfo
@@ -3370,6 +7134,35 @@ export interface components {
             readonly ticked: boolean | null;
         };
         /**
+         * StatisticsView
+         * @description Answers as of `drawn_at`; not `current`: they are being computed anew.
+         */
+        readonly StatisticsView: {
+            /** Alpha */
+            readonly alpha: number;
+            /** Current */
+            readonly current: boolean;
+            /** Declared */
+            readonly declared: boolean;
+            /**
+             * Drawn At
+             * Format: date-time
+             */
+            readonly drawn_at: string;
+            /** Kind */
+            readonly kind: string;
+            /** Measures */
+            readonly measures: readonly components["schemas"]["MeasureView"][];
+            /** N Completed */
+            readonly n_completed: number;
+            /** N Sessions */
+            readonly n_sessions: number;
+            /** Notes */
+            readonly notes: readonly string[];
+            /** Simulated */
+            readonly simulated: boolean;
+        };
+        /**
          * StepView
          * @description One step of the procedure; fields that do not apply are null.
          */
@@ -3413,6 +7206,41 @@ export interface components {
             readonly until_completions?: number | null;
         };
         /**
+         * StorageView
+         * @description What takes how much room, measured at `measured_at`, in whole bytes.
+         *
+         *     Sizes of studies and sessions are their tables' own sizes, shared out by the length of their
+         *     rows, so they hold indexes and half-full pages. `sessions` are the largest of `sessions_total`.
+         */
+        readonly StorageView: {
+            readonly disk: components["schemas"]["DiskView"];
+            /**
+             * Engine
+             * @enum {string}
+             */
+            readonly engine: "sqlite" | "postgresql";
+            /**
+             * Measured At
+             * Format: date-time
+             */
+            readonly measured_at: string;
+            /**
+             * Method
+             * @enum {string}
+             */
+            readonly method: "dbstat" | "page_counts" | "pg_total_relation_size";
+            /** Parts */
+            readonly parts: readonly components["schemas"]["PartView"][];
+            /** Place */
+            readonly place: string;
+            /** Sessions */
+            readonly sessions: readonly components["schemas"]["SessionRoom"][];
+            /** Sessions Total */
+            readonly sessions_total: number;
+            /** Studies */
+            readonly studies: readonly components["schemas"]["StudyRoom"][];
+        };
+        /**
          * StoredAnswers
          * @description One stored form with the answers that count: as given, unless they were corrected since.
          *
@@ -3432,6 +7260,11 @@ export interface components {
             readonly definition: {
                 readonly [key: string]: unknown;
             };
+            /**
+             * Hints
+             * @default []
+             */
+            readonly hints: readonly components["schemas"]["AnswerHint"][];
             /** Instrument */
             readonly instrument: string;
             /** Language */
@@ -3466,6 +7299,11 @@ export interface components {
         readonly StoredScores: {
             /** Administration */
             readonly administration: string;
+            /**
+             * Hints
+             * @default []
+             */
+            readonly hints: readonly components["schemas"]["AnswerHint"][];
             /** Instrument */
             readonly instrument: string;
             /**
@@ -3592,6 +7430,32 @@ export interface components {
             readonly yaml: string;
         };
         /**
+         * StudyRoom
+         * @description What a study takes.
+         *
+         *     `mean_bytes`: of its `measured` completed sessions of the kind `measured_kind`: people's where
+         *     there are any, since others may be shorter. `room_for`: how many more of these fit before the
+         *     disk warns; None where nothing was measured, or the database is elsewhere.
+         */
+        readonly StudyRoom: {
+            /** Bytes */
+            readonly bytes: number;
+            /** Key */
+            readonly key: string;
+            /** Mean Bytes */
+            readonly mean_bytes: number | null;
+            /** Measured */
+            readonly measured: number;
+            /** Measured Kind */
+            readonly measured_kind: ("people" | "simulated" | "test" | "expert") | null;
+            /** Room For */
+            readonly room_for: number | null;
+            /** Sessions */
+            readonly sessions: number;
+            /** Title */
+            readonly title: string;
+        };
+        /**
          * StudySummary
          * @description A study in the list.
          */
@@ -3662,6 +7526,8 @@ export interface components {
         /**
          * SubmissionRequest
          * @description A filled-in form. The same `idempotency_key` may be sent any number of times.
+         *
+         *     `timings`: seconds from the opening of the form to the last change of each answer.
          */
         readonly SubmissionRequest: {
             /** Administration */
@@ -3672,6 +7538,10 @@ export interface components {
             };
             /** Idempotency Key */
             readonly idempotency_key: string;
+            /** Item Traces */
+            readonly item_traces?: {
+                readonly [key: string]: components["schemas"]["ItemTrace"];
+            } | null;
             /** Language */
             readonly language: string;
             /** Seed */
@@ -3728,10 +7598,16 @@ export interface components {
          * @description What the tablet shows now; `next` says what comes next, in the participant's language.
          *
          *     `held`: the participant waits for the experimenter, and nothing on the tablet goes on.
+         *     `help_asked`: the experimenter was called and has not come yet.
          */
         readonly TabletState: {
             readonly administration: components["schemas"]["Administration"] | null;
             readonly consent?: components["schemas"]["ConsentForm"] | null;
+            /**
+             * Help Asked
+             * @default false
+             */
+            readonly help_asked: boolean;
             /** Language */
             readonly language: string;
             /** Languages */
@@ -3864,6 +7740,95 @@ export interface components {
             readonly total_s: number;
         };
         /**
+         * ToePathView
+         * @description The way of one foot's ball (the toe joint) in metres; figure 9 of the paper.
+         *
+         *     `forward_m` is along the walk, `height_m` above the ground; `start_height_m` in the first frame.
+         */
+        readonly ToePathView: {
+            /** Forward M */
+            readonly forward_m: readonly number[];
+            /** Height M */
+            readonly height_m: readonly number[];
+            /**
+             * Side
+             * @enum {string}
+             */
+            readonly side: "left" | "right";
+            /** Start Height M */
+            readonly start_height_m: number;
+        };
+        /**
+         * TracksOrigin
+         * @description A table of tracks that was brought in.
+         */
+        readonly TracksOrigin: {
+            /** File Name */
+            readonly file_name: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            readonly kind: "tracks";
+            /** Metres Per Unit */
+            readonly metres_per_unit?: number | null;
+            /** Rate Hz */
+            readonly rate_hz?: number | null;
+            /** Statures M */
+            readonly statures_m?: {
+                readonly [key: string]: number;
+            };
+        };
+        /**
+         * TryoutTrouble
+         * @description Why it ended early, and what to do about it.
+         */
+        readonly TryoutTrouble: {
+            /** Message */
+            readonly message: string;
+            /** Remedy */
+            readonly remedy: string;
+        };
+        /**
+         * TryoutView
+         * @description The newest tryout. `session_id` is there once the session is; `step` says where it is.
+         *
+         *     `speed`: how many times faster than a person. `mine`: whether the reader began it.
+         */
+        readonly TryoutView: {
+            /** Mine */
+            readonly mine: boolean;
+            /** Session Id */
+            readonly session_id: string | null;
+            /** Speed */
+            readonly speed: number;
+            /**
+             * Started At
+             * Format: date-time
+             */
+            readonly started_at: string;
+            /** Started By */
+            readonly started_by: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "starting" | "running" | "done" | "stopped" | "failed";
+            /** Step */
+            readonly step: string | null;
+            /** Study Key */
+            readonly study_key: string;
+            readonly trouble: components["schemas"]["TryoutTrouble"] | null;
+        };
+        /**
+         * TryoutWish
+         * @description In which language the scripted participant answers.
+         */
+        readonly TryoutWish: {
+            /** Language */
+            readonly language: string;
+        };
+        /**
          * TryRequest
          * @description Answers to score, by the instrument in a text or by the newest stored one of that key.
          */
@@ -3890,6 +7855,43 @@ export interface components {
             readonly recode: string | null;
             /** Scores */
             readonly scores: readonly components["schemas"]["ScoreStep"][];
+        };
+        /**
+         * UndoRequest
+         * @description Why an import is undone.
+         */
+        readonly UndoRequest: {
+            /** Reason */
+            readonly reason: string;
+        };
+        /**
+         * VerificationView
+         * @description The source and every avatar.
+         *
+         *     `lifts_agree`: every avatar lifts each foot as often as the source.
+         *     `largest_timing_difference_s`: between the same lift or contact of any two bodies; null where
+         *     they do not agree. `unmapped_body_joints` keep their T-pose on every avatar.
+         */
+        readonly VerificationView: {
+            /** Avatars */
+            readonly avatars: readonly components["schemas"]["AvatarWalkerView"][];
+            /** Frames */
+            readonly frames: number;
+            /** Largest Timing Difference S */
+            readonly largest_timing_difference_s: number | null;
+            /** Leg Angles */
+            readonly leg_angles: readonly components["schemas"]["LegAnglesView"][];
+            /** Lifts Agree */
+            readonly lifts_agree: boolean;
+            /** Lock Feet */
+            readonly lock_feet: boolean;
+            /** Rate Hz */
+            readonly rate_hz: number;
+            readonly source: components["schemas"]["WalkerView"];
+            /** Times S */
+            readonly times_s: readonly number[];
+            /** Unmapped Body Joints */
+            readonly unmapped_body_joints: readonly string[];
         };
         /**
          * VersionDetail
@@ -3929,6 +7931,107 @@ export interface components {
             readonly frozen_at: string | null;
             /** Number */
             readonly number: number;
+        };
+        /**
+         * WalkerView
+         * @description How one body, the source or an avatar, does the movement.
+         *
+         *     `leg_length_m` is thigh plus shin, `thigh_share` the thigh's part of it. Means are null without
+         *     a whole step. `foot_slide_m_s` is the mean speed of its feet over the ground while they are
+         *     down, null where none is.
+         */
+        readonly WalkerView: {
+            /** Foot Slide M S */
+            readonly foot_slide_m_s: number | null;
+            /** Leg Length M */
+            readonly leg_length_m: number;
+            /** Mean Step Height M */
+            readonly mean_step_height_m: number | null;
+            /** Mean Step Length M */
+            readonly mean_step_length_m: number | null;
+            /** Name */
+            readonly name: string;
+            /** Steps */
+            readonly steps: readonly components["schemas"]["WalkStepView"][];
+            /** Thigh Share */
+            readonly thigh_share: number;
+            /** Toe Paths */
+            readonly toe_paths: readonly components["schemas"]["ToePathView"][];
+        };
+        /**
+         * WalkSetView
+         * @description A set of walks. `kind` says whether people walked or a program.
+         */
+        readonly WalkSetView: {
+            /**
+             * At
+             * Format: date-time
+             */
+            readonly at: string;
+            /** By */
+            readonly by: string;
+            /** Content Hash */
+            readonly content_hash: string | null;
+            /** Id */
+            readonly id: string;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "human" | "synthetic";
+            /** Origin */
+            readonly origin: components["schemas"]["PopulationOrigin"] | components["schemas"]["CapturesOrigin"] | components["schemas"]["TracksOrigin"];
+            readonly summary: components["schemas"]["WalksSummary"];
+            /** Title */
+            readonly title: string;
+        };
+        /**
+         * WalksSummary
+         * @description What is in a set of walks.
+         *
+         *     `cut_by_recording`: walks that a recording begins or ends in. `missing_dependencies`: those that
+         *     only some walks have, so that no model can depend on them.
+         */
+        readonly WalksSummary: {
+            readonly census: components["schemas"]["CensusView"];
+            /** Cut By Recording */
+            readonly cut_by_recording: number;
+            /** Dependencies */
+            readonly dependencies: {
+                readonly [key: string]: components["schemas"]["Range"];
+            };
+            readonly duration_s: components["schemas"]["Range"];
+            /** Missing Dependencies */
+            readonly missing_dependencies: readonly string[];
+            /** People */
+            readonly people: number;
+            readonly speed_m_s: components["schemas"]["Range"];
+            /** Walks */
+            readonly walks: number;
+        };
+        /**
+         * WalkStepView
+         * @description One lift of a foot, from leaving the ground to the next contact.
+         *
+         *     `length_m` is the ball's way forward, `height_m` from its lowest to its highest place,
+         *     `contact_height_m` above the ground as it comes down.
+         */
+        readonly WalkStepView: {
+            /** Contact Height M */
+            readonly contact_height_m: number;
+            /** Contact S */
+            readonly contact_s: number;
+            /** Height M */
+            readonly height_m: number;
+            /** Length M */
+            readonly length_m: number;
+            /** Lift S */
+            readonly lift_s: number;
+            /**
+             * Side
+             * @enum {string}
+             */
+            readonly side: "left" | "right";
         };
         /**
          * WhoView
@@ -4147,6 +8250,346 @@ export interface operations {
             };
         };
     };
+    readonly get_avatars_api_avatars_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["AvatarSummary"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_avatar_api_avatars_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewAvatar"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_avatar_api_avatars__key__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_avatar_model_api_avatars__key__model_get: {
+        readonly parameters: {
+            readonly query: {
+                readonly stature_m: number;
+                readonly version?: number | null;
+            };
+            readonly header?: {
+                readonly "if-none-match"?: string | null;
+            };
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The model as MJCF; its ETag is the SHA-256 of its bytes. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/xml": string;
+                };
+            };
+            /** @description The reader has it already. */
+            readonly 304: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_avatar_version_api_avatars__key__versions_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewAvatarVersion"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_avatar_version_api_avatars__key__versions__number__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly number: number;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarVersionDetail"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_avatar_file_api_avatars__key__versions__number__file_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+                readonly number: number;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The file. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": unknown;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_avatar_check_api_avatars_check_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["AvatarText"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["AvatarCheck"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly get_calibrations_api_calibrations_get: {
         readonly parameters: {
             readonly query?: never;
@@ -4271,6 +8714,567 @@ export interface operations {
             };
         };
     };
+    readonly get_captures_api_captures_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly limit?: number;
+                readonly offset?: number;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CapturePage"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_capture_api_captures_post: {
+        readonly parameters: {
+            readonly query: {
+                readonly companion?: string | null;
+                readonly companion_bytes?: number | null;
+                readonly metres_per_unit?: number | null;
+                readonly name: string;
+                readonly up?: ("x" | "y" | "z") | null;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/octet-stream": string;
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The same content was here already. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CaptureView"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CaptureView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_capture_api_captures__capture_id__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CaptureView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_capture_api_captures__capture_id__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly patch_capture_api_captures__capture_id__patch: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["CaptureChange"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CaptureView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_file_api_captures__capture_id__file_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly companion?: boolean;
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The file as it was uploaded. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/octet-stream": string;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_joint_map_api_captures__capture_id__joint_map_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["JointMapView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_joint_map_api_captures__capture_id__joint_map_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["JointMapWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["JointMapView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_joint_map_api_captures__capture_id__joint_map_delete: {
+        readonly parameters: {
+            readonly query: {
+                readonly version: number;
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["JointMapView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_motion_api_captures__capture_id__motion_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly shown?: "recorded" | "skeleton";
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Positions for a preview: docs/captures.md tells their form. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/octet-stream": string;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_retargeted_api_captures__capture_id__retargeted_get: {
+        readonly parameters: {
+            readonly query: {
+                readonly avatar: string;
+                readonly format?: "bvh" | "csv";
+                readonly lock_feet?: boolean;
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The movement on the avatar, as a BVH or CSV file. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/csv": string;
+                    readonly "text/plain": string;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_retargeted_motion_api_captures__capture_id__retargeted_motion_get: {
+        readonly parameters: {
+            readonly query: {
+                readonly avatar: string;
+                readonly lock_feet?: boolean;
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Positions of the avatar's joints, in the form of `motion`. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/octet-stream": string;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_verification_api_captures__capture_id__verification_get: {
+        readonly parameters: {
+            readonly query: {
+                readonly avatars: readonly string[];
+                readonly lock_feet?: boolean;
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly capture_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["VerificationView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly post_destroyed_api_copies__copy_id__destroyed_post: {
         readonly parameters: {
             readonly query?: never;
@@ -4353,6 +9357,162 @@ export interface operations {
             };
         };
     };
+    readonly get_exports_api_exports_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["ExportView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_one_export_api_exports__export_id__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly export_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ExportView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_export_api_exports__export_id__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly export_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_export_file_api_exports__export_id__file_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly export_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description A ZIP of CSV files. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/zip": unknown;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly get_health_api_health_get: {
         readonly parameters: {
             readonly query?: never;
@@ -4378,6 +9538,180 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["Health"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_humanoids_api_humanoids_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly limit?: number;
+                readonly offset?: number;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HumanoidPage"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_humanoid_api_humanoids_post: {
+        readonly parameters: {
+            readonly query: {
+                readonly name: string;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/octet-stream": string;
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The same content was here already. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HumanoidView"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HumanoidView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_humanoid_api_humanoids__content_hash__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["HumanoidView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_humanoid_file_api_humanoids__content_hash__file_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly content_hash: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The file as it was uploaded. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/octet-stream": string;
                 };
             };
             /** @description Cannot be stored now, so nothing was promised. */
@@ -5314,6 +10648,44 @@ export interface operations {
             };
         };
     };
+    readonly post_help_answered_api_sessions__session_id__help_answered_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly get_live_api_sessions__session_id__live_get: {
         readonly parameters: {
             readonly query?: never;
@@ -5385,6 +10757,181 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["PairingView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_movement_api_sessions__session_id__phases__phase_id__movement_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: {
+                readonly "if-none-match"?: string | null;
+            };
+            readonly path: {
+                readonly phase_id: number;
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Places of the joints over time: app/features/replay/movement.py. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/octet-stream": string;
+                };
+            };
+            /** @description The movement is the one that is there already. */
+            readonly 304: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_replay_api_sessions__session_id__phases__phase_id__replay_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly phase_id: number;
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Replay"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_preflight_api_sessions__session_id__preflight_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Preflight"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_override_api_sessions__session_id__preflight_overrides_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly session_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["OverrideRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["Check"];
                 };
             };
             /** @description Cannot be stored now, so nothing was promised. */
@@ -5598,6 +11145,46 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["StoredAnswers"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_storage_api_storage_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly anew?: boolean;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["StorageView"];
                 };
             };
             /** @description Cannot be stored now, so nothing was promised. */
@@ -5856,7 +11443,14 @@ export interface operations {
     readonly get_dashboard_api_studies__key__dashboard_get: {
         readonly parameters: {
             readonly query?: {
+                readonly group?: ("progress" | "embodiment" | "answers" | "tasks" | "movement" | "quality") | null;
                 readonly kind?: "people" | "simulated" | "test";
+                readonly limb?: ("hand" | "foot") | null;
+                readonly order?: string | null;
+                readonly participant?: readonly string[];
+                readonly rows?: "valid" | "all";
+                readonly since?: string | null;
+                readonly until?: string | null;
             };
             readonly header?: never;
             readonly path: {
@@ -5882,6 +11476,55 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["DashboardView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_figure_rows_api_studies__key__dashboard__figure__rows_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly kind?: "people" | "simulated" | "test";
+                readonly limb?: ("hand" | "foot") | null;
+                readonly order?: string | null;
+                readonly participant?: readonly string[];
+                readonly rows?: "valid" | "all";
+                readonly since?: string | null;
+                readonly until?: string | null;
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly figure: string;
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The rows of a figure. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/csv": unknown;
                 };
             };
             /** @description Cannot be stored now, so nothing was promised. */
@@ -6068,6 +11711,393 @@ export interface operations {
             };
         };
     };
+    readonly post_export_api_studies__key__exports_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["ExportWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 202: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ExportView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_imports_api_studies__key__imports_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["ImportView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_import_api_studies__key__imports_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["ImportRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ImportView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_import_api_studies__key__imports__import_id__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly import_id: string;
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ImportDetail"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_import_table_api_studies__key__imports__import_id__table_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly import_id: string;
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Forms, answers and scores. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "text/csv": unknown;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_undo_api_studies__key__imports__import_id__undo_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly import_id: string;
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["UndoRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ImportView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_check_api_studies__key__imports_check_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["CheckRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["CheckView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_erase_imported_api_studies__key__imports_erase_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["EraseImportedRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErasedImported"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_look_api_studies__key__imports_look_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["LookRequest"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["LookView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly get_ledger_api_studies__key__ledger_get: {
         readonly parameters: {
             readonly query?: {
@@ -6236,6 +12266,92 @@ export interface operations {
             };
         };
     };
+    readonly get_preregistration_api_studies__key__preregistration_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly kind?: "people" | "simulated" | "test";
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PreregistrationView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_preregistration_report_api_studies__key__preregistration_report_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly form?: "markdown" | "json";
+                readonly kind?: "people" | "simulated" | "test";
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": unknown;
+                    readonly "text/markdown": unknown;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly post_restore_api_studies__key__restore_post: {
         readonly parameters: {
             readonly query?: never;
@@ -6362,6 +12478,48 @@ export interface operations {
             };
         };
     };
+    readonly get_statistics_api_studies__key__statistics_get: {
+        readonly parameters: {
+            readonly query?: {
+                readonly kind?: "people" | "simulated" | "test";
+            };
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["StatisticsView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly get_suggestions_api_studies__key__suggestions_get: {
         readonly parameters: {
             readonly query?: never;
@@ -6433,6 +12591,50 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": components["schemas"]["SuggestionView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_tryout_api_studies__key__tryout_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["TryoutWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 202: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TryoutView"];
                 };
             };
             /** @description Cannot be stored now, so nothing was promised. */
@@ -6825,6 +13027,48 @@ export interface operations {
             };
         };
     };
+    readonly put_help_api_tablet_help_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["HelpWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TabletState"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
     readonly put_language_api_tablet_language_put: {
         readonly parameters: {
             readonly query?: never;
@@ -7010,6 +13254,975 @@ export interface operations {
                 };
                 content: {
                     readonly "application/json": readonly components["schemas"]["TemplateView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_tryout_api_tryout_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TryoutView"] | null;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_tryout_api_tryout_delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TryoutView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_avatar_api_vr_avatar_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["AvatarWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SessionAvatar"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_models_api_walking_models_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["ModelListed"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_model_api_walking_models_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewModel"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ModelView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_model_api_walking_models__model_id__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly model_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ModelView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_model_api_walking_models__model_id__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly model_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_model_file_api_walking_models__model_id__file_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly model_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The model's file, as `reembody walk` reads it. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/octet-stream": string;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_prediction_api_walking_models__model_id__prediction_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly model_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["PredictionAsked"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PredictionView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly resume_model_api_walking_models__model_id__resume_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly model_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ModelView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_slice_api_walking_models__model_id__slice_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly model_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["SliceAsked"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SliceView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly stop_model_api_walking_models__model_id__stop_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly model_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ModelView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_path_api_walking_paths_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["PathAsked"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["PathView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_populations_api_walking_populations_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["PopulationView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_scenes_api_walking_scenes_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["SceneListed"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_scene_api_walking_scenes_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewScene"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SceneView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_scene_api_walking_scenes__scene_key__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly scene_key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["SceneView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_scene_api_walking_scenes__scene_key__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly scene_key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_scene_file_api_walking_scenes__scene_key__file_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly scene_key: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description The scene's file, YAML or JSON. */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/octet-stream": string;
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_walk_sets_api_walking_walk_sets_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": readonly components["schemas"]["WalkSetView"][];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_walk_set_api_walking_walk_sets_post: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["NewWalkSet"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["WalkSetView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_walk_set_api_walking_walk_sets__set_id__get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly set_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["WalkSetView"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly delete_walk_set_api_walking_walk_sets__set_id__delete: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path: {
+                readonly set_id: string;
+            };
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 204: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly post_tracks_api_walking_walk_sets_tracks_post: {
+        readonly parameters: {
+            readonly query: {
+                readonly kind?: "human" | "synthetic";
+                readonly metres_per_unit?: number | null;
+                readonly name: string;
+                readonly rate_hz?: number | null;
+                readonly stature?: readonly string[] | null;
+                readonly title: string;
+            };
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/octet-stream": string;
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 201: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["WalkSetView"];
                 };
             };
             /** @description Cannot be stored now, so nothing was promised. */

@@ -23,6 +23,8 @@ export type AdministrationScores = Schemas["StoredScores"];
 export type Score = Schemas["ScoreView"];
 export type SessionEvent = Schemas["EventView"];
 export type Alarm = Schemas["AlarmView"];
+export type Preflight = Schemas["Preflight"];
+export type Check = Schemas["Check"];
 
 export type Kind = SessionSummary["kind"];
 /** Sessions that are data of some sort; experts' are not. */
@@ -232,6 +234,5 @@ export type Answer = string | number | boolean | null;
 export type Submission = Schemas["SubmissionRequest"];
 export type Receipt = Schemas["Receipt"];
 
-export type Dashboard = Schemas["DashboardView"];
 export type FigureSpec = Schemas["FigureView"];
 export type CodebookColumn = Schemas["ColumnView"];

@@ -1,6 +1,6 @@
 /** A small instrument for tests: one item of every type. */
 import type { Administration, Instrument, Item } from "../api/types";
-import type { FormWords } from "./surveyJson";
+import type { FormWords } from "./questions";
 
 const text = (en: string) => ({ en, de: `${en} (de)` });
 
@@ -49,4 +49,7 @@ export const words: FormWords = {
   optional: "optional",
   required: "Please answer.",
   range: (low, high, unit) => `${low} to ${high} ${unit}`,
+  whole: "A whole number.",
+  atLeast: (low, unit) => `At least ${low} ${unit}.`,
+  atMost: (high, unit) => `At most ${high} ${unit}.`,
 };

@@ -18,7 +18,28 @@ export type Delivery =
 
 export type Submit = (submission: Submission) => Promise<Receipt>;
 
-export async function deliver(
+/** What is on its way or has arrived, by idempotency key: one page sends nothing twice. */
+const sent = new Map<string, Promise<Delivery>>();
+
+/** The form on the screen and the sweep may both ask for it; the second one waits for the first. */
+export function deliver(
+  store: DraftStore,
+  id: string,
+  submission: Submission,
+  submit: Submit,
+): Promise<Delivery> {
+  const key = submission.idempotency_key;
+  const before = sent.get(key);
+  if (before !== undefined) return before;
+  const delivery = bring(store, id, submission, submit).then((ended) => {
+    if (ended.kind !== "stored") sent.delete(key);
+    return ended;
+  });
+  sent.set(key, delivery);
+  return delivery;
+}
+
+async function bring(
   store: DraftStore,
   id: string,
   submission: Submission,

@@ -1,13 +1,19 @@
 import "fake-indexeddb/auto";
 import { ApiError, Unreachable } from "@shared/api/errors";
-import type { Receipt, Submission } from "@shared/api/types";
+import type { Receipt, Submission, TabletState } from "@shared/api/types";
 import { uuid } from "@shared/uuid";
+import { openDB } from "idb";
 import { beforeEach, describe, expect, it } from "vitest";
 import { deliver } from "./deliver";
 import { DraftStore, type Kept } from "./store";
 
 const NOW = new Date("2026-01-01T12:00:00Z");
-const DRAFT = { data: { q1: 4 }, page: 1, timings: { q1: 3.2 } };
+const DRAFT = {
+  data: { q1: 4 },
+  page: 1,
+  timings: { q1: 3.2 },
+  traces: { q1: { response_s: 3.1, changes: 1 } },
+};
 
 const submissionOf = (kept: Kept, answer = 4): Submission => ({
   idempotency_key: kept.idempotencyKey,
@@ -18,6 +24,7 @@ const submissionOf = (kept: Kept, answer = 4): Submission => ({
   language: "en",
   started_at_utc: kept.startedAt,
   timings: {},
+  item_traces: {},
 });
 
 let name: string;
@@ -96,6 +103,19 @@ describe("delivering a form", () => {
     expect(new Set(keys)).toEqual(new Set([kept.idempotencyKey]));
   });
 
+  it("is sent once, however many ask for it while it is on its way or after it has arrived", async () => {
+    const keys: string[] = [];
+    const counted = async (submission: Submission): Promise<Receipt> => {
+      keys.push(submission.idempotency_key);
+      return receipt;
+    };
+    const queued = await store.queue(kept.id, submissionOf(kept));
+    const ask = () => deliver(store, kept.id, queued, counted);
+    expect(await Promise.all([ask(), ask()])).toEqual([{ kind: "stored" }, { kind: "stored" }]);
+    expect(await ask()).toEqual({ kind: "stored" });
+    expect(keys).toEqual([kept.idempotencyKey]);
+  });
+
   it("keeps it when the tablet was disconnected or the form is not due", async () => {
     expect(await attempt(failing(refusal(401, "not_signed_in")))).toEqual({ kind: "unpaired" });
     expect((await attempt(failing(refusal(409, "not_now")))).kind).toBe("held");
@@ -111,5 +131,74 @@ describe("delivering a form", () => {
   it("forgets it when the experimenter has recorded the form already", async () => {
     expect(await attempt(failing(refusal(409, "conflict")))).toEqual({ kind: "superseded" });
     expect(await store.waiting("session")).toEqual([]);
+  });
+});
+
+describe("the last screen", () => {
+  const screen = (changed: Partial<TabletState> = {}): TabletState => ({
+    session_id: "session",
+    version: 4,
+    language: "en",
+    languages: ["en"],
+    simulated: false,
+    screen: "form",
+    step_index: 2,
+    title: "Embodiment",
+    text: null,
+    next: "The task",
+    administration: { key: "form#1" } as TabletState["administration"],
+    consent: null,
+    help_asked: false,
+    ...changed,
+  });
+
+  it("comes back after a restart, and the newest one alone", async () => {
+    await store.keepScreen(screen());
+    await store.keepScreen(screen({ version: 5 }));
+    expect((await new DraftStore(name).lastScreen())?.version).toBe(5);
+  });
+
+  it("shows a form no more once the server has its answers", async () => {
+    await store.keepScreen(screen());
+    await store.forget(kept.id);
+    const last = await store.lastScreen();
+    expect([last?.screen, last?.administration, last?.next]).toEqual(["waiting", null, null]);
+  });
+
+  it("stays when another form is stored", async () => {
+    await store.keepScreen(screen());
+    await store.forget("session/form#0");
+    expect((await store.lastScreen())?.screen).toBe("form");
+  });
+
+  it("goes with the session, and with it what was never sent; what waits to be sent stays", async () => {
+    const waiting = await store.open("session", "form#2", NOW);
+    await store.queue(waiting.id, submissionOf(waiting));
+    await store.keep(kept.id, DRAFT);
+    await store.keepScreen(screen());
+    await store.keepScreen(screen({ screen: "finished", administration: null }));
+    expect(await store.lastScreen()).toBeUndefined();
+    expect((await store.open("session", "form#1", NOW)).draft.data).toEqual({});
+    expect(await store.waiting("session")).toHaveLength(1);
+  });
+
+  it("goes with the pairing", async () => {
+    await store.keepScreen(screen());
+    await store.forgetScreen();
+    expect(await store.lastScreen()).toBeUndefined();
+  });
+});
+
+describe("a tablet of an older version", () => {
+  it("keeps what it had: its records are read, and what they lack is empty", async () => {
+    const old = uuid();
+    const database = await openDB(old, 1, {
+      upgrade: (db) => void db.createObjectStore("kept", { keyPath: "id" }),
+    });
+    const { traces: _, ...draft } = DRAFT;
+    await database.put("kept", { ...kept, draft });
+    database.close();
+    const opened = await new DraftStore(old).open("session", "form#1", NOW);
+    expect(opened.draft).toEqual({ ...DRAFT, traces: {} });
   });
 });

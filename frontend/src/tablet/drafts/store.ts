@@ -1,13 +1,17 @@
 /**
- * What a participant has entered but the server has not confirmed, kept on the tablet (IndexedDB).
+ * What a tablet needs to go on without a network, after its browser was killed (IndexedDB): what a
+ * participant has entered but the server has not confirmed, and the screen that was shown last.
  *
  * A record goes through two states. A *draft* changes with every answer. *Queued*, its submission is
  * fixed, together with the idempotency key made when the form was first shown: however often it is
  * sent, after a lost answer or a reload, the server stores it once. The record is deleted when the
  * server has confirmed it, and not before.
+ *
+ * The screen is the newest one of the session that the tablet is paired with; it goes with the end
+ * of the session or of the pairing.
  */
-import type { Submission } from "@shared/api/types";
-import type { FormDraft } from "@shared/forms/draft";
+import type { Submission, TabletState } from "@shared/api/types";
+import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
 import { uuid } from "@shared/uuid";
 import { type DBSchema, type IDBPDatabase, openDB } from "idb";
 
@@ -25,7 +29,11 @@ export interface Kept {
 
 interface Tables extends DBSchema {
   kept: { key: string; value: Kept };
+  screen: { key: string; value: TabletState };
 }
+
+/** There is one screen. */
+const LAST = "last";
 
 const OLD_MS = 48 * 3_600_000;
 
@@ -36,8 +44,13 @@ export class DraftStore {
   readonly #database: Promise<IDBPDatabase<Tables>>;
 
   constructor(name = "reembody-tablet") {
-    this.#database = openDB<Tables>(name, 1, {
-      upgrade: (database) => void database.createObjectStore("kept", { keyPath: "id" }),
+    this.#database = openDB<Tables>(name, 2, {
+      upgrade: (database, before) => {
+        if (before < 1) database.createObjectStore("kept", { keyPath: "id" });
+        if (before < 2) database.createObjectStore("screen");
+      },
+      // A page of a newer version waits to open it.
+      blocking: (_current, _wanted, event) => (event.target as IDBDatabase).close(),
     });
   }
 
@@ -53,12 +66,13 @@ export class DraftStore {
       administration,
       idempotencyKey: uuid(),
       startedAt: now.toISOString(),
-      draft: { data: {}, page: 0, timings: {} },
+      draft: EMPTY_DRAFT,
       queued: null,
     };
     if (known === undefined) await transaction.store.put(kept);
     await transaction.done;
-    return kept;
+    // An older version may have left it, with less in it.
+    return { ...kept, draft: { ...EMPTY_DRAFT, ...kept.draft } };
   }
 
   /** Keep the newest answers; a form that is already queued or confirmed is left as it is. */
@@ -73,7 +87,9 @@ export class DraftStore {
 
   /** Fix what will be sent. The first submission of a form stays the only one. */
   async queue(id: string, submission: Submission): Promise<Submission> {
-    const transaction = (await this.#database).transaction("kept", "readwrite");
+    // Strict: on the disk, not only handed to the system, before the participant is told it is safe.
+    const options = { durability: "strict" } as const;
+    const transaction = (await this.#database).transaction("kept", "readwrite", options);
     const known = await transaction.store.get(id);
     if (known === undefined) throw new Error(`There is no draft ${id} on this tablet.`);
     const queued = known.queued ?? submission;
@@ -96,9 +112,41 @@ export class DraftStore {
     return all.filter((kept) => kept.sessionId === sessionId && kept.queued !== null);
   }
 
-  /** The server has it: nothing of it stays on the tablet. */
+  /** The server has it: nothing of it stays on the tablet, and its form is not shown again. */
   async forget(id: string): Promise<void> {
-    await (await this.#database).delete("kept", id);
+    const transaction = (await this.#database).transaction(["kept", "screen"], "readwrite");
+    await transaction.objectStore("kept").delete(id);
+    const screens = transaction.objectStore("screen");
+    const last = await screens.get(LAST);
+    if (last != null && id === keptId(last.session_id, last.administration?.key ?? "")) {
+      await screens.put(waitingAfter(last), LAST);
+    }
+    await transaction.done;
+  }
+
+  /** Keep what the server wants to be shown; with the end of the session nothing more is. */
+  async keepScreen(state: TabletState): Promise<void> {
+    const transaction = (await this.#database).transaction(["kept", "screen"], "readwrite");
+    const screens = transaction.objectStore("screen");
+    if (state.screen === "finished") {
+      await screens.delete(LAST);
+      const drafts = transaction.objectStore("kept");
+      for (const kept of await drafts.getAll()) {
+        const over = kept.sessionId === state.session_id && kept.queued === null;
+        if (over) await drafts.delete(kept.id);
+      }
+    } else await screens.put(state, LAST);
+    await transaction.done;
+  }
+
+  /** What was shown last, for a start without a network. */
+  async lastScreen(): Promise<TabletState | undefined> {
+    return (await this.#database).get("screen", LAST);
+  }
+
+  /** The tablet has lost its session: what that showed is nobody's business any more. */
+  async forgetScreen(): Promise<void> {
+    await (await this.#database).delete("screen", LAST);
   }
 
   /** Drafts that nobody went on with for two days leave the tablet; what waits to be sent stays. */
@@ -115,3 +163,13 @@ export class DraftStore {
     (await this.#database).close();
   }
 }
+
+/** The screen when its form was sent and nobody could say yet what comes. */
+const waitingAfter = (state: TabletState): TabletState => ({
+  ...state,
+  screen: "waiting",
+  administration: null,
+  title: null,
+  text: null,
+  next: null,
+});

@@ -121,5 +121,6 @@ function submissionOf(
     language,
     started_at_utc: kept.startedAt,
     timings: draft.timings,
+    item_traces: draft.traces,
   };
 }

@@ -22,6 +22,20 @@ export const de: Record<keyof typeof en, string> = {
   "bar.simulated": "Simulierte Sitzung",
   "bar.offline": "Keine Verbindung. Ihre Antworten bleiben auf diesem Tablet.",
   "bar.language": "Sprache",
+  "bar.textSize": "Schriftgröße: {{percent}} %. Drücken, um sie zu ändern",
+  "help.call": "Versuchsleitung rufen",
+  "help.called": "Die Versuchsleitung ist gerufen",
+  "help.takeBack": "Nicht mehr nötig",
+  "help.failed": "Der Ruf kann gerade nicht gesendet werden. Bitte sprechen Sie uns an.",
+  "picture.equipment":
+    "Ein Headset, ein Controller in jeder Hand, Tracker an der Taille und an beiden Unterschenkeln",
+  "picture.t_pose": "Aufrecht stehen, die Arme zur Seite gestreckt, die Füße zusammen",
+  "picture.mirror":
+    "Der Spiegel vor Ihnen zeigt Ihren Körper, die übrige Zeit und die geschafften Aufgaben",
+  "picture.hand_boxes":
+    "Vier offene Kästen in Brusthöhe; eine Hand berührt die Platte in einem; darüber ein Ziel",
+  "picture.foot_boxes":
+    "Vier offene Kästen am Boden zum Hineintreten, dahinter ein Balken, davor ein Quadrat als Start",
   "waiting.title": "Bitte einen Moment warten",
   "waiting.body":
     "Im Augenblick gibt es hier nichts zu tun. Die Versuchsleitung sagt Ihnen, wenn es weitergeht.",
@@ -64,6 +78,9 @@ export const de: Record<keyof typeof en, string> = {
   "form.submit": "Antworten senden",
   "form.page": "Seite {{number}} von {{total}}",
   "form.range": "{{low}} bis {{high}} {{unit}}",
+  "form.whole": "Bitte geben Sie eine ganze Zahl an.",
+  "form.atLeast": "Möglich ab {{low}} {{unit}}",
+  "form.atMost": "Möglich bis {{high}} {{unit}}",
   "sending.title": "Ihre Antworten werden gesendet",
   "sending.body": "Einen Moment.",
   "sending.offline": "Ihre Antworten sind sicher",

@@ -18,6 +18,19 @@ export const en = {
   "bar.simulated": "Simulated session",
   "bar.offline": "No connection. Your answers are kept on this tablet.",
   "bar.language": "Language",
+  "bar.textSize": "Text size: {{percent}} %. Press to change",
+  "help.call": "Call the experimenter",
+  "help.called": "The experimenter has been called",
+  "help.takeBack": "No longer needed",
+  "help.failed": "The call cannot be sent now. Please speak up.",
+  "picture.equipment":
+    "A headset, a controller in each hand, trackers at the waist and both lower legs",
+  "picture.t_pose": "Standing upright, arms stretched out to the sides, feet together",
+  "picture.mirror": "The mirror in front shows your body, the time left and the tasks completed",
+  "picture.hand_boxes":
+    "Four open boxes at chest height; a hand touches the panel inside one; a target above them",
+  "picture.foot_boxes":
+    "Four open boxes on the floor to step into, a bar behind them, a square to start from",
   "waiting.title": "Please wait a moment",
   "waiting.body":
     "There is nothing to do here right now. The experimenter will tell you when it goes on.",
@@ -60,6 +73,9 @@ export const en = {
   "form.submit": "Send answers",
   "form.page": "Page {{number}} of {{total}}",
   "form.range": "{{low}} to {{high}} {{unit}}",
+  "form.whole": "Please give a whole number.",
+  "form.atLeast": "Possible from {{low}} {{unit}}",
+  "form.atMost": "Possible up to {{high}} {{unit}}",
   "sending.title": "Sending your answers",
   "sending.body": "One moment.",
   "sending.offline": "Your answers are safe",

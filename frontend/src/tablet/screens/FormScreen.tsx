@@ -1,15 +1,14 @@
 /** A form, kept on the tablet with every answer until the server has it. */
 import { Button, Center, Loader } from "@mantine/core";
 import type { Administration, TabletState } from "@shared/api/types";
+import { FormView } from "@shared/forms/FormView";
 import { Notice } from "@shared/ui/Notice";
-import { type JSX, lazy, Suspense } from "react";
+import type { JSX } from "react";
 import { type FormPhase, useKeptForm } from "../drafts/useKeptForm";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useFormTexts } from "./formTexts";
 import classes from "./screens.module.css";
-
-const FormView = lazy(async () => ({ default: (await import("@shared/forms/FormView")).FormView }));
 
 interface FormScreenProps {
   readonly state: TabletState;
@@ -23,7 +22,7 @@ export function FormScreen({ state, administration, refresh }: FormScreenProps):
   const { phase } = form;
   if (phase.name !== "filling") return <Between phase={phase} again={form.again} />;
   return (
-    <Suspense fallback={<Opening />}>
+    <>
       {phase.refused !== null && <Failure error={phase.refused} />}
       <FormView
         administration={administration}
@@ -35,7 +34,7 @@ export function FormScreen({ state, administration, refresh }: FormScreenProps):
         onChange={form.keep}
         onSubmit={form.send}
       />
-    </Suspense>
+    </>
   );
 }
 

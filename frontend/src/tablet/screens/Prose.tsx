@@ -1,6 +1,7 @@
 /** A longer text of the study as paragraphs and points; never as HTML. */
 import { type Paragraph, paragraphs } from "@shared/text";
 import type { JSX } from "react";
+import { Picture } from "../pictures/Picture";
 import classes from "./screens.module.css";
 
 export function Prose({ text }: { readonly text: string }): JSX.Element {
@@ -18,6 +19,8 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
   switch (paragraph.kind) {
     case "heading":
       return <h2>{paragraph.text}</h2>;
+    case "picture":
+      return <Picture name={paragraph.name} />;
     case "prose":
       return <p>{paragraph.text}</p>;
     case "points":

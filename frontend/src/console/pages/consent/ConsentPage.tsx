@@ -120,6 +120,9 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
       return <h3>{paragraph.text}</h3>;
     case "prose":
       return <p>{paragraph.text}</p>;
+    case "picture":
+      // What was signed was shown with it; the page to print says that it was there.
+      return <p>[{paragraph.name}]</p>;
     case "points":
       return (
         <ul>

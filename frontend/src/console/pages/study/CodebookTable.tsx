@@ -19,6 +19,8 @@ export function CodebookTable({
         aria-label={t("export.table")}
         size="xs"
         mb="sm"
+        classNames={{ root: classes.tables ?? "" }}
+        withItemsBorders={false}
         value={chosen}
         onChange={setChosen}
         data={tables}

@@ -1,40 +1,62 @@
-/** The study's figures, drawn by the server from the sessions of one kind. */
+/**
+ * The study's figures, drawn by the server from the sessions of one kind that are chosen.
+ *
+ * One group is asked for after the other, from the top: the first is there long before all are.
+ */
 
-import { Figure } from "@charts/Figure";
 import { Title } from "@mantine/core";
-import type { Dashboard, DataKind, StudyDetail } from "@shared/api/types";
+import { type Asked, askedOf, type Dashboard, type FigureGroup } from "@shared/api/analysis";
+import type { StudyDetail } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
-import { useQuery } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import { useIsFetching, useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { dashboardQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import classes from "./DashboardTab.module.css";
+import { FigureCard } from "./FigureCard";
+import { FilterBar } from "./FilterBar";
 import page from "./StudyPage.module.css";
+import { useAsked } from "./useAsked";
+
+const FIRST = "progress";
+const AFTERWARDS = ["embodiment", "answers", "tasks", "movement", "quality"] as const;
 
 export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.Element {
-  const [kind, setKind] = useState<DataKind>("people");
   const { t } = useTexts();
-  const query = useQuery(dashboardQuery(study.key, kind));
+  const [asked, ask] = useAsked();
+  const query = useQuery(dashboardQuery(study.key, asked, FIRST));
+  const waiting = useIsFetching({ queryKey: ["studies", study.key, "dashboard"] }) > 0;
   return (
     <>
       <div className={page.toolbar}>
-        <KindFilter kind={kind} onChange={setKind} />
+        <KindFilter
+          kind={asked.kind}
+          onChange={(kind) => ask({ ...askedOf(new URLSearchParams()), kind })}
+        />
         {query.data !== undefined && (
           <span className={page.push}>
             {t("dashboard.sessions", { count: query.data.n_completed })}
-            {!query.data.current && ` · ${t("dashboard.drawing")}`}
+            {(!query.data.current || waiting) && ` · ${t("dashboard.drawing")}`}
           </span>
         )}
       </div>
-      <Loaded query={query}>{(dashboard) => <Figures dashboard={dashboard} />}</Loaded>
+      <Loaded query={query}>
+        {(dashboard) => (
+          <>
+            <FilterBar asked={asked} choices={dashboard.choices} onChange={ask} />
+            <Banners dashboard={dashboard} />
+            <Groups studyKey={study.key} asked={asked} groups={[FIRST, ...AFTERWARDS]} turn />
+          </>
+        )}
+      </Loaded>
     </>
   );
 }
 
-function Figures({ dashboard }: { readonly dashboard: Dashboard }): JSX.Element {
+function Banners({ dashboard }: { readonly dashboard: Dashboard }): JSX.Element {
   const { t } = useTexts();
   return (
     <>
@@ -45,33 +67,74 @@ function Figures({ dashboard }: { readonly dashboard: Dashboard }): JSX.Element 
           </Notice>
         </div>
       )}
-      {dashboard.figures.length === 0 ? (
-        <EmptyState icon="chart" title={t("dashboard.empty.title")}>
-          {t("dashboard.empty.body")}
-        </EmptyState>
-      ) : (
-        <div className={classes.figures}>
-          {dashboard.figures.map((figure) => (
-            <figure key={figure.key} className={classes.figure}>
-              <Title order={2} size="h3">
-                {figure.title}
-              </Title>
-              {figure.figure === null ? (
-                <p className={classes.missing}>{figure.empty ?? t("dashboard.empty.body")}</p>
-              ) : (
-                <Figure
-                  figure={figure.figure}
-                  label={figure.title}
-                  watermark={dashboard.simulated ? t("simulated.watermark") : null}
-                  loading={t("dashboard.loading")}
-                  failed={t("dashboard.failed")}
-                />
-              )}
-              <figcaption className={classes.caption}>{figure.caption}</figcaption>
-            </figure>
-          ))}
+      {dashboard.filter.rows === "all" && (
+        <div className={classes.banner}>
+          <Notice tone="warn" title={t("figures.all")}>
+            {t("figures.all.body")}
+          </Notice>
         </div>
       )}
     </>
+  );
+}
+
+interface GroupsProps {
+  readonly studyKey: string;
+  readonly asked: Asked;
+  readonly groups: readonly FigureGroup[];
+  /** Whether those above are there, so that these may be asked for. */
+  readonly turn: boolean;
+}
+
+/** The first of some groups, and below it the others. */
+function Groups({ studyKey, asked, groups, turn }: GroupsProps): JSX.Element {
+  const { t } = useTexts();
+  const [group = FIRST, ...others] = groups;
+  const query = useQuery({ ...dashboardQuery(studyKey, asked, group), enabled: turn });
+  const there = turn && !query.isPending && !query.isPlaceholderData;
+  return (
+    <>
+      <section className={classes.group}>
+        <Title order={2} className={classes.groupTitle ?? ""}>
+          {t(`figures.group.${group}`)}
+        </Title>
+        <Loaded query={query}>
+          {(dashboard) => <Figures studyKey={studyKey} dashboard={dashboard} />}
+        </Loaded>
+      </section>
+      {others.length > 0 && (
+        <Groups studyKey={studyKey} asked={asked} groups={others} turn={there} />
+      )}
+    </>
+  );
+}
+
+interface FiguresProps {
+  readonly studyKey: string;
+  readonly dashboard: Dashboard;
+}
+
+function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
+  const { t } = useTexts();
+  // What is on the page, which a moment after a choice is not yet what is asked for.
+  const { kind, filter, figures } = dashboard;
+  const drawn: Asked = {
+    ...askedOf(new URLSearchParams({ kind })),
+    ...filter,
+    participant: filter.participant ?? [],
+  } as Asked;
+  if (figures.length === 0) {
+    return (
+      <EmptyState icon="chart" title={t("dashboard.empty.title")}>
+        {t("dashboard.empty.body")}
+      </EmptyState>
+    );
+  }
+  return (
+    <div className={classes.figures}>
+      {figures.map((entry) => (
+        <FigureCard key={entry.key} studyKey={studyKey} entry={entry} asked={drawn} />
+      ))}
+    </div>
   );
 }

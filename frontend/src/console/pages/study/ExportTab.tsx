@@ -1,20 +1,20 @@
 /** Tidy CSV for analysis: what is in the archive, and the archive. */
-import { Button, Group, Paper, Progress, Stack, Text, Title } from "@mantine/core";
-import { studies } from "@shared/api/endpoints";
+import { Button, Paper, Stack, Text, Title } from "@mantine/core";
 import type { DataKind, StudyDetail } from "@shared/api/types";
-import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
+import { DownloadList } from "../../downloads/DownloadList";
+import { useExports, useOrder } from "../../downloads/useExports";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
+import { ImportsCard } from "../../imports/ImportsCard";
 import { codebookQuery } from "../../queries";
 import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
 import { CodebookTable } from "./CodebookTable";
 import classes from "./ExportTab.module.css";
-import { useDownload } from "./useDownload";
 
 const FILES = [
   "sessions",
@@ -31,6 +31,8 @@ const FILES = [
   "clocks",
   "samples",
   "receipts",
+  "imported",
+  "calibrations",
   "codebook",
 ] as const;
 
@@ -38,7 +40,9 @@ export function ExportTab({ study }: { readonly study: StudyDetail }): JSX.Eleme
   const { t } = useTexts();
   return (
     <div className={classes.grid}>
-      <Paper>
+      <Download study={study} />
+      <ImportsCard study={study} />
+      <Paper className={classes.wide ?? ""}>
         <Title order={2} mb="md">
           {t("export.files")}
         </Title>
@@ -54,17 +58,15 @@ export function ExportTab({ study }: { readonly study: StudyDetail }): JSX.Eleme
           {t("export.conventions")}
         </Text>
       </Paper>
-      <Download study={study} />
       <Codebook study={study} />
     </div>
   );
 }
 
 function Download({ study }: { readonly study: StudyDetail }): JSX.Element {
-  const { t, language } = useTexts();
+  const { t } = useTexts();
   const [kind, setKind] = useState<DataKind>("people");
-  const { state, start, stop } = useDownload();
-  const megabytes = (bytes: number): string => `${number(bytes / 1e6, language, 1)} MB`;
+  const order = useOrder();
   return (
     <Paper>
       <Title order={2} mb="md">
@@ -73,38 +75,15 @@ function Download({ study }: { readonly study: StudyDetail }): JSX.Element {
       <Stack>
         <KindFilter kind={kind} onChange={setKind} />
         {kind === "simulated" && <Notice tone="sim">{t("simulated.body")}</Notice>}
-        {state.phase === "running" ? (
-          <>
-            <Progress
-              value={state.total === null ? 100 : (state.received / state.total) * 100}
-              animated={state.total === null}
-              aria-label={t("export.progress")}
-            />
-            <Group justify="space-between">
-              <Text className="numbers">
-                {state.received === 0 ? t("export.preparing") : megabytes(state.received)}
-              </Text>
-              <Button variant="default" size="xs" onClick={stop}>
-                {t("action.stop")}
-              </Button>
-            </Group>
-          </>
-        ) : (
-          <Button
-            leftSection={<Icon name="download" size={18} />}
-            onClick={() =>
-              void start(studies.exportUrl(study.key, kind), `${study.key}-${kind}.zip`)
-            }
-          >
-            {t("export.start")}
-          </Button>
-        )}
-        {state.phase === "done" && (
-          <Notice tone="info" icon="check" title={t("export.done")}>
-            {t("export.doneBody", { name: state.name, size: megabytes(state.received) })}
-          </Notice>
-        )}
-        {state.phase === "failed" && <Failure error={state.error} />}
+        <Button
+          leftSection={<Icon name="download" size={18} />}
+          loading={order.isPending}
+          onClick={() => order.mutate({ studyKey: study.key, kind })}
+        >
+          {t("export.start")}
+        </Button>
+        {order.isError && <Failure error={order.error} />}
+        <DownloadList query={useExports(true)} studyKey={study.key} />
       </Stack>
     </Paper>
   );

@@ -10,6 +10,7 @@ import { Link, useLocation } from "wouter";
 import { useTexts } from "../../i18n";
 import { useMay } from "../../may";
 import { sessionsQuery } from "../../queries";
+import { TryIt } from "../../tour/TryIt";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindBadge } from "../../ui/KindBadge";
 import { KINDS } from "../../ui/KindFilter";
@@ -44,14 +45,17 @@ export function SessionsTab({ study }: { readonly study: StudyDetail }): JSX.Ele
               icon="people"
               title={t("sessions.empty.title")}
               action={
-                may("run") && (
-                  <Button
-                    leftSection={<Icon name="add" size={18} />}
-                    onClick={() => setJoining(true)}
-                  >
-                    {t("join.open")}
-                  </Button>
-                )
+                <>
+                  {may("run") && (
+                    <Button
+                      leftSection={<Icon name="add" size={18} />}
+                      onClick={() => setJoining(true)}
+                    >
+                      {t("join.open")}
+                    </Button>
+                  )}
+                  {sessions.length === 0 && <TryIt study={study} />}
+                </>
               }
             >
               {t("sessions.empty.body")}

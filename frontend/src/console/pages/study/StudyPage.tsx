@@ -8,6 +8,7 @@ import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../../i18n";
 import { type Act, useMay } from "../../may";
+import { PreregistrationTab } from "../../preregistration/PreregistrationTab";
 import { studyQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import { useTitle } from "../../ui/useTitle";
@@ -21,6 +22,7 @@ import { Overview } from "./Overview";
 import { ProtocolTab } from "./ProtocolTab";
 import { ParticipantsTab } from "./participants/ParticipantsTab";
 import { SessionsTab } from "./SessionsTab";
+import { StatisticsTab } from "./StatisticsTab";
 import classes from "./StudyPage.module.css";
 import { SuggestionsTab } from "./SuggestionsTab";
 import { VersionsTab } from "./VersionsTab";
@@ -31,6 +33,8 @@ const TABS = [
   "sessions",
   "participants",
   "dashboard",
+  "statistics",
+  "preregistration",
   "export",
   "protocol",
   "versions",
@@ -44,6 +48,8 @@ const ICONS: Readonly<Record<Tab, IconName>> = {
   sessions: "headset",
   participants: "people",
   dashboard: "chart",
+  statistics: "form",
+  preregistration: "lock",
   export: "download",
   protocol: "document",
   versions: "redo",
@@ -56,6 +62,8 @@ const CONTENT: Readonly<Record<Tab, (props: { study: StudyDetail }) => JSX.Eleme
   sessions: SessionsTab,
   participants: ParticipantsTab,
   dashboard: DashboardTab,
+  statistics: StatisticsTab,
+  preregistration: PreregistrationTab,
   export: ExportTab,
   protocol: ProtocolTab,
   versions: VersionsTab,
@@ -66,6 +74,8 @@ const CONTENT: Readonly<Record<Tab, (props: { study: StudyDetail }) => JSX.Eleme
 const NEEDS: Readonly<Partial<Record<Tab, Act>>> = {
   participants: "rights",
   dashboard: "compare",
+  statistics: "compare",
+  preregistration: "compare",
   export: "compare",
   protocol: "compare",
   versions: "compare",
@@ -108,6 +118,7 @@ function Study({ study, tab }: { readonly study: StudyDetail; readonly tab: Tab 
         value={tab}
         onChange={(value) => navigate(`/studies/${study.key}/${value ?? "overview"}`)}
         keepMounted={false}
+        classNames={{ tab: classes.tab ?? "" }}
       >
         <Tabs.List>
           {TABS.filter(isTheirs).map((name) => (

@@ -24,6 +24,8 @@ const Hello = v.strictObject({
   protocol: v.literal(PROTOCOL_VERSION),
   client: Name120,
   epoch: v.nullable(Epoch),
+  /** What the client can show; a delayed copy where it is not said. */
+  avatars: v.optional(v.pipe(v.array(Name40), v.maxLength(10))),
 });
 
 /** What the headset did to the clock of a phase, at its own monotonic time. */

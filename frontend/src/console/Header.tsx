@@ -1,0 +1,108 @@
+/** The console's head: where else to go, the language, the appearance, help, one's own account. */
+import { ActionIcon, Button, useComputedColorScheme, useMantineColorScheme } from "@mantine/core";
+import type { Role } from "@shared/api/people";
+import type { Account } from "@shared/api/types";
+import { Icon, type IconName } from "@shared/ui/Icon";
+import { Mark } from "@shared/ui/Mark";
+import type { JSX } from "react";
+import { Link } from "wouter";
+import { DownloadsButton } from "./downloads/DownloadsButton";
+import { type Key, useTexts } from "./i18n";
+import { type Act, may } from "./may";
+import { AccountMenu } from "./pages/account/AccountMenu";
+import classes from "./Shell.module.css";
+import { HelpMenu } from "./tour/HelpMenu";
+
+export function Header({ account }: { readonly account: Account }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <nav className={classes.header} aria-label={t("app.name")}>
+      <Link href="/" className={classes.brand ?? ""}>
+        <Mark size={26} />
+        {t("app.name")}
+      </Link>
+      <div className={classes.tools}>
+        <Places role={account.role} />
+        <LanguageButton />
+        {may(account.role, "compare") && <DownloadsButton />}
+        {may(account.role, "tryout") && <HelpMenu />}
+        <AppearanceButton />
+        <AccountMenu account={account} />
+      </div>
+    </nav>
+  );
+}
+
+interface Place {
+  readonly href: string;
+  readonly icon: IconName;
+  readonly name: Key;
+  /** Shown to those who may do it; to everybody where there is none. */
+  readonly act?: Act;
+}
+
+const PLACES: readonly Place[] = [
+  { href: "/instruments", icon: "form", name: "instruments.title" },
+  { href: "/captures", icon: "walk", name: "captures.title" },
+  { href: "/walking", icon: "foot", name: "walking.title" },
+  { href: "/equipment", icon: "headset", name: "equipment.title" },
+  { href: "/network", icon: "link", name: "network.title", act: "network" },
+  { href: "/storage", icon: "chart", name: "storage.title", act: "storage" },
+  { href: "/people", icon: "people", name: "people.title", act: "people" },
+];
+
+function Places({ role }: { readonly role: Role }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <>
+      {PLACES.filter(({ act }) => act === undefined || may(role, act)).map((place) => (
+        <Button
+          key={place.href}
+          component={Link}
+          href={place.href}
+          variant="subtle"
+          color="gray"
+          fw={450}
+          size="compact-sm"
+          leftSection={<Icon name={place.icon} size={16} />}
+        >
+          {t(place.name)}
+        </Button>
+      ))}
+    </>
+  );
+}
+
+function LanguageButton(): JSX.Element {
+  const { t, language, setLanguage } = useTexts();
+  return (
+    <Button
+      variant="subtle"
+      color="gray"
+      fw={450}
+      size="compact-sm"
+      lang={language === "en" ? "de" : "en"}
+      onClick={() => setLanguage(language === "en" ? "de" : "en")}
+    >
+      {t("app.language")}
+    </Button>
+  );
+}
+
+function AppearanceButton(): JSX.Element {
+  const { t } = useTexts();
+  const { setColorScheme } = useMantineColorScheme();
+  const scheme = useComputedColorScheme("light");
+  const other = scheme === "light" ? "dark" : "light";
+  return (
+    <ActionIcon
+      variant="subtle"
+      color="gray"
+      size="lg"
+      aria-label={t(`app.theme.${other}`)}
+      onClick={() => setColorScheme(other)}
+    >
+      <Icon name={other === "dark" ? "moon" : "sun"} />
+    </ActionIcon>
+  );
+}

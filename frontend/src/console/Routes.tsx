@@ -1,0 +1,185 @@
+/** Which page an address of the console leads to, and who may see it. */
+import type { Account } from "@shared/api/types";
+import { type JSX, lazy } from "react";
+import { Route, Switch } from "wouter";
+import { SessionPage } from "./cockpit/SessionPage";
+import { InstrumentPage } from "./instruments/InstrumentPage";
+import { InstrumentsPage } from "./instruments/InstrumentsPage";
+import { ConsentPage } from "./pages/consent/ConsentPage";
+import { EquipmentPage } from "./pages/equipment/EquipmentPage";
+import { Only } from "./pages/NotForRole";
+import { NetworkPage } from "./pages/network/NetworkPage";
+import { PeoplePage } from "./pages/people/PeoplePage";
+import { StudiesPage } from "./pages/Studies";
+import { StudyPage } from "./pages/study/StudyPage";
+import classes from "./Shell.module.css";
+
+// Whoever opens the console for a session waits for none of these.
+const ReplayPage = lazy(async () => ({
+  default: (await import("./replay/ReplayPage")).ReplayPage,
+}));
+const CapturePage = lazy(async () => ({
+  default: (await import("./captures/CapturePage")).CapturePage,
+}));
+const CapturesPage = lazy(async () => ({
+  default: (await import("./captures/CapturesPage")).CapturesPage,
+}));
+const WalkingPage = lazy(async () => ({
+  default: (await import("./walking/WalkingPage")).WalkingPage,
+}));
+const WalkingModelPage = lazy(async () => ({
+  default: (await import("./walking/ModelPage")).ModelPage,
+}));
+const EditStudyPage = lazy(async () => ({
+  default: (await import("./editor/EditorPage")).EditStudyPage,
+}));
+const NewStudyEditor = lazy(async () => ({
+  default: (await import("./editor/EditorPage")).NewStudyEditor,
+}));
+const NewStudyPage = lazy(async () => ({
+  default: (await import("./editor/NewStudyPage")).NewStudyPage,
+}));
+const EditInstrumentPage = lazy(async () => ({
+  default: (await import("./instruments/InstrumentEditor")).EditInstrumentPage,
+}));
+const NewInstrumentPage = lazy(async () => ({
+  default: (await import("./instruments/InstrumentEditor")).NewInstrumentPage,
+}));
+const StoragePage = lazy(async () => ({
+  default: (await import("./storage/StoragePage")).StoragePage,
+}));
+
+export function Routes({ account }: { readonly account: Account }): JSX.Element {
+  return (
+    <Switch>
+      <Route path="/sessions/:id/consent">
+        {({ id }) => (
+          <Only act="run">
+            <ConsentPage key={id} id={id} />
+          </Only>
+        )}
+      </Route>
+      <Route path="/sessions/:id/:place">
+        {({ id, place }) =>
+          place.startsWith("replay") ? (
+            <ReplayPage key={id} id={id} />
+          ) : (
+            <SessionPage key={id} id={id} />
+          )
+        }
+      </Route>
+      <Route path="/equipment">
+        <div className={classes.main}>
+          <EquipmentPage />
+        </div>
+      </Route>
+      <Route path="/captures">
+        <div className={classes.main}>
+          <CapturesPage />
+        </div>
+      </Route>
+      <Route path="/captures/:id/:tab?">
+        {({ id, tab }) => (
+          <div className={classes.main}>
+            <CapturePage key={id} id={id} tab={tab} />
+          </div>
+        )}
+      </Route>
+      <Route path="/walking/models/:id">
+        {({ id }) => (
+          <div className={classes.main}>
+            <WalkingModelPage key={id} id={id} />
+          </div>
+        )}
+      </Route>
+      <Route path="/walking/:tab?">
+        {({ tab }) => (
+          <div className={classes.main}>
+            <WalkingPage tab={tab} />
+          </div>
+        )}
+      </Route>
+      <Route path="/sessions/:id">{({ id }) => <SessionPage key={id} id={id} />}</Route>
+      <Route path="/network">
+        <Only act="network">
+          <div className={classes.main}>
+            <NetworkPage />
+          </div>
+        </Only>
+      </Route>
+      <Route path="/storage">
+        <Only act="storage">
+          <div className={classes.main}>
+            <StoragePage />
+          </div>
+        </Only>
+      </Route>
+      <Route path="/people/:tab?">
+        {({ tab }) => (
+          <Only act="people">
+            <div className={classes.main}>
+              <PeoplePage account={account} tab={tab} />
+            </div>
+          </Only>
+        )}
+      </Route>
+      <Route path="/new">
+        <Only act="design">
+          <div className={classes.main}>
+            <NewStudyPage />
+          </div>
+        </Only>
+      </Route>
+      <Route path="/new/:from/:name?">
+        {({ from, name }) => (
+          <Only act="design">
+            <NewStudyEditor key={`${from} ${name}`} from={from} name={name} />
+          </Only>
+        )}
+      </Route>
+      <Route path="/instruments">
+        <div className={classes.main}>
+          <InstrumentsPage />
+        </div>
+      </Route>
+      <Route path="/instruments/new">
+        <Only act="design">
+          <NewInstrumentPage />
+        </Only>
+      </Route>
+      <Route path="/instruments/:name/edit">
+        {({ name }) => (
+          <Only act="design">
+            <EditInstrumentPage key={name} name={name} />
+          </Only>
+        )}
+      </Route>
+      <Route path="/instruments/:name/:tab?">
+        {({ name, tab }) => (
+          <div className={classes.main}>
+            <InstrumentPage name={name} tab={tab} />
+          </div>
+        )}
+      </Route>
+      <Route path="/studies/:key/edit">
+        {({ key }) => (
+          <Only act="design">
+            <EditStudyPage key={key} studyKey={key} />
+          </Only>
+        )}
+      </Route>
+      <Route path="/studies/:key/:tab?">
+        {({ key, tab }) => (
+          <div className={classes.main}>
+            <StudyPage studyKey={key} tab={tab} />
+          </div>
+        )}
+      </Route>
+      <Route>
+        <div className={classes.main}>
+          <StudiesPage />
+        </div>
+      </Route>
+    </Switch>
+  );
+}

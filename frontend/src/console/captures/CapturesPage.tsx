@@ -1,0 +1,104 @@
+/** All captures of the lab, and where new ones are brought in. */
+import { Text, TextInput, Title } from "@mantine/core";
+import type { CaptureListed, CapturePage } from "@shared/api/captures";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { useTexts } from "../i18n";
+import { useMay } from "../may";
+import { EmptyState } from "../ui/EmptyState";
+import { Loaded } from "../ui/Loaded";
+import { useTitle } from "../ui/useTitle";
+import classes from "./Captures.module.css";
+import { CaptureTable } from "./CaptureTable";
+import { DeleteCapture } from "./DeleteCapture";
+import { DropZone } from "./DropZone";
+import { Formats, useFormatName } from "./Formats";
+import { nameOf } from "./nameOf";
+import { capturesQuery } from "./queries";
+import { UploadList } from "./UploadList";
+import { useUploads } from "./useUploads";
+
+export function CapturesPage(): JSX.Element {
+  const { t } = useTexts();
+  useTitle(t("captures.title"));
+  const mayWrite = useMay()("capture");
+  const uploads = useUploads();
+  const query = useQuery(capturesQuery);
+  return (
+    <>
+      <div className={classes.head}>
+        <div>
+          <Title order={1}>{t("captures.title")}</Title>
+          <Text c="dimmed">{t("captures.lead")}</Text>
+        </div>
+      </div>
+      {mayWrite && <DropZone onFiles={uploads.add} />}
+      <UploadList uploads={uploads} />
+      <Loaded query={query}>
+        {(page) => (page.total === 0 ? <Nothing mayWrite={mayWrite} /> : <All page={page} />)}
+      </Loaded>
+    </>
+  );
+}
+
+function Nothing({ mayWrite }: { readonly mayWrite: boolean }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <EmptyState icon="walk" title={t("captures.empty")} action={<Formats />}>
+      {t(mayWrite ? "captures.empty.body" : "captures.empty.reader")}
+    </EmptyState>
+  );
+}
+
+function All({ page }: { readonly page: CapturePage }): JSX.Element {
+  const { t } = useTexts();
+  const mayWrite = useMay()("capture");
+  const formatName = useFormatName();
+  const [wanted, setWanted] = useState("");
+  const [leaving, setLeaving] = useState<CaptureListed | null>(null);
+  const shown = page.captures.filter((one) =>
+    [one.title, one.file_name, one.companion_name ?? "", formatName(one.format), nameOf(one.by)]
+      .join(" ")
+      .toLowerCase()
+      .includes(wanted.trim().toLowerCase()),
+  );
+  const counted =
+    wanted.trim() === ""
+      ? t("captures.count", { count: page.total })
+      : t("captures.counted", { shown: shown.length, total: page.captures.length });
+  return (
+    <>
+      <div className={classes.toolbar}>
+        <TextInput
+          aria-label={t("captures.search")}
+          placeholder={t("captures.search")}
+          type="search"
+          value={wanted}
+          onChange={(event) => setWanted(event.currentTarget.value)}
+        />
+        <span className={`${classes.soft} numbers`} role="status">
+          {counted}
+        </span>
+      </div>
+      {shown.length === 0 ? (
+        <EmptyState icon="walk" title={t("captures.none")}>
+          {t("captures.none.body")}
+        </EmptyState>
+      ) : (
+        <CaptureTable captures={shown} onDelete={mayWrite ? setLeaving : null} />
+      )}
+      {page.total > page.captures.length && (
+        <Text c="dimmed" mt="sm">
+          {t("captures.older", { shown: page.captures.length, total: page.total })}
+        </Text>
+      )}
+      {mayWrite && (
+        <details className={classes.help}>
+          <summary>{t("captures.formats")}</summary>
+          <Formats />
+        </details>
+      )}
+      <DeleteCapture capture={leaving} onClose={() => setLeaving(null)} />
+    </>
+  );
+}

@@ -1,0 +1,49 @@
+/** Where capture files are brought in: dropped, or chosen with a button. */
+import { Button, FileButton } from "@mantine/core";
+import { Icon } from "@shared/ui/Icon";
+import { type DragEvent, type JSX, useState } from "react";
+import { useTexts } from "../i18n";
+import classes from "./Captures.module.css";
+
+export const ACCEPTED = ".bvh,.csv,.amc,.asf,.c3d,.trc,.txt";
+
+export function DropZone({
+  onFiles,
+}: {
+  readonly onFiles: (files: readonly File[]) => void;
+}): JSX.Element {
+  const { t } = useTexts();
+  const [over, setOver] = useState(false);
+  const stop = (event: DragEvent, isOver: boolean) => {
+    event.preventDefault();
+    setOver(isOver);
+  };
+  return (
+    <section
+      className={classes.drop}
+      data-over={over || undefined}
+      aria-label={t("captures.choose")}
+      onDragOver={(event) => stop(event, true)}
+      onDragLeave={(event) => stop(event, false)}
+      onDrop={(event) => {
+        stop(event, false);
+        onFiles([...event.dataTransfer.files]);
+      }}
+    >
+      <Icon name="upload" size={28} />
+      <div className={classes.dropWords}>
+        <div className={classes.dropRow}>
+          <span>{t("captures.drop")}</span>
+          <FileButton multiple accept={ACCEPTED} onChange={onFiles}>
+            {(props) => (
+              <Button {...props} size="xs">
+                {t("captures.choose")}
+              </Button>
+            )}
+          </FileButton>
+        </div>
+        <span className={classes.soft}>{t("captures.drop.hint")}</span>
+      </div>
+    </section>
+  );
+}

@@ -1,0 +1,120 @@
+/** The movement in space, as recorded or on an avatar, beside how its file was read. */
+import { Button, Center, Checkbox, Loader, SegmentedControl } from "@mantine/core";
+import type { Capture } from "@shared/api/captures";
+import { Notice } from "@shared/ui/Notice";
+import { type JSX, type ReactNode, useState } from "react";
+import { Link } from "wouter";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { AvatarChoice } from "./AvatarChoice";
+import classes from "./Capture.module.css";
+import type { TabProps } from "./CapturePage";
+import { ConventionsPanel } from "./ConventionsPanel";
+import { useFigures, type Wish } from "./useFigures";
+import type { JointMapDraft } from "./useJointMap";
+import { Viewer } from "./Viewer";
+
+const AT_FIRST: Wish = { shown: "recorded", avatar: "165cm", lockFeet: false, ghost: true };
+
+export function MovementTab({ capture, map }: TabProps): JSX.Element {
+  const [wish, setWish] = useState(AT_FIRST);
+  const { figures, error, busy } = useFigures(capture, wish, map);
+  return (
+    <div className={classes.movement}>
+      <div>
+        <ShownBar capture={capture} map={map} wish={wish} busy={busy} onWish={setWish} />
+        {error !== null && <Failure error={error} />}
+        {figures.length > 0 ? (
+          <Viewer figures={figures} title={capture.title} />
+        ) : (
+          error === null && (
+            <Center mih={360}>
+              <Loader />
+            </Center>
+          )
+        )}
+        <NoAvatar capture={capture} map={map} />
+      </div>
+      <ConventionsPanel capture={capture} motion={figures.find(isSource)?.motion ?? null} />
+    </div>
+  );
+}
+
+const isSource = ({ key }: { readonly key: string }): boolean => key === "source";
+
+interface ShownBarProps {
+  readonly capture: Capture;
+  readonly map: JointMapDraft;
+  readonly wish: Wish;
+  readonly busy: boolean;
+  readonly onWish: (wish: Wish) => void;
+}
+
+function ShownBar({ capture, map, wish, busy, onWish }: ShownBarProps): JSX.Element {
+  const { t } = useTexts();
+  const isFitted = capture.summary.skeleton?.origin === "fitted";
+  const shown = ["recorded", ...(isFitted ? ["skeleton"] : []), "avatar"] as Wish["shown"][];
+  const canMove = capture.has_skeleton && map.view?.usable !== false;
+  return (
+    <div className={classes.shown}>
+      <SegmentedControl
+        size="xs"
+        aria-label={t("capture.shown")}
+        value={wish.shown}
+        onChange={(value) => onWish({ ...wish, shown: value as Wish["shown"] })}
+        data={shown.map((value) => ({
+          value,
+          label: t(`capture.shown.${value}`),
+          disabled: value === "avatar" && !canMove,
+        }))}
+      />
+      {wish.shown === "avatar" && (
+        <>
+          <AvatarChoice avatar={wish.avatar} onAvatar={(avatar) => onWish({ ...wish, avatar })} />
+          <Checkbox
+            size="xs"
+            label={t("capture.ghost")}
+            checked={wish.ghost}
+            onChange={(event) => onWish({ ...wish, ghost: event.currentTarget.checked })}
+          />
+          <Checkbox
+            size="xs"
+            label={t("capture.lock")}
+            checked={wish.lockFeet}
+            onChange={(event) => onWish({ ...wish, lockFeet: event.currentTarget.checked })}
+          />
+        </>
+      )}
+      {busy && <Loader size="sm" role="status" aria-label={t("stage.loading")} />}
+    </div>
+  );
+}
+
+/** Why the movement cannot be put onto an avatar, and where that is mended. */
+export function NoAvatar({
+  capture,
+  map,
+}: {
+  readonly capture: Capture;
+  readonly map: JointMapDraft;
+}): JSX.Element | null {
+  const { t } = useTexts();
+  let why: ReactNode = null;
+  let mend: JSX.Element | undefined;
+  if (!capture.has_skeleton) {
+    why = t("capture.noAvatar.skeleton", { why: capture.summary.no_skeleton ?? "" });
+  } else if (map.view?.usable === false) {
+    why = `${t("capture.noAvatar.map")} ${map.view.missing.join("; ")}`;
+    mend = (
+      <Button component={Link} href={`/captures/${capture.id}/joints`} size="xs" variant="default">
+        {t("capture.noAvatar.openMap")}
+      </Button>
+    );
+  }
+  if (why === null) return null;
+  return (
+    <div style={{ marginTop: 12 }}>
+      <Notice tone="warn" title={t("capture.noAvatar")} remedy={why} actions={mend} />
+    </div>
+  );
+}

@@ -1,0 +1,53 @@
+/** The verification in a sentence. */
+import type { Verification, Walker } from "@shared/api/captures";
+import { number } from "@shared/format";
+import { Notice } from "@shared/ui/Notice";
+import type { JSX } from "react";
+import { useTexts } from "../i18n";
+import { statureOf } from "./avatars";
+
+export function Verdict({ verification }: { readonly verification: Verification }): JSX.Element {
+  const { t, language } = useTexts();
+  const { source, avatars } = verification;
+  const wanted = liftsOf(source);
+  if ([source, ...avatars].every(({ steps }) => steps.length === 0)) {
+    return <Notice tone="warn" title={t("verify.noStep")} remedy={t("verify.noStep.body")} />;
+  }
+  if (!verification.lifts_agree) {
+    const told = avatars
+      .filter((avatar) => !avatar.lifts_agree)
+      .map((avatar) =>
+        t("verify.differ.one", {
+          avatar: t("capture.avatar.cm", { value: number(statureOf(avatar.name), language) }),
+          ...liftsOf(avatar),
+          wantedLeft: wanted.left,
+          wantedRight: wanted.right,
+        }),
+      );
+    return (
+      <Notice
+        tone="warn"
+        title={t("verify.differ", { told: told.join(", ") })}
+        remedy={t("verify.differ.remedy")}
+      />
+    );
+  }
+  const apart_s = verification.largest_timing_difference_s;
+  return (
+    <Notice
+      tone="info"
+      icon="check"
+      title={t("verify.agree", wanted)}
+      {...(apart_s === null
+        ? {}
+        : {
+            remedy: t("verify.agree.timing", { milliseconds: number(1000 * apart_s, language, 1) }),
+          })}
+    />
+  );
+}
+
+export function liftsOf({ steps }: Walker): { readonly left: number; readonly right: number } {
+  const left = steps.filter(({ side }) => side === "left").length;
+  return { left, right: steps.length - left };
+}

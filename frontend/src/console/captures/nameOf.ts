@@ -1,0 +1,2 @@
+/** `account:admin` is admin. */
+export const nameOf = (actor: string): string => actor.replace("account:", "");

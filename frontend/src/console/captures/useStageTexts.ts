@@ -1,0 +1,46 @@
+/** The stage's words in the console's languages. */
+import { number } from "@shared/format";
+import type { StageTexts } from "@shared/stage/Stage";
+import type { TransportTexts } from "@shared/stage/Transport";
+import { useTexts } from "../i18n";
+
+const MOST_NAMES = 4;
+
+export function useStageTexts(): StageTexts {
+  const { t, language } = useTexts();
+  return {
+    loading: t("stage.loading"),
+    flat: t("stage.flat"),
+    flatRemedy: t("stage.flat.remedy"),
+    squares: (metres) => t("stage.squares", { metres: number(metres, language, 4) }),
+  };
+}
+
+export function useTransportTexts(): TransportTexts {
+  const { t, language } = useTexts();
+  const time = new Intl.NumberFormat(language, {
+    minimumFractionDigits: 2,
+    maximumFractionDigits: 2,
+  });
+  return {
+    play: t("stage.play"),
+    pause: t("stage.pause"),
+    stepBack: t("stage.back"),
+    stepOn: t("stage.on"),
+    scrubber: t("stage.scrubber"),
+    speed: t("stage.speed"),
+    loop: t("stage.loop"),
+    time: (now, duration) =>
+      t("stage.time", { time: time.format(now), duration: time.format(duration) }),
+    frame: (frame, last) => t("stage.frame", { frame, last }),
+    gaps: t("stage.gaps"),
+    unseen: (names) => {
+      if (names.length === 0) return t("stage.unseen.none");
+      const told = names.slice(0, MOST_NAMES).join(", ");
+      const more = names.length - MOST_NAMES;
+      return t("stage.unseen", {
+        names: more > 0 ? t("stage.unseen.more", { names: told, count: more }) : told,
+      });
+    },
+  };
+}

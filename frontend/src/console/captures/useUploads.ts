@@ -1,0 +1,96 @@
+/** Files on their way to the server, one after the other; what was refused stays until it is read. */
+import { type CaptureFiles, type Uploaded, uploadCapture } from "@shared/api/captures";
+import { useQueryClient } from "@tanstack/react-query";
+import { useReducer, useRef } from "react";
+import { pairFiles } from "./filePairs";
+import { capturesQuery } from "./queries";
+
+export type Phase =
+  | { readonly at: "waiting" }
+  | { readonly at: "sending"; readonly share: number }
+  | { readonly at: "reading" }
+  | { readonly at: "done"; readonly uploaded: Uploaded }
+  | { readonly at: "refused"; readonly error: unknown };
+
+export interface Upload {
+  readonly id: number;
+  readonly files: CaptureFiles;
+  readonly phase: Phase;
+}
+
+interface State {
+  readonly uploads: readonly Upload[];
+  readonly lonely: readonly File[];
+}
+
+type Change =
+  | { readonly do: "add"; readonly uploads: readonly Upload[]; readonly lonely: readonly File[] }
+  | { readonly do: "phase"; readonly id: number; readonly phase: Phase }
+  | { readonly do: "dismiss"; readonly id: number }
+  | { readonly do: "drop"; readonly file: File };
+
+function changed(state: State, change: Change): State {
+  switch (change.do) {
+    case "add":
+      return { uploads: [...state.uploads, ...change.uploads], lonely: change.lonely };
+    case "phase":
+      return {
+        ...state,
+        uploads: state.uploads.map((one) =>
+          one.id === change.id ? { ...one, phase: change.phase } : one,
+        ),
+      };
+    case "dismiss":
+      return { ...state, uploads: state.uploads.filter(({ id }) => id !== change.id) };
+    case "drop":
+      return { ...state, lonely: state.lonely.filter((file) => file !== change.file) };
+  }
+}
+
+export interface Uploads extends State {
+  readonly add: (files: readonly File[]) => void;
+  readonly again: (upload: Upload) => void;
+  readonly dismiss: (id: number) => void;
+  readonly drop: (file: File) => void;
+}
+
+let counted = 0;
+
+export function useUploads(): Uploads {
+  const queries = useQueryClient();
+  const [state, change] = useReducer(changed, { uploads: [], lonely: [] });
+  const before = useRef<Promise<void>>(Promise.resolve());
+  const send = ({ id, files }: Upload) => {
+    before.current = before.current.then(async () => {
+      const say = (phase: Phase) => change({ do: "phase", id, phase });
+      say({ at: "sending", share: 0 });
+      try {
+        const uploaded = await uploadCapture(files, (share) =>
+          say(share < 1 ? { at: "sending", share } : { at: "reading" }),
+        );
+        say({ at: "done", uploaded });
+        await queries.invalidateQueries({ queryKey: capturesQuery.queryKey, exact: true });
+      } catch (error) {
+        say({ at: "refused", error });
+      }
+    });
+  };
+  return {
+    ...state,
+    add: (files) => {
+      const { ready, lonely } = pairFiles([...state.lonely, ...files]);
+      const uploads = ready.map((pair): Upload => {
+        counted += 1;
+        return { id: counted, files: pair, phase: { at: "waiting" } };
+      });
+      change({ do: "add", uploads, lonely });
+      uploads.forEach(send);
+    },
+    again: (upload) => {
+      change({ do: "phase", id: upload.id, phase: { at: "waiting" } });
+      send(upload);
+    },
+    dismiss: (id) => change({ do: "dismiss", id }),
+    drop: (file) => change({ do: "drop", file }),
+  };
+}

@@ -1,0 +1,178 @@
+/** The movement, live: avatar and participant among the boxes, which light up when touched. */
+import { Button, Loader, SegmentedControl } from "@mantine/core";
+import { useLocalStorage } from "@mantine/hooks";
+import type { SessionView } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { type JSX, useEffect, useRef } from "react";
+import { useTexts } from "../../i18n";
+import cockpit from "../Cockpit.module.css";
+import type { TelemetryStore } from "../telemetryStore";
+import { isBusy } from "../useKeys";
+import { FULL_SCALE_DEG, LEGEND } from "./heat";
+import { LastTouch } from "./LastTouch";
+import classes from "./Live3d.module.css";
+import { type Live, useLiveScene } from "./useLiveScene";
+import { VIEW_KEYS, VIEWS, type View } from "./views";
+
+interface LiveCardProps {
+  readonly session: SessionView;
+  readonly store: TelemetryStore;
+}
+
+export function LiveCard({ session, store }: LiveCardProps): JSX.Element {
+  const { t } = useTexts();
+  const [isShown, setShown] = useLocalStorage({ key: "reembody.cockpit.live", defaultValue: true });
+  const [view, setView] = useLocalStorage<View>({
+    key: "reembody.cockpit.view",
+    defaultValue: "third",
+  });
+  useViewKeys(isShown, setView);
+  return (
+    <section className={classes.card} data-tour="live" aria-label={t("live3d.title")}>
+      <div className={classes.head}>
+        <h2 className={cockpit.sectionTitle} style={{ margin: 0 }}>
+          <Icon name="body" size={16} />
+          {t("live3d.title")}
+        </h2>
+        {session.simulated && <span className={classes.simulated}>{t("live3d.simulated")}</span>}
+        {isShown && (
+          <SegmentedControl
+            size="xs"
+            className={classes.views ?? ""}
+            aria-label={t("live3d.view")}
+            value={view}
+            onChange={(value) => setView(value as View)}
+            data={VIEWS.map((one) => ({
+              value: one,
+              label: (
+                <>
+                  {t(`live3d.view.${one}`)} <kbd className={classes.key}>{VIEW_KEYS[one]}</kbd>
+                </>
+              ),
+            }))}
+          />
+        )}
+        <Button
+          size="xs"
+          variant="default"
+          className={isShown ? "" : (classes.views ?? "")}
+          aria-label={t(isShown ? "live3d.hide" : "live3d.show")}
+          onClick={() => setShown(!isShown)}
+        >
+          {t(isShown ? "live3d.hide.short" : "live3d.show.short")}
+        </Button>
+      </div>
+      {isShown && <Picture session={session} store={store} view={view} />}
+    </section>
+  );
+}
+
+function Picture({ session, store, view }: LiveCardProps & { readonly view: View }): JSX.Element {
+  const { t } = useTexts();
+  const root = useRef<HTMLDivElement>(null);
+  const live = useLiveScene(root, session.id, store, view);
+  const isBlinded = live.setup?.blinded ?? true;
+  return (
+    <>
+      <div className={classes.frame} data-way={live.way} data-moving={live.isMoving}>
+        <div
+          ref={root}
+          className={classes.canvas}
+          role="img"
+          aria-label={t(isBlinded ? "live3d.label.blinded" : "live3d.label")}
+        />
+        <State session={session} live={live} />
+        {!isBlinded && (
+          <div className={classes.told}>
+            <LastTouch touch={live.last} />
+            <Legend />
+          </div>
+        )}
+      </div>
+      {live.setup !== null && (
+        <p className={classes.foot}>
+          {t(isBlinded ? "live3d.blinded" : "live3d.figures")}
+          {!live.setup.stature_known && ` ${t("live3d.stature")}`}
+        </p>
+      )}
+    </>
+  );
+}
+
+/** Why nothing moves, over the picture. */
+function State({ session, live }: { readonly session: SessionView; readonly live: Live }) {
+  const { t } = useTexts();
+  const { way, feed, setup, isMoving } = live;
+  if (way === "flat") {
+    return (
+      <div className={`${classes.state} ${classes.warn}`} role="status">
+        <strong>{t("live3d.flat")}</strong>
+        <span>{t("live3d.flat.remedy")}</span>
+      </div>
+    );
+  }
+  if (way === "loading" || (setup === null && feed !== "lost")) {
+    return (
+      <div className={classes.state}>
+        <Loader size="sm" role="status" aria-label={t("live3d.loading")} />
+      </div>
+    );
+  }
+  if (feed === "lost") return <Told text={t("live3d.lost")} warns />;
+  if (isMoving) return null;
+  const connected = session.devices.some((one) => one.kind === "headset" && one.connected);
+  if (setup?.recording !== true) return <Told text={t("live3d.before")} />;
+  if (!connected) return <Told text={t("live3d.noHeadset")} warns />;
+  return <Told text={t("live3d.none")} remedy={t("live3d.none.remedy")} warns />;
+}
+
+interface ToldProps {
+  readonly text: string;
+  readonly remedy?: string;
+  readonly warns?: boolean;
+}
+
+function Told({ text, remedy, warns = false }: ToldProps): JSX.Element {
+  return (
+    <div className={`${classes.state} ${warns ? classes.warn : ""}`} role="status">
+      <strong>
+        {warns && <Icon name="alert" size={18} />}
+        {text}
+      </strong>
+      {remedy !== undefined && <span>{remedy}</span>}
+    </div>
+  );
+}
+
+function Legend(): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <span className={`${classes.legend} numbers`}>
+      {t("live3d.heat")} <span>0°</span>
+      <span className={classes.scale} style={{ background: LEGEND }} />
+      <span>{t("live3d.heat.most", { degrees: FULL_SCALE_DEG })}</span>
+    </span>
+  );
+}
+
+/** There is something to see from the moment the participant enters the body. */
+export const hasMovement = ({ status, steps }: SessionView): boolean =>
+  status === "active" &&
+  steps.some((step) => step.kind === "materialise" && step.status !== "pending");
+
+/** 1, 2 and 3 change the view, unless something is being typed or a dialog is open. */
+function useViewKeys(isOn: boolean, setView: (view: View) => void): void {
+  const latest = useRef(setView);
+  useEffect(() => {
+    latest.current = setView;
+  });
+  useEffect(() => {
+    if (!isOn) return;
+    const onKey = (event: KeyboardEvent) => {
+      const view = VIEWS.find((one) => VIEW_KEYS[one] === event.key);
+      if (view !== undefined && !isBusy(event)) latest.current(view);
+    };
+    document.addEventListener("keydown", onKey);
+    return () => document.removeEventListener("keydown", onKey);
+  }, [isOn]);
+}

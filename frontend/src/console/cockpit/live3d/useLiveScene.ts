@@ -1,0 +1,149 @@
+/**
+ * The live scene on an element of the page: what comes is drawn, beside React. Only what the words
+ * around the picture tell is state. While the page is hidden nothing is asked for.
+ */
+import { useComputedColorScheme } from "@mantine/core";
+import { useDocumentVisibility } from "@mantine/hooks";
+import { sessions } from "@shared/api/endpoints";
+import type { FeedState } from "@shared/api/live";
+import { openPoses, type PoseSetup, type PoseTouch } from "@shared/api/poses";
+import { paletteOf } from "@shared/stage/figure";
+import { type Mounted, mount } from "@shared/stage/mount";
+import { type RefObject, useEffect, useRef, useState } from "react";
+import type { TelemetryStore } from "../telemetryStore";
+import { DARK, type Lights, nextChange, tonesAt, withTouches } from "./lights";
+import type { LiveScene } from "./scene";
+import type { View } from "./views";
+
+/** Frames come at least ten times a second: after so long there are none. */
+const STILL_AFTER_MS = 1500;
+
+export type Way = "loading" | "space" | "flat";
+
+export interface Live {
+  readonly way: Way;
+  readonly feed: FeedState;
+  readonly setup: PoseSetup | null;
+  readonly isMoving: boolean;
+  readonly last: PoseTouch | null;
+}
+
+export function useLiveScene(
+  root: RefObject<HTMLDivElement | null>,
+  id: string,
+  store: TelemetryStore,
+  view: View,
+): Live {
+  const scheme = useComputedColorScheme("light");
+  const isSeen = useDocumentVisibility() === "visible";
+  const [scene, setScene] = useState<LiveScene | null>(null);
+  const [way, setWay] = useState<Way>("loading");
+  const [feed, setFeed] = useState<FeedState>("connecting");
+  const [setup, setSetup] = useState<PoseSetup | null>(null);
+  const [isMoving, setMoving] = useState(false);
+  const [last, setLast] = useState<PoseTouch | null>(null);
+  const lights = useRef<Lights>(DARK);
+  const drawn = useRef<() => void>(() => {});
+  const relight = useRef<() => void>(() => {});
+
+  useEffect(() => {
+    const element = root.current;
+    if (element === null) return;
+    let gone = false;
+    let tidy = () => {};
+    void begin(element, () => drawn.current()).then((begun) => {
+      if (gone) return begun?.tidy();
+      if (begun === null) return setWay("flat");
+      tidy = begun.tidy;
+      setScene(begun.drawing);
+      setWay("space");
+    });
+    return () => {
+      gone = true;
+      setScene(null);
+      tidy();
+    };
+  }, [root]);
+
+  // The appearance is asked for: another one has other colours.
+  useEffect(() => {
+    if (scene === null || setup === null || root.current === null || scheme === undefined) return;
+    scene.prepare(setup, paletteOf(root.current));
+    relight.current();
+    const heat = () => {
+      const errors = setup.blinded ? undefined : store.latest()?.telemetry.joint_error_deg;
+      if (errors !== undefined) scene.heat(errors);
+    };
+    heat();
+    return store.subscribe(heat);
+  }, [root, scene, setup, scheme, store]);
+
+  useEffect(() => scene?.look(view), [scene, view]);
+
+  useEffect(() => {
+    if (scene === null || !isSeen) return;
+    let heardAt = Number.NEGATIVE_INFINITY;
+    let undrawn = 0;
+    let timer: ReturnType<typeof setTimeout> | undefined;
+    const light = () => {
+      clearTimeout(timer);
+      const now = performance.now();
+      const tones = tonesAt(lights.current, now);
+      scene.light(tones);
+      if (root.current !== null) root.current.dataset.lit = [...tones.keys()].join(" ");
+      const next = nextChange(lights.current, now);
+      if (next !== null) timer = setTimeout(light, next - now + 1);
+    };
+    relight.current = light;
+    const poses = openPoses({
+      url: sessions.poseUrl(id),
+      onState: setFeed,
+      onSetup: setSetup,
+      onPose: ({ stream, values, phaseId }) => {
+        heardAt = performance.now();
+        undrawn++;
+        setMoving(true);
+        if (phaseId !== 0 && phaseId !== lights.current.phaseId) {
+          lights.current = { ...DARK, seen: lights.current.seen, phaseId };
+          light();
+        }
+        scene.show(stream, values);
+      },
+      onTouches: (touches) => {
+        lights.current = withTouches(lights.current, touches, performance.now());
+        setLast(lights.current.last);
+        light();
+      },
+    });
+    let pictures = 0;
+    drawn.current = () => {
+      if (undrawn === 0) return;
+      poses.drawn(undrawn);
+      undrawn = 0;
+      pictures++;
+      if (root.current !== null) root.current.dataset.pictures = String(pictures);
+    };
+    const watch = setInterval(
+      () => setMoving(performance.now() - heardAt < STILL_AFTER_MS),
+      STILL_AFTER_MS / 3,
+    );
+    return () => {
+      clearInterval(watch);
+      clearTimeout(timer);
+      poses.close();
+      drawn.current = () => {};
+      relight.current = () => {};
+    };
+  }, [root, scene, isSeen, id]);
+
+  return { way, feed, setup, isMoving, last };
+}
+
+/** A scene on a canvas of its own; null where the browser has no WebGL. */
+async function begin(
+  element: HTMLElement,
+  onDrawn: () => void,
+): Promise<Mounted<LiveScene> | null> {
+  const { LiveScene } = await import("./scene");
+  return mount(element, (canvas) => new LiveScene(canvas, onDrawn));
+}

@@ -1,0 +1,97 @@
+/** One list: what is in order, what is missing and what to do about it. */
+import { Button } from "@mantine/core";
+import type { Check } from "@shared/api/types";
+import { timeOfDay } from "@shared/format";
+import { Icon, type IconName } from "@shared/ui/Icon";
+import type { JSX } from "react";
+import { useTexts } from "../../i18n";
+import classes from "./Preflight.module.css";
+import { amountOf, expectationOf, todoOf, valuesOf } from "./words";
+
+const ICONS: Readonly<Record<Check["status"], IconName>> = {
+  ok: "check",
+  wait: "clock",
+  fail: "alert",
+  overridden: "flag",
+};
+
+interface CheckListProps {
+  readonly checks: readonly Check[];
+  /** Missing where nobody has to override anything. */
+  readonly onOverride?: ((check: Check) => void) | undefined;
+}
+
+export function CheckList({ checks, onOverride }: CheckListProps): JSX.Element {
+  return (
+    <ul className={classes.list}>
+      {checks.map((check) => (
+        <Row key={check.key} check={check} onOverride={onOverride} />
+      ))}
+    </ul>
+  );
+}
+
+interface RowProps {
+  readonly check: Check;
+  readonly onOverride: CheckListProps["onOverride"];
+}
+
+function Row({ check, onOverride }: RowProps): JSX.Element {
+  const { t, language } = useTexts();
+  const todo = todoOf(check);
+  const said = check.status === "overridden" ? check.override : null;
+  return (
+    <li className={`${classes.row} ${classes[check.status]}`} data-check={check.key}>
+      <span className={classes.mark}>
+        <Icon name={ICONS[check.status]} size={18} />
+      </span>
+      <span className={classes.name}>{t(`preflight.check.${check.key}`)}</span>
+      <span className={`${classes.found} numbers`}>
+        {t(`preflight.found.${check.code}`, valuesOf(check, language))}
+        <Aside check={check} />
+      </span>
+      <span className={classes.status}>{t(`preflight.status.${check.status}`)}</span>
+      {todo !== null && (
+        <div className={classes.todo}>
+          <span>{t(todo)}</span>
+          {onOverride !== undefined && (
+            <Button
+              size="compact-xs"
+              variant="default"
+              aria-label={`${t("preflight.override")}: ${t(`preflight.check.${check.key}`)}`}
+              onClick={() => onOverride(check)}
+            >
+              {t("preflight.override")}
+            </Button>
+          )}
+        </div>
+      )}
+      {said != null && (
+        <div className={classes.todo}>
+          {t("preflight.said", {
+            by: said.by.replace(/^account:/, ""),
+            time: timeOfDay(said.at, language),
+            reason: said.reason,
+          })}
+        </div>
+      )}
+    </li>
+  );
+}
+
+/** What it must keep to, and the names and hashes behind it. */
+function Aside({ check }: { readonly check: Check }): JSX.Element | null {
+  const { t, language } = useTexts();
+  const expectation = expectationOf(check);
+  const parts = [...(check.details ?? [])];
+  if (expectation !== null && check.limit != null) {
+    parts.unshift(t(expectation, { limit: amountOf(check.limit, check.unit, language) }));
+  }
+  if (parts.length === 0) return null;
+  const told = parts.join(" · ");
+  return (
+    <span className={classes.aside} title={told}>
+      {told}
+    </span>
+  );
+}

@@ -1,0 +1,89 @@
+/** Going on although something is not in order: the reason becomes part of the record. */
+import { Button, Group, Modal, Stack, Text } from "@mantine/core";
+import type { Check, SessionView } from "@shared/api/types";
+import { useMutation, useQueryClient } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Failure } from "../../errors";
+import { useTexts } from "../../i18n";
+import { preflightQuery } from "../../queries";
+import { ReasonField } from "../../ui/ReasonField";
+import { useShown } from "../../ui/useShown";
+import { CheckList } from "./CheckList";
+import { overrideAll } from "./usePreflight";
+
+interface OverrideDialogProps {
+  readonly session: SessionView;
+  /** Null: the dialog is closed. Empty: what was missing has come since it was opened. */
+  readonly checks: readonly Check[] | null;
+  readonly onClose: () => void;
+  /** What follows once the reasons are on record: the start of the session. */
+  readonly then?: () => Promise<unknown>;
+}
+
+export function OverrideDialog({ checks, ...props }: OverrideDialogProps): JSX.Element {
+  const { t } = useTexts();
+  const shown = useShown(checks);
+  const title = props.then === undefined ? "preflight.override.title" : "preflight.start.title";
+  return (
+    <Modal
+      opened={checks !== null}
+      onClose={props.onClose}
+      size="lg"
+      title={t(shown?.length === 0 ? "preflight.start.clear" : title)}
+      closeButtonProps={{ "aria-label": t("action.close") }}
+    >
+      {shown !== null && <OverrideForm {...props} checks={shown} />}
+    </Modal>
+  );
+}
+
+const COMMON = [
+  "preflight.reason.without",
+  "preflight.reason.soon",
+  "preflight.reason.known",
+] as const;
+
+interface OverrideFormProps extends OverrideDialogProps {
+  readonly checks: readonly Check[];
+}
+
+/** The field stays where it is when no reason is needed any more: somebody may be writing in it. */
+function OverrideForm({ session, checks, onClose, then }: OverrideFormProps): JSX.Element {
+  const { t } = useTexts();
+  const queries = useQueryClient();
+  const [reason, setReason] = useState("");
+  const clear = checks.length === 0;
+  const doing = clear ? "do.start" : "preflight.start.do";
+  const ready = clear || reason.trim() !== "";
+  const save = useMutation({
+    mutationFn: async () => {
+      await overrideAll(session.id, checks, reason.trim());
+      await then?.();
+    },
+    onSuccess: onClose,
+    onSettled: () => queries.invalidateQueries(preflightQuery(session.id)),
+  });
+  return (
+    <form
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (ready && !save.isPending) save.mutate();
+      }}
+    >
+      <Stack>
+        {!clear && <CheckList checks={checks} />}
+        <Text c="dimmed">{t(clear ? "preflight.start.clear.body" : "preflight.start.body")}</Text>
+        <ReasonField usual={COMMON} value={reason} onChange={setReason} />
+        {save.isError && <Failure error={save.error} />}
+        <Group justify="flex-end">
+          <Button variant="default" onClick={onClose}>
+            {t("action.cancel")}
+          </Button>
+          <Button type="submit" disabled={!ready} loading={save.isPending}>
+            {t(then === undefined ? "preflight.override" : doing)}
+          </Button>
+        </Group>
+      </Stack>
+    </form>
+  );
+}

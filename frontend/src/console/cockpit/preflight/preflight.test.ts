@@ -1,0 +1,50 @@
+import type { Check } from "@shared/api/types";
+import { describe, expect, it } from "vitest";
+import { preflightEn } from "../../i18n/preflightTexts";
+import { againAfter, amountOf, expectationOf, failing, todoOf, valuesOf } from "./words";
+
+const check = (more: Partial<Check>): Check => ({
+  key: "clock",
+  status: "ok",
+  code: "clock.ok",
+  details: [],
+  ...more,
+});
+
+describe("the words of a check", () => {
+  it("tell quantities with their unit, and counts without", () => {
+    expect(amountOf(1.84, "ms", "en")).toBe("1.8 ms");
+    expect(amountOf(89.94, "Hz", "en")).toBe("90 Hz");
+    expect(amountOf(1.1, "GB", "de")).toBe("1,1 GB");
+    expect(amountOf(22, "joints", "en")).toBe("22");
+    expect(valuesOf(check({}), "en")).toEqual({ value: "–", limit: "–" });
+  });
+
+  it("name a limit only where it is a quantity", () => {
+    const limited = { expected: "at_most", limit: 10 } as const;
+    expect(expectationOf(check({ unit: "ms", ...limited }))).toBe("preflight.expected.at_most");
+    expect(expectationOf(check({ unit: "phases", ...limited }))).toBeNull();
+  });
+
+  it("say what to do about everything that can fail", () => {
+    const failures = Object.keys(preflightEn)
+      .filter((key) => key.startsWith("preflight.todo."))
+      .map((key) => key.slice("preflight.todo.".length));
+    expect(failures).toContain("storage.failing");
+    expect(todoOf(check({ status: "fail", code: "clock.uncertain" }))).toBe(
+      "preflight.todo.clock.uncertain",
+    );
+    expect(todoOf(check({ status: "overridden", code: "clock.uncertain" }))).toBeNull();
+    const found = Object.keys(preflightEn).filter((key) => key.startsWith("preflight.found."));
+    for (const code of failures) expect(found).toContain(`preflight.found.${code}`);
+  });
+
+  it("ask again while something is missing, and soon while somebody brings it in", () => {
+    const wait = check({ status: "wait" });
+    const fail = check({ key: "disk", status: "fail", code: "disk.low" });
+    expect(againAfter([check({}), wait])).toBe(3000);
+    expect(againAfter([check({}), fail])).toBe(20_000);
+    expect(againAfter([check({}), check({ status: "overridden" })])).toBe(false);
+    expect(failing([wait, fail])).toEqual([fail]);
+  });
+});

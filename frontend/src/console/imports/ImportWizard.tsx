@@ -1,0 +1,152 @@
+/** From a file to stored answers: choose it, say what its columns mean, see what would happen. */
+import { Button, FileButton, Modal } from "@mantine/core";
+import { type AnswerImport, type ImportLook, imports } from "@shared/api/imports";
+import type { StudyDetail } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { useMutation } from "@tanstack/react-query";
+import { type DragEvent, type JSX, useState } from "react";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import classes from "./Imports.module.css";
+import { MappingStep } from "./MappingStep";
+import { decoded } from "./readText";
+
+interface WizardProps {
+  readonly study: StudyDetail;
+  readonly opened: boolean;
+  readonly onClose: () => void;
+  /** Show an import that is there. */
+  readonly onOpen: (id: string) => void;
+}
+
+export function ImportWizard({ study, opened, onClose, onOpen }: WizardProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Modal
+      opened={opened}
+      onClose={onClose}
+      size="78rem"
+      title={t("imports.open")}
+      closeOnClickOutside={false}
+      classNames={{ content: classes.dialog ?? "" }}
+      closeButtonProps={{ "aria-label": t("action.close") }}
+    >
+      <Wizard study={study} onOpen={onOpen} />
+    </Modal>
+  );
+}
+
+export interface OpenedFile {
+  readonly name: string;
+  readonly text: string;
+}
+
+function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.Element {
+  const [file, setFile] = useState<OpenedFile | null>(null);
+  const look = useMutation({
+    mutationFn: async (wish: {
+      file: OpenedFile;
+      instrument: string | null;
+      heads: number | null;
+    }) => imports.look(study.key, wish.file.text, wish.instrument, wish.heads),
+  });
+  const choose = async (chosen: File | null): Promise<void> => {
+    if (chosen === null) return;
+    const opened = { name: chosen.name.slice(-200), text: decoded(await chosen.arrayBuffer()) };
+    setFile(opened);
+    look.mutate({ file: opened, instrument: null, heads: null });
+  };
+  const again = (instrument: string, heads: number | null): void => {
+    if (file !== null) look.mutate({ file, instrument, heads });
+  };
+  return (
+    <div className={classes.wizard}>
+      <Choose fileName={file?.name ?? null} onFile={choose} />
+      {look.isError && <Failure error={look.error} />}
+      {file !== null && look.data !== undefined && (
+        <Looked study={study} file={file} look={look.data} onAgain={again} onOpen={onOpen} />
+      )}
+    </div>
+  );
+}
+
+interface LookedProps extends Pick<WizardProps, "study" | "onOpen"> {
+  readonly file: OpenedFile;
+  readonly look: ImportLook;
+  readonly onAgain: (instrument: string, headerRows: number | null) => void;
+}
+
+function Looked({ study, file, look, onAgain, onOpen }: LookedProps): JSX.Element {
+  return (
+    <>
+      {look.same_file !== null && <Same found={look.same_file} onOpen={onOpen} />}
+      <MappingStep
+        // Another file, instrument or head begins anew.
+        key={`${file.name} ${look.instrument} ${look.header_rows} ${file.text.length}`}
+        study={study}
+        file={file}
+        look={look}
+        onAgain={onAgain}
+        onDone={onOpen}
+      />
+    </>
+  );
+}
+
+function Same({
+  found,
+  onOpen,
+}: {
+  readonly found: AnswerImport;
+  readonly onOpen: (id: string) => void;
+}): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Notice
+      tone="warn"
+      title={t("imports.same")}
+      actions={
+        <Button size="xs" variant="default" onClick={() => onOpen(found.id)}>
+          {t("imports.same.open")}
+        </Button>
+      }
+    >
+      {t("imports.same.body", { file: found.file_name })}
+    </Notice>
+  );
+}
+
+interface ChooseProps {
+  readonly fileName: string | null;
+  readonly onFile: (file: File | null) => Promise<void>;
+}
+
+function Choose({ fileName, onFile }: ChooseProps): JSX.Element {
+  const { t } = useTexts();
+  const drop = (event: DragEvent): void => {
+    event.preventDefault();
+    void onFile(event.dataTransfer.files[0] ?? null);
+  };
+  return (
+    <section
+      className={classes.drop}
+      aria-label={t("imports.choose")}
+      onDragOver={(event) => event.preventDefault()}
+      onDrop={drop}
+    >
+      <Icon name="upload" size={24} />
+      <div>
+        <strong>{fileName ?? t("imports.drop")}</strong>
+        <p className={classes.soft}>{t("imports.drop.hint")}</p>
+      </div>
+      <FileButton accept=".csv,.tsv,.txt,text/csv" onChange={(file) => void onFile(file)}>
+        {(props) => (
+          <Button {...props} variant={fileName === null ? "filled" : "default"} size="sm">
+            {t(fileName === null ? "imports.choose" : "imports.other")}
+          </Button>
+        )}
+      </FileButton>
+    </section>
+  );
+}

@@ -1,0 +1,153 @@
+/** What the columns mean, with what would come of it beside, computed anew at every change. */
+import { Button, Group } from "@mantine/core";
+import { type ImportLook, type ImportMapping, imports } from "@shared/api/imports";
+import type { StudyDetail } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { instrumentQuery } from "../queries";
+import { CheckPanel } from "./CheckPanel";
+import { ColumnFields } from "./ColumnFields";
+import { FilePreview } from "./FilePreview";
+import classes from "./Imports.module.css";
+import type { OpenedFile } from "./ImportWizard";
+import { ItemColumns } from "./ItemColumns";
+import { checkQuery } from "./queries";
+import { WordFields } from "./WordFields";
+
+interface StepProps {
+  readonly study: StudyDetail;
+  readonly file: OpenedFile;
+  readonly look: ImportLook;
+  readonly onAgain: (instrument: string, headerRows: number | null) => void;
+  readonly onDone: (id: string) => void;
+}
+
+export function MappingStep({ study, file, look, onAgain, onDone }: StepProps): JSX.Element {
+  const { t } = useTexts();
+  const [mapping, setMapping] = useState<ImportMapping>(look.proposal ?? emptyMapping(look));
+  const change = (part: Partial<ImportMapping>): void => setMapping({ ...mapping, ...part });
+  const ready = mapping.participant !== "" && mapping.sets.some(hasItems);
+  const asked = { ...mapping, sets: mapping.sets.filter(hasItems) };
+  const check = useQuery({
+    ...checkQuery(study.key, `${file.name} ${file.text.length}`, file.text, asked),
+    enabled: ready,
+  });
+  const items = useQuery(instrumentQuery(look.instrument));
+  const words = [...new Set([...look.words, ...(check.data?.unknown_words ?? [])])];
+  return (
+    <>
+      <FilePreview look={look} />
+      {look.remembered && (
+        <Notice tone="info" title={t("imports.remembered")}>
+          {t("imports.remembered.body")}
+        </Notice>
+      )}
+      {look.proposal === null && (
+        <Notice tone="warn" title={t("imports.unknown")}>
+          {t("imports.unknown.body")}
+        </Notice>
+      )}
+      <ColumnFields look={look} mapping={mapping} onChange={change} onAgain={onAgain} />
+      {items.data !== undefined && (
+        <ItemColumns
+          look={look}
+          items={items.data.preview.instrument.items}
+          reversed={check.data?.reversed_items ?? []}
+          mapping={mapping}
+          onChange={change}
+        />
+      )}
+      <WordFields
+        study={study}
+        words={words}
+        conditions={conditionWords(look, mapping, check.data?.conditions)}
+        mapping={mapping}
+        onChange={change}
+      />
+      {check.isError && <Failure error={check.error} />}
+      {ready && check.data !== undefined && <CheckPanel check={check.data} onShift={change} />}
+      <Store
+        study={study}
+        file={file}
+        mapping={asked}
+        allowed={ready && check.data?.n_problems === 0 && check.data.forms > 0 && !check.isFetching}
+        forms={check.data?.forms ?? 0}
+        onDone={onDone}
+      />
+    </>
+  );
+}
+
+interface StoreProps extends Pick<StepProps, "study" | "file" | "onDone"> {
+  readonly mapping: ImportMapping;
+  readonly allowed: boolean;
+  readonly forms: number;
+}
+
+function Store({ study, file, mapping, allowed, forms, onDone }: StoreProps): JSX.Element {
+  const { t } = useTexts();
+  const queries = useQueryClient();
+  const store = useMutation({
+    mutationFn: () => imports.takeIn(study.key, file.name, file.text, mapping),
+    onSuccess: async ({ id }) => {
+      await queries.invalidateQueries({ queryKey: ["studies", study.key, "imports"] });
+      onDone(id);
+    },
+  });
+  return (
+    <>
+      {store.isError && <Failure error={store.error} />}
+      <Group justify="flex-end" className={classes.foot ?? ""}>
+        <span className={classes.soft}>{t("imports.whole")}</span>
+        <Button
+          leftSection={<Icon name="check" size={18} />}
+          disabled={!allowed}
+          loading={store.isPending}
+          onClick={() => store.mutate()}
+        >
+          {t("imports.do", { count: forms })}
+        </Button>
+      </Group>
+    </>
+  );
+}
+
+const hasItems = (one: ImportMapping["sets"][number]): boolean => Object.keys(one.items).length > 0;
+
+function emptyMapping(look: ImportLook): ImportMapping {
+  return {
+    instrument: look.instrument,
+    participant: "",
+    condition: null,
+    date: null,
+    date_order: "iso",
+    sets: [{ items: {}, condition: null }],
+    conditions: {},
+    words: {},
+    multiply: 1,
+    add: 0,
+    turned: [],
+    header_rows: look.header_rows,
+  };
+}
+
+/** What the file calls its conditions, by the column that is chosen now. */
+function conditionWords(
+  look: ImportLook,
+  mapping: ImportMapping,
+  found: readonly { readonly condition: string; readonly in_study: boolean }[] | undefined,
+): readonly string[] {
+  const told = mapping.sets.flatMap(({ condition }) => condition ?? []);
+  const same = mapping.condition !== null && mapping.condition === look.proposal?.condition;
+  const own = same ? look.condition_words : told;
+  const unknown = (found ?? [])
+    .filter(({ in_study }) => !in_study)
+    .map(({ condition }) => condition);
+  return [...new Set([...own, ...Object.keys(mapping.conditions), ...unknown])].filter(
+    (word) => word !== "",
+  );
+}

@@ -1,0 +1,88 @@
+/** One figure with its words, and the buttons that save it and its rows. */
+import { Figure } from "@charts/Figure";
+import { savePicture } from "@charts/pictures";
+import { Button, Title } from "@mantine/core";
+import { type Asked, analysis, type FigureEntry } from "@shared/api/analysis";
+import { Icon } from "@shared/ui/Icon";
+import type { JSX } from "react";
+import { Failure } from "../../errors";
+import { useTexts } from "../../i18n";
+import classes from "./DashboardTab.module.css";
+import { useDownload } from "./useDownload";
+
+interface FigureCardProps {
+  readonly studyKey: string;
+  readonly entry: FigureEntry;
+  readonly asked: Asked;
+}
+
+export function FigureCard({ studyKey, entry, asked }: FigureCardProps): JSX.Element {
+  const { t } = useTexts();
+  const watermark = asked.kind === "simulated" ? t("simulated.watermark") : null;
+  const { title, caption, figure } = entry;
+  return (
+    <figure className={entry.wide ? `${classes.figure} ${classes.wide}` : classes.figure}>
+      <Title order={3}>{title}</Title>
+      {figure === null ? (
+        <p className={classes.missing}>{entry.empty}</p>
+      ) : (
+        <Figure
+          figure={figure}
+          label={title}
+          watermark={watermark}
+          loading={t("dashboard.loading")}
+          failed={t("dashboard.failed")}
+          whenNear
+        />
+      )}
+      <figcaption className={classes.caption}>{caption}</figcaption>
+      {figure !== null && (
+        <SaveRow
+          label={t("figures.save", { title })}
+          name={`${studyKey}_${entry.key}_${asked.kind}`}
+          rowsUrl={analysis.rowsUrl(studyKey, entry.key, asked)}
+          onPicture={(format, name) =>
+            savePicture(figure, { title, caption, watermark }, entry.wide, format, name)
+          }
+        />
+      )}
+    </figure>
+  );
+}
+
+interface SaveRowProps {
+  readonly label: string;
+  readonly name: string;
+  readonly rowsUrl: string;
+  readonly onPicture: (format: "png" | "svg", name: string) => Promise<void>;
+}
+
+function SaveRow({ label, name, rowsUrl, onPicture }: SaveRowProps): JSX.Element {
+  const { t } = useTexts();
+  const rows = useDownload();
+  return (
+    // A group of buttons with a common name: each alone says only its format.
+    <fieldset className={classes.save} aria-label={label}>
+      <Icon name="download" size={16} />
+      {(["png", "svg"] as const).map((format) => (
+        <Button
+          key={format}
+          size="compact-xs"
+          variant="subtle"
+          onClick={() => void onPicture(format, name)}
+        >
+          {t(`figures.${format}`)}
+        </Button>
+      ))}
+      <Button
+        size="compact-xs"
+        variant="subtle"
+        loading={rows.state.phase === "running"}
+        onClick={() => void rows.start(rowsUrl, `${name}.csv`)}
+      >
+        {t("figures.csv")}
+      </Button>
+      {rows.state.phase === "failed" && <Failure error={rows.state.error} />}
+    </fieldset>
+  );
+}

@@ -1,0 +1,80 @@
+/** What was declared, with the version and the hash that name it. */
+import { Paper, Title } from "@mantine/core";
+import type { Declaration } from "@shared/api/preregistration";
+import { dateTime } from "@shared/format";
+import type { JSX } from "react";
+import { useTexts } from "../i18n";
+import classes from "./Preregistration.module.css";
+
+export function Declared({ declaration }: { readonly declaration: Declaration }): JSX.Element {
+  const { t, language } = useTexts();
+  const frozen = declaration.frozen_at;
+  const rules = declaration.section.exclusions ?? [];
+  return (
+    <Paper>
+      <Title order={2} size="h3">
+        {t("prereg.declared")}
+      </Title>
+      <dl className={classes.facts}>
+        <dt>{t("prereg.primary")}</dt>
+        <dd>
+          <Primary primary={declaration.section.primary} />
+        </dd>
+        <dt>α</dt>
+        <dd>{declaration.alpha}</dd>
+        <dt>{t("prereg.planned")}</dt>
+        <dd>{declaration.planned_n}</dd>
+        <dt>{t("prereg.rules")}</dt>
+        <dd>
+          {rules.length === 0 ? (
+            t("prereg.rules.none")
+          ) : (
+            <ul className={classes.plain}>
+              {rules.map(({ rule, limit }) => (
+                <li key={rule}>{t(`prereg.rule.${rule}`, { limit: limit ?? "" })}</li>
+              ))}
+            </ul>
+          )}
+        </dd>
+        <dt>{t("prereg.version")}</dt>
+        <dd>
+          {t("prereg.version.made", {
+            version: declaration.version,
+            when: dateTime(declaration.created_at, language),
+          })}
+        </dd>
+        <dt>{t("prereg.frozen")}</dt>
+        <dd>{frozen === null ? t("prereg.frozen.not") : dateTime(frozen, language)}</dd>
+        <dt>{t("prereg.registration")}</dt>
+        <dd>{declaration.registration || t("prereg.registration.none")}</dd>
+        <dt>SHA-256</dt>
+        <dd className={classes.hash}>{declaration.content_hash}</dd>
+      </dl>
+    </Paper>
+  );
+}
+
+function Primary({
+  primary,
+}: {
+  readonly primary: Declaration["section"]["primary"];
+}): JSX.Element {
+  const { t } = useTexts();
+  const measure =
+    primary.measure === "score"
+      ? t("prereg.words.score", {
+          score: primary.score ?? "",
+          instrument: primary.instrument ?? "",
+        })
+      : t(`value.${primary.measure}`);
+  const limb = primary.limb === "both" ? t("value.both") : t(`prereg.words.${primary.limb}`);
+  const direction = t(`value.${primary.direction ?? "two_sided"}`);
+  const reference = primary.reference ?? null;
+  return (
+    <>
+      {t("prereg.words", { test: t(`value.${primary.test}`), measure, limb, direction })}
+      {reference !== null && ` ${t("prereg.words.reference", { reference })}`}
+      {primary.correction === "holm" && ` ${t("prereg.words.holm")}`}
+    </>
+  );
+}

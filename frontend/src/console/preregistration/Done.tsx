@@ -1,0 +1,71 @@
+/** What was done: who is in the test, who is not and by which rule, and the test as declared. */
+import { Paper, Title } from "@mantine/core";
+import type { Preregistration, PrimaryResult } from "@shared/api/preregistration";
+import { Notice } from "@shared/ui/Notice";
+import type { JSX } from "react";
+import { useTexts } from "../i18n";
+import { NumbersTable } from "../ui/NumbersTable";
+import classes from "./Preregistration.module.css";
+
+interface DoneProps {
+  readonly view: Preregistration;
+  readonly alpha: number;
+}
+
+export function Done({ view, alpha }: DoneProps): JSX.Element {
+  const { t } = useTexts();
+  const planned = view.declaration?.planned_n ?? 0;
+  return (
+    <Paper>
+      <Title order={2} size="h3">
+        {t("prereg.done")}
+      </Title>
+      <p className={classes.count}>
+        {t("prereg.included", { count: view.included, planned })}
+        <span>{t("prereg.sessions", { count: view.sessions })}</span>
+      </p>
+      {view.result === null ? (
+        <Notice tone="info" title={t("prereg.noResult")}>
+          {view.why_no_result}
+        </Notice>
+      ) : (
+        <Result result={view.result} alpha={alpha} />
+      )}
+      <h3 className={classes.small}>{t("prereg.excluded", { count: view.excluded.length })}</h3>
+      {view.excluded.length === 0 ? (
+        <p className={classes.soft}>{t("prereg.excluded.none")}</p>
+      ) : (
+        <ul className={classes.plain}>
+          {view.excluded.map((one) => (
+            <li key={`${one.participant_code} ${one.rule}`}>
+              <strong>{one.participant_code}</strong> <code>{one.rule}</code>: {one.reason}
+            </li>
+          ))}
+        </ul>
+      )}
+    </Paper>
+  );
+}
+
+interface ResultProps {
+  readonly result: PrimaryResult;
+  readonly alpha: number;
+}
+
+function Result({ result, alpha }: ResultProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.result}>
+      <p className={classes.sentence}>{result.sentence}</p>
+      <p className={classes.soft}>
+        {t(result.holds ? "prereg.atMost" : "prereg.exceeds", { alpha })} {result.method}
+      </p>
+      <NumbersTable
+        label={t("prereg.numbers")}
+        columns={result.columns}
+        rows={result.rows}
+        className={classes.numbers}
+      />
+    </div>
+  );
+}

@@ -1,0 +1,138 @@
+/** What the study declared before it looked, what was done, and every way in which they differ. */
+import { Button, Group, Paper, Title } from "@mantine/core";
+import {
+  type Deviation,
+  type Preregistration,
+  preregistrations,
+} from "@shared/api/preregistration";
+import type { DataKind, StudyDetail } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Link } from "wouter";
+import { useTexts } from "../i18n";
+import { useMay } from "../may";
+import page from "../pages/study/StudyPage.module.css";
+import { EmptyState } from "../ui/EmptyState";
+import { KindFilter } from "../ui/KindFilter";
+import { Loaded } from "../ui/Loaded";
+import { Declared } from "./Declared";
+import { Done } from "./Done";
+import classes from "./Preregistration.module.css";
+import { preregistrationQuery } from "./queries";
+
+export function PreregistrationTab({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t } = useTexts();
+  const [kind, setKind] = useState<DataKind>("people");
+  const query = useQuery(preregistrationQuery(study.key, kind));
+  return (
+    <>
+      <div className={page.toolbar}>
+        <KindFilter kind={kind} onChange={setKind} />
+        <Group className={page.push ?? ""} gap="xs">
+          {(["markdown", "json"] as const).map((form) => (
+            <Button
+              key={form}
+              component="a"
+              variant="default"
+              href={preregistrations.reportUrl(study.key, kind, form)}
+              leftSection={<Icon name="download" size={17} />}
+            >
+              {t(`prereg.${form}`)}
+            </Button>
+          ))}
+        </Group>
+      </div>
+      <Loaded query={query}>{(view) => <Page study={study} view={view} />}</Loaded>
+    </>
+  );
+}
+
+interface PageProps {
+  readonly study: StudyDetail;
+  readonly view: Preregistration;
+}
+
+function Page({ study, view }: PageProps): JSX.Element {
+  const { t } = useTexts();
+  const { declaration } = view;
+  if (declaration === null) return <Undeclared study={study} />;
+  return (
+    <div className={classes.page}>
+      {view.simulated && (
+        <Notice tone="sim" title={t("simulated.title")}>
+          {t("simulated.body")}
+        </Notice>
+      )}
+      <div className={classes.both}>
+        <Declared declaration={declaration} />
+        <Done view={view} alpha={declaration.alpha} />
+      </div>
+      <Deviations deviations={view.deviations} />
+    </div>
+  );
+}
+
+function Undeclared({ study }: { readonly study: StudyDetail }): JSX.Element {
+  const { t } = useTexts();
+  const may = useMay();
+  return (
+    <EmptyState
+      icon="lock"
+      title={t("prereg.none")}
+      action={
+        may("design") && (
+          <Button component={Link} href={`/studies/${study.key}/edit`}>
+            {t("prereg.none.do")}
+          </Button>
+        )
+      }
+    >
+      {t("prereg.none.body")}
+    </EmptyState>
+  );
+}
+
+function Deviations({ deviations }: { readonly deviations: readonly Deviation[] }): JSX.Element {
+  const { t } = useTexts();
+  const real = deviations.filter(({ is_note }) => !is_note);
+  const notes = deviations.filter(({ is_note }) => is_note);
+  return (
+    <Paper>
+      <Title order={2} size="h3">
+        {t("prereg.deviations")}
+      </Title>
+      {real.length === 0 ? (
+        <p className={classes.fine}>
+          <Icon name="check" size={18} /> {t("prereg.deviations.none")}
+        </p>
+      ) : (
+        <ul className={classes.list}>
+          {real.map((one) => (
+            <Told key={one.text} told={one} />
+          ))}
+        </ul>
+      )}
+      <h3 className={classes.small}>{t("prereg.notes")}</h3>
+      <ul className={classes.list}>
+        {notes.map((one) => (
+          <Told key={one.text} told={one} />
+        ))}
+      </ul>
+    </Paper>
+  );
+}
+
+function Told({ told }: { readonly told: Deviation }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <li className={told.is_note ? classes.note : classes.deviation}>
+      <Icon name={told.is_note ? "info" : "alert"} size={18} />
+      <div>
+        <strong>{t(`prereg.code.${told.code}`)}</strong>
+        <p>{told.text}</p>
+      </div>
+    </li>
+  );
+}

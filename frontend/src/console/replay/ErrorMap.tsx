@@ -1,0 +1,91 @@
+/** How far each joint is from what was asked for right now: a small body, and the largest by name. */
+import type { JointErrors } from "@shared/api/replays";
+import type { Seconds } from "@shared/units";
+import type { JSX } from "react";
+import { BODY, placeOnBody } from "../captures/bodyJoints";
+import { useTexts } from "../i18n";
+import { errorsAt, type JointError, LEAST_DEG, largest, overall } from "./errorsAt";
+import classes from "./Replay.module.css";
+
+interface ErrorMapProps {
+  readonly errors: JointErrors;
+  readonly time: Seconds;
+}
+
+/** What is drawn largest, degrees. */
+const FULL_DEG = 60;
+const SHOWN = 5;
+
+export function ErrorMap({ errors, time }: ErrorMapProps): JSX.Element {
+  const { t, language } = useTexts();
+  const now = errorsAt(errors, time);
+  const all = overall(now);
+  return (
+    <section className={classes.errors} title={t("replay.errors.hint")}>
+      <h2 className={classes.sideTitle}>
+        {t("replay.errors")}
+        <span className={`${classes.soft} numbers`}>
+          {all === null
+            ? t("replay.errors.none")
+            : t("replay.errors.overall", { degrees: number1(all, language) })}
+        </span>
+      </h2>
+      <div className={classes.errorParts}>
+        <Body errors={now} label={t("replay.errors.map")} />
+        <ul className={`${classes.worst} numbers`}>
+          {largest(now, SHOWN).map(({ joint, degrees }) => (
+            <li key={joint}>
+              <span>{joint.replace(/([a-z])([A-Z])/g, "$1 $2")}</span>
+              <span className={classes.worstValue}>{number1(degrees ?? 0, language)}°</span>
+              <span
+                className={classes.worstBar}
+                style={{ width: `${shareOf(degrees) * 100}%` }}
+                aria-hidden="true"
+              />
+            </li>
+          ))}
+        </ul>
+      </div>
+    </section>
+  );
+}
+
+const number1 = (value: number, language: string): string =>
+  new Intl.NumberFormat(language, {
+    minimumFractionDigits: 1,
+    maximumFractionDigits: 1,
+  }).format(value);
+const shareOf = (degrees: number | null): number => Math.min(1, (degrees ?? 0) / FULL_DEG);
+
+function Body({
+  errors,
+  label,
+}: {
+  readonly errors: readonly JointError[];
+  readonly label: string;
+}): JSX.Element {
+  return (
+    <svg viewBox="-31 0 62 104" className={classes.body} role="img" aria-label={label}>
+      {Object.entries(BODY).map(([joint, parent]) => {
+        if (parent === null) return null;
+        const [x1, y1] = placeOnBody(parent);
+        const [x2, y2] = placeOnBody(joint);
+        return <line key={joint} {...{ x1, y1, x2, y2 }} />;
+      })}
+      {errors.map(({ joint, degrees }) => {
+        const [cx, cy] = placeOnBody(joint);
+        if (degrees === null) return null;
+        const isMoved = degrees >= LEAST_DEG;
+        return (
+          <circle
+            key={joint}
+            cx={cx}
+            cy={cy}
+            r={1.4 + 6 * Math.sqrt(shareOf(degrees))}
+            fillOpacity={isMoved ? 0.35 + 0.6 * shareOf(degrees) : 0.25}
+          />
+        );
+      })}
+    </svg>
+  );
+}

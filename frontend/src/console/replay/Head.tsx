@@ -1,0 +1,119 @@
+/** Whose phase it is, which one, and what stands beside it. */
+import { Select } from "@mantine/core";
+import type { SessionView } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { Link } from "wouter";
+import { useTexts } from "../i18n";
+import { sessionsQuery } from "../queries";
+import { KindBadge } from "../ui/KindBadge";
+import type { Wanted } from "./address";
+import type { Chosen } from "./Player";
+import { isOver, usePhaseName } from "./phaseNames";
+import classes from "./Replay.module.css";
+
+interface HeadProps {
+  readonly session: SessionView;
+  /** Whose phases can be put beside: this session, or the other one that was chosen. */
+  readonly beside: SessionView;
+  readonly wanted: Chosen;
+  readonly onWanted: (wanted: Wanted) => void;
+}
+
+export function Head({ session, beside, wanted, onWanted }: HeadProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.head}>
+      <Link href={`/sessions/${session.id}`} className={classes.back ?? ""}>
+        <Icon name="back" size={16} />
+        <span className="visually-hidden">{t("replay.back")}: </span>
+        {session.participant_code}
+      </Link>
+      <h1 className={classes.title}>{t("replay.title")}</h1>
+      <KindBadge kind={session.kind} />
+      <div className={classes.choices}>
+        <PhaseSelect
+          label={t("replay.phase")}
+          session={session}
+          phase={wanted.phase}
+          onPhase={(phase) => {
+            if (phase !== null) onWanted({ ...wanted, phase, time: 0 });
+          }}
+        />
+        <Beside session={session} beside={beside} wanted={wanted} onWanted={onWanted} />
+      </div>
+    </div>
+  );
+}
+
+function Beside({ session, beside, wanted, onWanted }: HeadProps): JSX.Element {
+  const { t } = useTexts();
+  const others = useQuery(sessionsQuery(session.study_key));
+  const over = (others.data ?? []).filter(
+    ({ ended_at, kind }) => ended_at !== null && kind === session.kind,
+  );
+  const chosen = wanted.beside?.session ?? session.id;
+  const choose = (id: string, phase: number | null) =>
+    onWanted({ ...wanted, beside: phase === null ? null : { session: id, phase } });
+  return (
+    <>
+      <PhaseSelect
+        label={t("replay.beside")}
+        none={t("replay.beside.none")}
+        session={beside}
+        phase={wanted.beside?.phase ?? null}
+        without={beside.id === session.id ? wanted.phase : null}
+        onPhase={(phase) => choose(chosen, phase)}
+      />
+      {wanted.beside !== null && over.length > 1 && (
+        <Select
+          size="xs"
+          styles={{ wrapper: { width: 110 } }}
+          searchable
+          allowDeselect={false}
+          label={t("replay.beside.session")}
+          classNames={{ root: classes.select ?? "", label: classes.selectLabel ?? "" }}
+          value={chosen}
+          data={over.map(({ id, participant_code }) => ({ value: id, label: participant_code }))}
+          onChange={(id) => choose(id ?? session.id, wanted.beside?.phase ?? null)}
+        />
+      )}
+    </>
+  );
+}
+
+interface PhaseSelectProps {
+  readonly label: string;
+  readonly session: SessionView;
+  readonly phase: number | null;
+  readonly onPhase: (phase: number | null) => void;
+  /** What no phase is called; there has to be one where it is left out. */
+  readonly none?: string;
+  readonly without?: number | null;
+}
+
+function PhaseSelect(props: PhaseSelectProps): JSX.Element {
+  const { label, session, phase, onPhase, none, without = null } = props;
+  const nameOf = usePhaseName();
+  const phases = session.phases.filter(({ phase_id }) => phase_id !== without);
+  return (
+    <Select
+      size="xs"
+      styles={{ wrapper: { width: 232 } }}
+      allowDeselect={false}
+      label={label}
+      classNames={{ root: classes.select ?? "", label: classes.selectLabel ?? "" }}
+      value={String(phase ?? "")}
+      data={[
+        ...(none === undefined ? [] : [{ value: "", label: none }]),
+        ...phases.map((one) => ({
+          value: String(one.phase_id),
+          label: nameOf(session, one),
+          disabled: !isOver(one),
+        })),
+      ]}
+      onChange={(value) => onPhase(value === null || value === "" ? null : Number(value))}
+    />
+  );
+}

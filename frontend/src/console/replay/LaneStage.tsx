@@ -1,0 +1,114 @@
+/** One phase in space, with its boxes lighting up as they were touched. */
+import { Center, Loader } from "@mantine/core";
+import type { BlockTones } from "@shared/stage/blocks";
+import { type CameraMode, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
+import { durationOf } from "@shared/stage/motion";
+import { Stage, type StageHandle } from "@shared/stage/Stage";
+import { type Seconds, seconds } from "@shared/units";
+import { type CSSProperties, type JSX, type Ref, useRef } from "react";
+import { useStageTexts } from "../captures/useStageTexts";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { EmptyState } from "../ui/EmptyState";
+import { tonesAt } from "./happened";
+import classes from "./Replay.module.css";
+import { type Lane, useBlocksOf, useFiguresOf } from "./useLane";
+
+interface LaneStageProps {
+  readonly lane: Lane;
+  /** The one that stands beside it: both are shown at the same scale. */
+  readonly other: Lane | null;
+  readonly time: Seconds;
+  readonly mode: CameraMode;
+  readonly ghost: boolean;
+  readonly boxes: boolean;
+  readonly handle: Ref<StageHandle> | undefined;
+}
+
+const NONE = [] as const;
+const NOBODY = { movement: null } as const;
+
+export function LaneStage(props: LaneStageProps): JSX.Element {
+  const { lane, other, time, mode, ghost, boxes, handle } = props;
+  const { t } = useTexts();
+  const texts = useStageTexts();
+  const figures = useFiguresOf(lane, ghost);
+  const beside = useFiguresOf(other ?? NOBODY, false);
+  const blocks = useBlocksOf(lane);
+  const tones = useSteady(tonesAt(lane.replay, time));
+  const isGap = lane.movement?.gaps.some(([begin, end]) => begin < time && time < end) ?? false;
+  const motion = figures[0]?.motion;
+  return (
+    <section className={classes.lane} aria-label={lane.label}>
+      {other !== null && <h2 className={classes.laneName}>{lane.label}</h2>}
+      {motion === undefined ? (
+        <NoFigure lane={lane} />
+      ) : (
+        <div className={classes.stage}>
+          <Stage
+            {...(handle === undefined ? {} : { handle })}
+            figures={figures}
+            blocks={boxes ? blocks : NONE}
+            beside={beside}
+            tones={tones}
+            time={seconds(Math.min(time, durationOf(motion)))}
+            mode={mode}
+            label={t("replay.picture", { phase: lane.label, time: `${time.toFixed(1)} s` })}
+            texts={texts}
+          />
+          {isGap && <span className={classes.gap}>{t("replay.nothing")}</span>}
+          <Legend ghost={figures.length > 1} />
+        </div>
+      )}
+    </section>
+  );
+}
+
+function NoFigure({ lane }: { readonly lane: Lane }): JSX.Element {
+  const { t } = useTexts();
+  if (lane.error !== null) return <Failure error={lane.error} onRetry={lane.retry} />;
+  if (lane.replay.has_movement) {
+    return (
+      <Center className={classes.stage}>
+        <Loader role="status" aria-label={t("stage.loading")} />
+      </Center>
+    );
+  }
+  return (
+    <div className={classes.nobody}>
+      <EmptyState icon="walk" title={t("replay.noMovement")}>
+        {t("replay.noMovement.body")}
+      </EmptyState>
+    </div>
+  );
+}
+
+function Legend({ ghost }: { readonly ghost: boolean }): JSX.Element {
+  const { t } = useTexts();
+  const entries = [
+    { name: t("replay.legend.left"), colour: LEFT_COLOUR },
+    { name: t("replay.legend.right"), colour: RIGHT_COLOUR },
+    ...(ghost ? [{ name: t("replay.legend.participant"), colour: "var(--line-strong)" }] : []),
+  ];
+  return (
+    <ul className={classes.legend}>
+      {entries.map(({ name, colour }) => (
+        <li key={name} style={{ "--mark": colour } as CSSProperties}>
+          {name}
+        </li>
+      ))}
+    </ul>
+  );
+}
+
+/** The same map while it says the same, so that nothing is drawn anew for nothing. */
+function useSteady(tones: BlockTones): BlockTones {
+  const before = useRef(tones);
+  const told = (map: BlockTones) =>
+    [...map]
+      .map((pair) => pair.join(" "))
+      .sort()
+      .join(",");
+  if (told(before.current) !== told(tones)) before.current = tones;
+  return before.current;
+}

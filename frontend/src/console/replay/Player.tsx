@@ -1,0 +1,188 @@
+/** One phase, or two side by side, played on one clock. */
+import { Center, Loader } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
+import { isApiError } from "@shared/api/errors";
+import type { SessionView } from "@shared/api/types";
+import type { CameraMode, LookFrom } from "@shared/stage/figure";
+import type { StageHandle } from "@shared/stage/Stage";
+import { usePlayback } from "@shared/stage/usePlayback";
+import { seconds } from "@shared/units";
+import { type JSX, useMemo, useRef, useState } from "react";
+import { CameraBar } from "../captures/Viewer";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { EmptyState } from "../ui/EmptyState";
+import { addressOf, type PhaseRef, type Wanted } from "./address";
+import { Head } from "./Head";
+import { jumpFrom } from "./happened";
+import { LaneStage } from "./LaneStage";
+import { Options } from "./Options";
+import { usePhaseName } from "./phaseNames";
+import classes from "./Replay.module.css";
+import { ReplayKeys } from "./ReplayKeys";
+import { BackLink } from "./ReplayPage";
+import { Side } from "./Side";
+import { Tracks } from "./Tracks";
+import { Transport } from "./Transport";
+import { useBeside } from "./useBeside";
+import { type Lane, useLane } from "./useLane";
+import { SPEEDS, useReplayKeys } from "./useReplayKeys";
+
+export interface Chosen extends Wanted {
+  readonly phase: number;
+}
+
+interface PlayerProps {
+  readonly session: SessionView;
+  readonly wanted: Chosen;
+  readonly onWanted: (wanted: Wanted) => void;
+}
+
+export function Player(props: PlayerProps): JSX.Element {
+  const { session, wanted } = props;
+  const nameOf = usePhaseName();
+  const own = useMemo(
+    (): PhaseRef => ({ session: session.id, phase: wanted.phase }),
+    [session.id, wanted.phase],
+  );
+  const phase = session.phases.find(({ phase_id }) => phase_id === wanted.phase);
+  const first = useLane(own, phase === undefined ? "" : nameOf(session, phase));
+  const beside = useBeside(session, wanted.beside);
+  const second = useLane(beside.ref, beside.label);
+  return (
+    <div className={classes.page}>
+      <Head {...props} beside={beside.session} />
+      {first.error !== null && <Refused id={session.id} error={first.error} />}
+      {first.error === null && first.lane === null && (
+        <Center mih={320}>
+          <Loader />
+        </Center>
+      )}
+      {first.lane !== null && (
+        <Playing
+          {...props}
+          lanes={second.lane === null ? [first.lane] : [first.lane, second.lane]}
+          refused={second.error}
+        />
+      )}
+    </div>
+  );
+}
+
+/** Why a phase cannot be replayed, in the reader's language where it is foreseen. */
+function Refused({ id, error }: { readonly id: string; readonly error: Error }): JSX.Element {
+  const { t } = useTexts();
+  const known = isApiError(error, "gone")
+    ? ("erased" as const)
+    : isApiError(error, "not_now")
+      ? ("running" as const)
+      : null;
+  return (
+    <div className={classes.alone}>
+      {known === null ? (
+        <Failure error={error} />
+      ) : (
+        <EmptyState
+          icon={known === "erased" ? "lock" : "clock"}
+          title={t(`replay.${known}`)}
+          action={<BackLink id={id} />}
+        >
+          {t(`replay.${known}.body`)}
+        </EmptyState>
+      )}
+    </div>
+  );
+}
+
+interface PlayingProps extends PlayerProps {
+  readonly lanes: readonly Lane[];
+  readonly refused: Error | null;
+}
+
+const CAMERAS: readonly CameraMode[] = ["orbit", "follow", "eyes"];
+
+function Playing({ session, wanted, lanes, refused }: PlayingProps): JSX.Element {
+  const duration = seconds(Math.max(...lanes.map(({ replay }) => replay.duration_s)));
+  const playback = usePlayback(duration, { time: seconds(wanted.time), loop: false });
+  const [mode, setMode] = useState<CameraMode>("orbit");
+  const [ghost, setGhost] = useState(true);
+  const [boxes, setBoxes] = useState(true);
+  const [at, setAt] = useState(0);
+  const [help, helps] = useDisclosure();
+  const stages = useStages();
+  const told = lanes[Math.min(at, lanes.length - 1)] as Lane;
+  const link = () =>
+    new URL(addressOf(session.id, { ...wanted, time: playback.time }), window.location.href).href;
+  const rate = lanes.find(({ movement }) => movement !== null)?.movement?.participant.rateHz ?? 30;
+  useReplayKeys({
+    toggle: playback.toggle,
+    by: (seconds_) => playback.seek(seconds(playback.time + seconds_)),
+    frame: (frames) => playback.seek(seconds((Math.round(playback.time * rate) + frames) / rate)),
+    jump: (way) => {
+      const to = jumpFrom(told.all, playback.time, way);
+      if (to !== null) playback.seek(seconds(to));
+    },
+    end: (way) => playback.seek(way < 0 ? seconds(0) : duration),
+    camera: () => setMode(CAMERAS[(CAMERAS.indexOf(mode) + 1) % CAMERAS.length] ?? "orbit"),
+    speed: (way) => {
+      const next = SPEEDS[(SPEEDS as readonly number[]).indexOf(playback.speed) + way];
+      if (next !== undefined) playback.setSpeed(next);
+    },
+    help: helps.toggle,
+  });
+  return (
+    <>
+      <div className={classes.main}>
+        <Options
+          lanes={lanes}
+          ghost={ghost}
+          boxes={boxes}
+          onGhost={setGhost}
+          onBoxes={setBoxes}
+          camera={<CameraBar mode={mode} hasEyes stage={stages.all} onMode={setMode} />}
+        />
+        {refused !== null && <Failure error={refused} />}
+        <div className={classes.stages} data-lanes={lanes.length}>
+          {lanes.map((lane, index) => (
+            <LaneStage
+              key={`${lane.ref.session} ${lane.ref.phase}`}
+              lane={lane}
+              other={lanes[1 - index] ?? null}
+              time={playback.time}
+              mode={mode}
+              ghost={ghost}
+              boxes={boxes}
+              handle={stages.refs[index] ?? stages.refs[0]}
+            />
+          ))}
+        </div>
+        <Transport
+          lane={told}
+          playback={playback}
+          duration={duration}
+          link={link}
+          onHelp={helps.open}
+        />
+        <Tracks lanes={lanes} duration={duration} time={playback.time} onSeek={playback.seek} />
+      </div>
+      <Side lanes={lanes} at={at} onAt={setAt} playback={playback} />
+      <ReplayKeys opened={help} onClose={helps.close} />
+    </>
+  );
+}
+
+/** The stages' cameras, one by one and moved together. */
+function useStages() {
+  const first = useRef<StageHandle>(null);
+  const second = useRef<StageHandle>(null);
+  const refs = [first, second] as const;
+  const all = useRef<StageHandle>({
+    look: (from: LookFrom) => {
+      for (const { current } of refs) current?.look(from);
+    },
+    zoom: (factor: number) => {
+      for (const { current } of refs) current?.zoom(factor);
+    },
+  });
+  return { refs, all };
+}

@@ -1,0 +1,84 @@
+/** Any phase of a session in space, in step with everything that is known of it. */
+import type { SessionView } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useEffect, useState } from "react";
+import { Link } from "wouter";
+import { useTexts } from "../i18n";
+import { sessionQuery } from "../queries";
+import { EmptyState } from "../ui/EmptyState";
+import { Loaded } from "../ui/Loaded";
+import { useTitle } from "../ui/useTitle";
+import { addressOf, type Wanted, wantedFrom } from "./address";
+import { Player } from "./Player";
+import { isOver } from "./phaseNames";
+import classes from "./Replay.module.css";
+
+export function ReplayPage({ id }: { readonly id: string }): JSX.Element {
+  return (
+    <Loaded query={useQuery(sessionQuery(id))}>{(session) => <Found session={session} />}</Loaded>
+  );
+}
+
+function Found({ session }: { readonly session: SessionView }): JSX.Element {
+  const { t } = useTexts();
+  const { wanted, arrival, setWanted } = useWanted(session.id);
+  useTitle(t("replay.page", { code: session.participant_code }));
+  const first = session.phases.find((phase) => phase.status === "done" && phase.kind === "task");
+  const phase = wanted.phase ?? (first ?? session.phases.find(isOver))?.phase_id ?? null;
+  if (phase === null) {
+    return (
+      <div className={classes.alone}>
+        <EmptyState icon="walk" title={t("replay.empty")} action={<BackLink id={session.id} />}>
+          {t("replay.empty.body")}
+        </EmptyState>
+      </div>
+    );
+  }
+  return (
+    <Player
+      // Another phase begins at its own beginning, and a link at its moment.
+      key={`${phase} ${arrival}`}
+      session={session}
+      wanted={{ ...wanted, phase }}
+      onWanted={setWanted}
+    />
+  );
+}
+
+export function BackLink({ id }: { readonly id: string }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Link href={`/sessions/${id}`} className={classes.back ?? ""}>
+      <Icon name="back" size={16} />
+      {t("replay.back")}
+    </Link>
+  );
+}
+
+/** What the address asks for; what is chosen on the page is written back into it. */
+function useWanted(session: string) {
+  const [{ wanted, arrival }, setState] = useState(() => ({
+    wanted: wantedFrom(window.location.hash, session),
+    arrival: 0,
+  }));
+  useEffect(() => {
+    // A link to another moment that is followed in the same window.
+    const onHash = () =>
+      setState((before) => ({
+        wanted: wantedFrom(window.location.hash, session),
+        arrival: before.arrival + 1,
+      }));
+    window.addEventListener("hashchange", onHash);
+    return () => window.removeEventListener("hashchange", onHash);
+  }, [session]);
+  return {
+    wanted,
+    /** How many links were followed to here. */
+    arrival,
+    setWanted: (next: Wanted) => {
+      window.history.replaceState(null, "", addressOf(session, next));
+      setState({ wanted: next, arrival });
+    },
+  };
+}

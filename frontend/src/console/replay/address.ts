@@ -1,0 +1,47 @@
+/** Where a replay is in the address: which phase, which moment, and what stands beside it. */
+
+/** A phase of any session. */
+export interface PhaseRef {
+  readonly session: string;
+  readonly phase: number;
+}
+
+export interface Wanted {
+  readonly phase: number | null;
+  readonly time: number;
+  readonly beside: PhaseRef | null;
+}
+
+/** `?phase=2&t=12.5&with=5`; `with=SESSION:5` for a phase of another session. */
+export function wantedFrom(address: string, session: string): Wanted {
+  const query = new URLSearchParams(address.split("?")[1] ?? "");
+  const time = Number(query.get("t"));
+  return {
+    phase: phaseNumber(query.get("phase")),
+    time: Number.isFinite(time) ? Math.max(0, time) : 0,
+    beside: besideFrom(query.get("with"), session),
+  };
+}
+
+export function addressOf(session: string, { phase, time, beside }: Wanted): string {
+  const parts = [
+    ...(phase === null ? [] : [`phase=${phase}`]),
+    ...(time > 0 ? [`t=${Number(time.toFixed(3))}`] : []),
+    ...(beside === null ? [] : [`with=${named(beside, session)}`]),
+  ];
+  const query = parts.length > 0 ? `?${parts.join("&")}` : "";
+  return `#/sessions/${encodeURIComponent(session)}/replay${query}`;
+}
+
+const named = ({ session, phase }: PhaseRef, own: string): string =>
+  session === own ? String(phase) : `${encodeURIComponent(session)}:${phase}`;
+
+function besideFrom(text: string | null, own: string): PhaseRef | null {
+  const [first = "", second] = (text ?? "").split(":");
+  const phase = phaseNumber(second ?? first);
+  if (phase === null) return null;
+  return { session: second === undefined ? own : first, phase };
+}
+
+const phaseNumber = (text: string | null): number | null =>
+  text !== null && /^\d{1,9}$/.test(text) ? Number(text) : null;

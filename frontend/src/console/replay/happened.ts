@@ -1,0 +1,170 @@
+/** What happened in a phase, in order, and what the boxes mean at a moment. */
+import type { Replay, ReplayContact, ReplayMoment } from "@shared/api/replays";
+import type { BlockTone, BlockTones } from "@shared/stage/blocks";
+
+interface At {
+  readonly key: string;
+  readonly time: number;
+}
+
+export interface Touch extends At {
+  readonly kind: "touch";
+  readonly surfaceKind: string;
+  readonly box: number | null;
+  readonly side: string | null;
+  readonly parts: readonly string[];
+  readonly effect: string;
+  readonly end: number;
+}
+
+export interface Done extends At {
+  readonly kind: "done";
+  readonly number: number;
+  readonly duration: number;
+}
+
+export interface Clock extends At {
+  readonly kind: "clock";
+  readonly what: ReplayMoment["what"];
+  readonly cause: string | null;
+}
+
+export interface Note extends At {
+  readonly kind: "note";
+  readonly text: string;
+  readonly by: string;
+}
+
+export type Happening = Touch | Done | Clock | Note;
+
+/** Everything in order of time; parts that touch the same surface at once are one touch. */
+export function happenings(replay: Replay): readonly Happening[] {
+  const clock = replay.moments.map(
+    ({ what, t_s, cause }, at): Clock => ({
+      kind: "clock",
+      key: `clock ${at}`,
+      time: t_s,
+      what,
+      cause,
+    }),
+  );
+  const done = replay.completions.map(
+    ({ number, t_s, duration_s }): Done => ({
+      kind: "done",
+      key: `done ${number}`,
+      time: t_s,
+      number,
+      duration: duration_s,
+    }),
+  );
+  const notes = replay.notes.map(
+    ({ id, t_s, text, by }): Note => ({ kind: "note", key: id, time: t_s, text, by }),
+  );
+  const all = [...clock, ...touches(replay.contacts), ...done, ...notes];
+  return all.sort((one, other) => one.time - other.time);
+}
+
+/** What a touch was judged to be counts for those that are united with it, in this order. */
+const RANK = ["out_of_order", "wrong_part", "early", "green", "side", "target", "start"];
+const rank = (effect: string): number =>
+  (RANK.indexOf(effect) + RANK.length + 1) % (RANK.length + 1);
+
+export function touches(contacts: readonly ReplayContact[]): readonly Touch[] {
+  const bySurface = new Map<string, ReplayContact[]>();
+  for (const contact of contacts) {
+    bySurface.set(contact.surface, [...(bySurface.get(contact.surface) ?? []), contact]);
+  }
+  return [...bySurface.values()].flatMap(united);
+}
+
+function united(contacts: readonly ReplayContact[]): readonly Touch[] {
+  const found: Touch[] = [];
+  for (const one of [...contacts].sort((a, b) => a.begin_s - b.begin_s)) {
+    const before = found.at(-1);
+    if (before !== undefined && one.begin_s <= before.end) {
+      found[found.length - 1] = {
+        ...before,
+        end: Math.max(before.end, one.end_s),
+        parts: [...new Set([...before.parts, one.body_part])],
+        effect: rank(one.effect) < rank(before.effect) ? one.effect : before.effect,
+      };
+    } else found.push(touchOf(one));
+  }
+  return found;
+}
+
+const touchOf = (one: ReplayContact): Touch => ({
+  kind: "touch",
+  key: `${one.surface} ${one.begin_s}`,
+  time: one.begin_s,
+  end: one.end_s,
+  surfaceKind: one.surface_kind,
+  box: one.box,
+  // hand/2/left, hand/2/front_rim/top
+  side: one.surface_kind === "side" ? (one.surface.split("/")[2] ?? null) : null,
+  parts: [one.body_part],
+  effect: one.effect,
+});
+
+const ODD = new Set(["out_of_order", "wrong_part", "early"]);
+
+export const toneOf = ({
+  surfaceKind,
+  effect,
+}: Pick<Touch, "surfaceKind" | "effect">): BlockTone =>
+  surfaceKind === "side"
+    ? "bad"
+    : ODD.has(effect)
+      ? "odd"
+      : effect === "green"
+        ? "good"
+        : "touched";
+
+/** A touch that is shorter is shown as long, seconds. */
+const LEAST = 0.15;
+
+/**
+ * What the blocks mean at a moment: panels stay good until the task is done, everything else glows
+ * while it is touched.
+ */
+export function tonesAt(
+  { contacts, completions }: Pick<Replay, "contacts" | "completions">,
+  time: number,
+): BlockTones {
+  const tones = new Map<string, BlockTone>();
+  const since = completions.reduce(
+    (last, { t_s }) => (t_s <= time ? Math.max(last, t_s) : last),
+    -1,
+  );
+  for (const { surface, surface_kind, effect, begin_s, end_s } of contacts) {
+    if (begin_s > time) continue;
+    const tone = toneOf({ surfaceKind: surface_kind, effect });
+    const on = time <= Math.max(end_s, begin_s + LEAST);
+    if (tone === "good" ? begin_s > since : on && tones.get(surface) !== "good") {
+      tones.set(surface, tone);
+    }
+  }
+  return tones;
+}
+
+/** The last thing that happened up to a time; -1 before the first. */
+export function latestAt(all: readonly At[], time: number): number {
+  let low = 0;
+  let high = all.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if ((all[middle]?.time ?? 0) <= time + 1e-6) low = middle + 1;
+    else high = middle;
+  }
+  return low - 1;
+}
+
+/** The time to jump to: the nearest thing before or after; null where there is none. */
+export function jumpFrom(all: readonly At[], time: number, way: -1 | 1): number | null {
+  const apart = 0.02;
+  const found =
+    way > 0
+      ? all.find((one) => one.time > time + apart)
+      : all.findLast((one) => one.time < time - apart);
+  return found?.time ?? null;
+}

@@ -1,0 +1,176 @@
+import { decodeMovement, type Replay } from "@shared/api/replays";
+import { describe, expect, it } from "vitest";
+import { addressOf, wantedFrom } from "./address";
+import { errorsAt, largest, overall } from "./errorsAt";
+import { happenings, jumpFrom, latestAt, tonesAt, touches } from "./happened";
+import { activeAt, isActive, wallAt } from "./times";
+
+const contact = (surface: string, begin_s: number, end_s: number, more: object = {}) => ({
+  surface,
+  surface_kind: surface.split("/")[2] === "panel" ? "panel" : "side",
+  box: 2,
+  body_part: "RightHand",
+  effect: "side",
+  begin_s,
+  end_s,
+  begin_active_s: begin_s,
+  end_active_s: end_s,
+  ...more,
+});
+const completion = (number: number, t_s: number) => ({
+  number,
+  t_s,
+  active_s: t_s,
+  duration_s: t_s,
+  out_of_order_touches: 0,
+});
+/** Active for 10 s, standing for 5 s, active again; a second of the headset is half a real one. */
+const paused = {
+  active: [
+    { begin_s: 0, end_s: 10, begin_active_s: 0, end_active_s: 10 },
+    { begin_s: 15, end_s: 65, begin_active_s: 10, end_active_s: 60 },
+  ],
+  runs: [{ epoch: 1, begin_s: 0, end_s: 65, begin_utc: "2026-03-02T12:00:00Z", uncertainty_ms: 1 }],
+  time_scale: 2,
+};
+
+describe("the address of a moment", () => {
+  it("leads back to the same phase, time and comparison", () => {
+    const wanted = { phase: 2, time: 12.5, beside: { session: "own", phase: 5 } };
+    const address = addressOf("own", wanted);
+    expect(address).toBe("#/sessions/own/replay?phase=2&t=12.5&with=5");
+    expect(wantedFrom(address, "own")).toEqual(wanted);
+    const other = { ...wanted, beside: { session: "other", phase: 3 } };
+    expect(wantedFrom(addressOf("own", other), "own")).toEqual(other);
+  });
+
+  it("asks for nothing where it makes no sense", () => {
+    const nothing = { phase: null, time: 0, beside: null };
+    expect(wantedFrom("#/sessions/own/replay", "own")).toEqual(nothing);
+    expect(wantedFrom("#/sessions/own/replay?phase=x&t=-3&with=a:", "own")).toEqual(nothing);
+  });
+});
+
+describe("the times of a moment", () => {
+  it("let the active time stand in a pause", () => {
+    expect([9, 12, 17, 99].map((time) => activeAt(paused, time))).toEqual([9, 10, 12, 60]);
+    expect([9, 12, 17, 65].map((time) => isActive(paused, time))).toEqual([
+      true,
+      false,
+      true,
+      false,
+    ]);
+  });
+
+  it("count the hour by the server's seconds", () => {
+    expect(wallAt(paused, 10)?.toISOString()).toBe("2026-03-02T12:00:05.000Z");
+    expect(wallAt({ runs: [], time_scale: 1 }, 10)).toBeNull();
+  });
+});
+
+describe("what happened", () => {
+  it("is one touch where several parts touch the same surface at once", () => {
+    const found = touches([
+      contact("hand/2/left", 1, 3),
+      contact("hand/2/left", 2, 4, { body_part: "RightLowerArm" }),
+      contact("hand/2/left", 6, 7),
+    ]);
+    expect(found.map(({ time, end, parts }) => [time, end, parts])).toEqual([
+      [1, 4, ["RightHand", "RightLowerArm"]],
+      [6, 7, ["RightHand"]],
+    ]);
+  });
+
+  it("keeps what was judged of parts that touch together", () => {
+    const [one] = touches([
+      contact("hand/2/panel", 1, 3, { effect: "none" }),
+      contact("hand/2/panel", 2, 3, { effect: "green" }),
+    ]);
+    expect(one?.effect).toBe("green");
+  });
+
+  it("is in order of time, and leads from one to the next", () => {
+    const all = happenings({
+      moments: [{ what: "started", t_s: 0, active_s: 0, cause: null }],
+      contacts: [contact("hand/2/left", 1, 3)],
+      completions: [completion(1, 2)],
+      notes: [{ id: "n", text: "Asked for water", by: "account:a", at: "", t_s: 1.5 }],
+    } as unknown as Replay);
+    expect(all.map(({ kind }) => kind)).toEqual(["clock", "touch", "note", "done"]);
+    expect(latestAt(all, 1.6)).toBe(2);
+    expect([jumpFrom(all, 1, 1), jumpFrom(all, 1, -1), jumpFrom(all, 2, 1)]).toEqual([
+      1.5,
+      0,
+      null,
+    ]);
+  });
+});
+
+describe("the boxes", () => {
+  const phase = {
+    contacts: [
+      contact("hand/2/panel", 1, 1.5, { effect: "green" }),
+      contact("hand/2/left", 2, 3),
+      contact("hand/3/panel", 2, 3, { effect: "out_of_order" }),
+    ],
+    completions: [completion(1, 8)],
+  };
+
+  it("keep a panel good until the task is done, and glow while they are touched", () => {
+    expect([...tonesAt(phase, 0.5)]).toEqual([]);
+    expect([...tonesAt(phase, 2.5)]).toEqual([
+      ["hand/2/panel", "good"],
+      ["hand/2/left", "bad"],
+      ["hand/3/panel", "odd"],
+    ]);
+    expect([...tonesAt(phase, 5)]).toEqual([["hand/2/panel", "good"]]);
+    expect([...tonesAt(phase, 8)]).toEqual([]);
+  });
+});
+
+describe("joint errors", () => {
+  const errors = {
+    joints: ["Head", "LeftHand", "RightHand"],
+    frames: 2,
+    rateHz: 10,
+    values: Float32Array.from([0, 0, 0, Math.PI / 2, Number.NaN, Math.PI / 6]),
+  };
+
+  it("are those of the nearest moment, the largest first, what is unknown left out", () => {
+    const now = errorsAt(errors, 0.12);
+    expect(now[1]).toEqual({ joint: "LeftHand", degrees: null });
+    expect(largest(now, 5).map(({ joint }) => joint)).toEqual(["Head", "RightHand"]);
+    expect(overall(now)).toBeCloseTo(Math.sqrt((90 ** 2 + 30 ** 2) / 2), 3);
+    expect(overall(errorsAt({ ...errors, frames: 0, values: new Float32Array() }, 0))).toBeNull();
+  });
+});
+
+describe("the bytes of a movement", () => {
+  const bytesOf = (bodies: readonly string[], numbers: readonly number[]): ArrayBuffer => {
+    const header = {
+      ...{ names: ["Hips"], parents: [-1], bodies, frames: 1, rate_hz: 30, gaps: [[1, 2]] },
+      ...{ error_joints: ["Head"], error_frames: bodies.length - 1, error_rate_hz: 10 },
+    };
+    const text = JSON.stringify(header);
+    const padded = text + " ".repeat((4 - (text.length % 4)) % 4);
+    const bytes = new Uint8Array(4 + padded.length + 4 * numbers.length);
+    new DataView(bytes.buffer).setUint32(0, padded.length, true);
+    bytes.set(new TextEncoder().encode(padded), 4);
+    bytes.set(new Uint8Array(Float32Array.from(numbers).buffer), 4 + padded.length);
+    return bytes.buffer;
+  };
+
+  it("hold both bodies and the errors, or the participant alone", () => {
+    const both = decodeMovement(bytesOf(["target", "actual"], [1, 2, 3, 4, 5, 6, 7]));
+    expect([...both.participant.positions]).toEqual([1, 2, 3]);
+    expect([...(both.avatar?.positions ?? [])]).toEqual([4, 5, 6]);
+    expect([...both.errors.values]).toEqual([7]);
+    expect(both.gaps).toEqual([[1, 2]]);
+    expect(decodeMovement(bytesOf(["target"], [1, 2, 3])).avatar).toBeNull();
+  });
+
+  it("are refused where they are cut off", () => {
+    expect(() => decodeMovement(bytesOf(["target"], [1, 2]))).toThrow("Expected 3 numbers");
+    expect(() => decodeMovement(new ArrayBuffer(2))).toThrow("hold no movement");
+  });
+});

@@ -1,0 +1,67 @@
+/** Each study with its size, one session's mean, and how many more fit. */
+import type { StudyRoom } from "@shared/api/housekeeping";
+import { number } from "@shared/format";
+import type { JSX } from "react";
+import { Link } from "wouter";
+import { useTexts } from "../i18n";
+import { bytes } from "../ui/bytes";
+import { roughly } from "./roughly";
+import classes from "./Storage.module.css";
+
+export function StudyRooms({ studies }: { readonly studies: readonly StudyRoom[] }): JSX.Element {
+  const { t } = useTexts();
+  if (studies.length === 0) return <p className={classes.soft}>{t("storage.studies.none")}</p>;
+  return (
+    <>
+      <table className={`${classes.table} numbers`}>
+        <thead>
+          <tr>
+            <th scope="col">{t("storage.study")}</th>
+            <th scope="col">{t("storage.study.sessions")}</th>
+            <th scope="col">{t("storage.study.size")}</th>
+            <th scope="col">{t("storage.study.mean")}</th>
+            <th scope="col">{t("storage.study.room")}</th>
+          </tr>
+        </thead>
+        <tbody>
+          {studies.map((study) => (
+            <StudyRow key={study.key} study={study} />
+          ))}
+        </tbody>
+      </table>
+      <p className={classes.soft}>{t("storage.studies.note")}</p>
+    </>
+  );
+}
+
+function StudyRow({ study }: { readonly study: StudyRoom }): JSX.Element {
+  const { t, language } = useTexts();
+  const { mean_bytes: mean, measured_kind: kind, room_for: room } = study;
+  return (
+    <tr>
+      <td>
+        <Link href={`/studies/${study.key}/sessions`}>{study.title}</Link>
+        <span className={classes.about}>{study.key}</span>
+      </td>
+      <td>{number(study.sessions, language, 0)}</td>
+      <td>{bytes(study.bytes, language)}</td>
+      <td>
+        {mean === null || kind === null ? (
+          <span className={classes.about}>{t("storage.study.unmeasured")}</span>
+        ) : (
+          <>
+            {bytes(mean, language)}
+            <span className={classes.about}>
+              {t("storage.study.mean.of", { count: study.measured, kind: t(`kind.${kind}`) })}
+            </span>
+          </>
+        )}
+      </td>
+      <td>
+        {room === null
+          ? "–"
+          : t("storage.study.room.of", { number: number(roughly(room), language, 0) })}
+      </td>
+    </tr>
+  );
+}

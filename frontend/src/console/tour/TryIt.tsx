@@ -1,0 +1,42 @@
+/** One click: a scripted participant goes through the study while one watches. */
+import { Button } from "@mantine/core";
+import type { StudyDetail } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import type { JSX } from "react";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { useMay } from "../may";
+import classes from "./Tour.module.css";
+import { useStartTryout } from "./useTryout";
+
+interface TryItProps {
+  readonly study: Pick<StudyDetail, "key" | "languages" | "archived_at">;
+}
+
+/** In a place that is empty: the offer with what it means. */
+export function TryIt({ study }: TryItProps): JSX.Element | null {
+  const { t, language } = useTexts();
+  const may = useMay();
+  const start = useStartTryout();
+  if (!may("tryout") || study.archived_at !== null) return null;
+  return (
+    <div className={classes.offer}>
+      <Button
+        variant="light"
+        loading={start.isPending}
+        leftSection={<Icon name="play" size={18} />}
+        onClick={() =>
+          start.mutate({ studyKey: study.key, language: spoken(study.languages, language) })
+        }
+      >
+        {t("try.button")}
+      </Button>
+      <p>{t("try.explain")}</p>
+      {start.isError && <Failure error={start.error} />}
+    </div>
+  );
+}
+
+/** The page's language where the study has it. */
+export const spoken = (languages: readonly string[], wanted: string): string =>
+  languages.includes(wanted) ? wanted : (languages[0] ?? "en");

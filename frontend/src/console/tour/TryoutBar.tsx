@@ -1,0 +1,148 @@
+/**
+ * While a scripted participant is here: where it is, the way to it, and the way out, on every page.
+ *
+ * The page goes to its session as soon as there is one, and the tour begins if it was never seen.
+ */
+import { Button, Loader } from "@mantine/core";
+import type { Tryout } from "@shared/api/housekeeping";
+import { number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { useQueryClient } from "@tanstack/react-query";
+import { type JSX, useEffect, useRef, useState } from "react";
+import { useHashLocation } from "wouter/use-hash-location";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import classes from "./Tour.module.css";
+import { spoken } from "./TryIt";
+import { startTour, useTourStep, wasSeen } from "./tourStore";
+import { useStartTryout, useStopTryout, useTryout } from "./useTryout";
+
+const isOn = ({ state }: Tryout): boolean => state === "starting" || state === "running";
+
+export function TryoutBar(): JSX.Element | null {
+  const tryout = useTryout(true);
+  const [address, navigate] = useHashLocation();
+  const [dismissed, dismiss] = useState<string | null>(null);
+  const queries = useQueryClient();
+  const seenStarting = useRef(false);
+  const session = tryout?.session_id ?? null;
+  useEffect(() => {
+    if (tryout?.state === "starting" && tryout.mine) seenStarting.current = true;
+    if (session === null || !seenStarting.current) return;
+    // Only who saw it begin is taken along, and only once.
+    seenStarting.current = false;
+    void queries.invalidateQueries({ queryKey: ["studies"] });
+    navigate(`/sessions/${session}`);
+    if (!wasSeen()) startTour();
+  }, [tryout, session, queries, navigate]);
+  const wasOn = useRef(false);
+  if (tryout !== null && isOn(tryout)) wasOn.current = true;
+  // What ended before the page was opened is nobody's news.
+  if (tryout === null || !wasOn.current || dismissed === tryout.started_at) return null;
+  const watching = session !== null && address === `/sessions/${session}`;
+  return (
+    <Bar
+      tryout={tryout}
+      watching={watching}
+      onWatch={() => navigate(`/sessions/${session}`)}
+      onClose={() => dismiss(tryout.started_at)}
+    />
+  );
+}
+
+interface BarProps {
+  readonly tryout: Tryout;
+  readonly watching: boolean;
+  readonly onWatch: () => void;
+  readonly onClose: () => void;
+}
+
+function Bar({ tryout, watching, onWatch, onClose }: BarProps): JSX.Element {
+  const { t } = useTexts();
+  const stop = useStopTryout();
+  const touring = useTourStep() !== null;
+  return (
+    <section className={classes.bar} data-state={tryout.state} aria-label={t("try.label")}>
+      {tryout.state === "starting" ? <Loader size="xs" /> : <Icon name="body" size={18} />}
+      <Words tryout={tryout} />
+      <div className={classes.buttons}>
+        {watching && isOn(tryout) && !touring && (
+          <Button size="compact-sm" variant="subtle" onClick={startTour}>
+            {t("try.tour")}
+          </Button>
+        )}
+        {!watching && tryout.session_id !== null && (
+          <Button size="compact-sm" variant="default" onClick={onWatch}>
+            {t("try.watch")}
+          </Button>
+        )}
+        {isOn(tryout) ? (
+          <Button
+            size="compact-sm"
+            variant="default"
+            loading={stop.isPending}
+            leftSection={<Icon name="stop" size={14} />}
+            onClick={() => stop.mutate()}
+          >
+            {t("try.stop")}
+          </Button>
+        ) : (
+          <>
+            {tryout.state === "failed" && <Again tryout={tryout} />}
+            <Button size="compact-sm" variant="default" onClick={onClose}>
+              {t("try.dismiss")}
+            </Button>
+          </>
+        )}
+      </div>
+      {stop.isError && <Failure error={stop.error} />}
+    </section>
+  );
+}
+
+function Words({ tryout }: { readonly tryout: Tryout }): JSX.Element {
+  const { t, language } = useTexts();
+  const { state, step, trouble } = tryout;
+  if (state === "failed") {
+    return (
+      <div className={classes.words} role="alert">
+        <strong>{t(tryout.session_id === null ? "try.failed.start" : "try.failed")}</strong>
+        <span>{[trouble?.message, trouble?.remedy].filter(Boolean).join(" ")}</span>
+      </div>
+    );
+  }
+  const title = {
+    starting: t("try.starting"),
+    running: t("try.label"),
+    done: t("try.done"),
+    stopped: t("try.stopped"),
+  }[state];
+  const detail =
+    state === "running"
+      ? [step, t("try.speed", { speed: number(tryout.speed, language, 1) })]
+      : state === "starting"
+        ? [t("try.starting.body")]
+        : [];
+  return (
+    <div className={classes.words} role="status">
+      <strong>{title}</strong>
+      <span className="numbers">{detail.filter(Boolean).join(" · ")}</span>
+    </div>
+  );
+}
+
+function Again({ tryout }: { readonly tryout: Tryout }): JSX.Element {
+  const { t, language } = useTexts();
+  const start = useStartTryout();
+  return (
+    <Button
+      size="compact-sm"
+      loading={start.isPending}
+      onClick={() =>
+        start.mutate({ studyKey: tryout.study_key, language: spoken([language], language) })
+      }
+    >
+      {t("try.again")}
+    </Button>
+  );
+}

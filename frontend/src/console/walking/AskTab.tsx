@@ -1,0 +1,196 @@
+/** Asking a model: a path is drawn in a scene, and the durations of walks along it are drawn. */
+import { NumberInput, Select } from "@mantine/core";
+import type { ModelListed, Prediction, SceneListed } from "@shared/api/walking";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useReducer, useState } from "react";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { Loaded } from "../ui/Loaded";
+import { DurationPanel } from "./DurationPanel";
+import { changedPath, isWay, NO_PATH } from "./drawnPath";
+import { NoModel } from "./NoModel";
+import { PathPanel } from "./PathPanel";
+import { modelsQuery, predictionQuery, sceneQuery, scenesQuery } from "./queries";
+import { SlicePanel } from "./SlicePanel";
+import classes from "./Walking.module.css";
+
+export const SEED = 1;
+const COUNT = 500;
+const SHOWN = 24;
+
+export function AskTab(): JSX.Element {
+  const scenes = useQuery(scenesQuery);
+  return (
+    <Loaded query={useQuery(modelsQuery)}>
+      {(models) => {
+        const ready = models.filter(({ state }) => state === "ready");
+        if (ready.length === 0) return <NoModel models={models} />;
+        return <Loaded query={scenes}>{(all) => <Asking models={ready} scenes={all} />}</Loaded>;
+      }}
+    </Loaded>
+  );
+}
+
+interface AskingProps {
+  readonly models: readonly ModelListed[];
+  readonly scenes: readonly SceneListed[];
+}
+
+interface Settings {
+  readonly stature: number | null;
+  readonly count: number;
+  readonly seed: number;
+}
+
+function Asking({ models, scenes }: AskingProps): JSX.Element {
+  const { t } = useTexts();
+  const [modelId, setModelId] = useState(models[0]?.id ?? "");
+  const [sceneKey, setSceneKey] = useState(scenes.find(({ shipped }) => shipped)?.key ?? "");
+  const [path, change] = useReducer(changedPath, NO_PATH);
+  const [planned, setPlanned] = useState(true);
+  const [settings, set] = useState<Settings>({ stature: null, count: COUNT, seed: SEED });
+  const model = models.find(({ id }) => id === modelId) ?? models[0];
+  const scene = useQuery({ ...sceneQuery(sceneKey), enabled: sceneKey !== "" });
+  const query = useQuery({
+    ...predictionQuery(model?.id ?? "", {
+      scene: sceneKey,
+      points_m: ends(path.points, planned).map(([x, y]) => [x, y]),
+      planned,
+      stature_m: settings.stature,
+      count: settings.count,
+      seed: settings.seed,
+      shown: SHOWN,
+    }),
+    enabled: model !== undefined && isWay(path.points),
+  });
+  // An answer to another question stays while the next is computed, but not beyond the path.
+  const found = isWay(path.points) && !query.isError ? query.data : undefined;
+  return (
+    <div className={classes.ask}>
+      <div className={classes.column}>
+        <div className={classes.choices}>
+          <Select
+            label={t("walking.model")}
+            data={models.map(({ id, title, kind }) => ({
+              value: id,
+              label: kind === "synthetic" ? t("walking.model.synthetic", { title }) : title,
+            }))}
+            value={model?.id ?? null}
+            onChange={(value) => value !== null && setModelId(value)}
+            allowDeselect={false}
+          />
+          <Select
+            label={t("walking.scene")}
+            data={scenes.map(({ key, title }) => ({ value: key, label: title }))}
+            value={sceneKey}
+            onChange={(value) => {
+              if (value === null) return;
+              setSceneKey(value);
+              change({ do: "set", points: [] });
+            }}
+            allowDeselect={false}
+          />
+        </div>
+        <Loaded query={scene}>
+          {(there) => (
+            <PathPanel
+              scene={there}
+              path={path}
+              planned={planned}
+              prediction={found}
+              onPlanned={setPlanned}
+              onChange={change}
+            />
+          )}
+        </Loaded>
+        <SettingsRow settings={settings} onChange={set} />
+      </div>
+      <div className={classes.column} aria-busy={query.isFetching}>
+        <Answer
+          model={model}
+          prediction={found}
+          error={query.isError && isWay(path.points) ? query.error : null}
+          busy={query.isFetching}
+        />
+      </div>
+    </div>
+  );
+}
+
+/** Between two ends the server plans; what lies between them is not part of that question. */
+const ends = <T,>(points: readonly T[], planned: boolean): readonly T[] =>
+  planned && points.length > 2 ? points.filter((_, at) => at % (points.length - 1) === 0) : points;
+
+interface AnswerProps {
+  readonly model: ModelListed | undefined;
+  readonly prediction: Prediction | undefined;
+  readonly error: Error | null;
+  readonly busy: boolean;
+}
+
+function Answer({ model, prediction, error, busy }: AnswerProps): JSX.Element {
+  const { t } = useTexts();
+  if (error !== null) return <Failure error={error} />;
+  if (prediction === undefined || model === undefined) {
+    return (
+      <section className={classes.card}>
+        <p className={classes.soft} role="status">
+          {t(busy ? "walking.computing" : "walking.draw.first")}
+        </p>
+      </section>
+    );
+  }
+  return (
+    <>
+      <DurationPanel prediction={prediction} busy={busy} />
+      <SlicePanel modelId={model.id} prediction={prediction} />
+    </>
+  );
+}
+
+interface SettingsRowProps {
+  readonly settings: Settings;
+  readonly onChange: (settings: Settings) => void;
+}
+
+function SettingsRow({ settings, onChange }: SettingsRowProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.choices}>
+      <NumberInput
+        label={t("walking.stature")}
+        placeholder={t("walking.stature.mean")}
+        value={settings.stature ?? ""}
+        onChange={(value) => onChange({ ...settings, stature: inRange(value, 0.5, 2.6) ?? null })}
+        min={0.5}
+        max={2.6}
+        step={0.01}
+        decimalScale={2}
+      />
+      <NumberInput
+        label={t("walking.count")}
+        value={settings.count}
+        onChange={(value) =>
+          onChange({ ...settings, count: inRange(value, 20, 5000) ?? settings.count })
+        }
+        min={20}
+        max={5000}
+        step={100}
+        allowDecimal={false}
+      />
+      <NumberInput
+        label={t("walking.seed")}
+        value={settings.seed}
+        onChange={(value) =>
+          onChange({ ...settings, seed: inRange(value, 0, 2 ** 31 - 1) ?? settings.seed })
+        }
+        min={0}
+        max={2 ** 31 - 1}
+        allowDecimal={false}
+      />
+    </div>
+  );
+}
+
+const inRange = (value: number | string, low: number, high: number): number | undefined =>
+  typeof value === "number" && value >= low && value <= high ? value : undefined;

@@ -1,0 +1,236 @@
+/** One model: what it was fitted on and how, and how well it guesses what it did not see. */
+import { Figure } from "@charts/Figure";
+import { Button, Title } from "@mantine/core";
+import { type Model, type Range, walking } from "@shared/api/walking";
+import { dateTime, number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useMemo } from "react";
+import { Link, useLocation } from "wouter";
+import { nameOf } from "../captures/nameOf";
+import { type Key, useTexts } from "../i18n";
+import { Loaded } from "../ui/Loaded";
+import { useTitle } from "../ui/useTitle";
+import { censusFigure } from "./censusFigure";
+import { useParameter } from "./dependencyNames";
+import { FitProgress } from "./FitProgress";
+import { Doing } from "./ModelTable";
+import { modelQuery } from "./queries";
+import { Synthetic } from "./Synthetic";
+import classes from "./Walking.module.css";
+
+export function ModelPage({ id }: { readonly id: string }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <>
+      <Link href="/walking/models" className={classes.crumbs ?? ""}>
+        <Icon name="back" size={16} />
+        {t("walking.models")}
+      </Link>
+      <Loaded query={useQuery(modelQuery(id))}>{(model) => <Found model={model} />}</Loaded>
+    </>
+  );
+}
+
+function Found({ model }: { readonly model: Model }): JSX.Element {
+  const { t } = useTexts();
+  const [, navigate] = useLocation();
+  useTitle(model.title);
+  return (
+    <>
+      <div className={classes.section}>
+        <div className={classes.buttons}>
+          <Title order={1}>{model.title}</Title>
+          {model.kind === "synthetic" && <Synthetic />}
+        </div>
+        <div className={classes.buttons}>
+          {model.state === "ready" && (
+            <Button
+              component="a"
+              href={walking.modelFile(model.id)}
+              download
+              variant="default"
+              leftSection={<Icon name="download" size={18} />}
+            >
+              {t("walking.model.file")}
+            </Button>
+          )}
+          <Doing model={model} onDeleted={() => navigate("/walking/models")} />
+        </div>
+      </div>
+      <FitProgress model={model} />
+      {model.trouble !== null && <p role="alert">{model.trouble}</p>}
+      <div className={classes.ask}>
+        <div className={classes.column}>
+          <About model={model} />
+          {model.summary !== null && <LeftOut model={model} summary={model.summary} />}
+        </div>
+        {model.summary !== null && <Census model={model} summary={model.summary} />}
+      </div>
+    </>
+  );
+}
+
+type Summary = NonNullable<Model["summary"]>;
+
+interface PartProps {
+  readonly model: Model;
+  readonly summary: Summary;
+}
+
+function About({ model }: { readonly model: Model }): JSX.Element {
+  const { t, language } = useTexts();
+  const n = (value: number) => number(value, language);
+  const range = (one: Range) => t("walking.range", { from: n(one.low), to: n(one.high) });
+  const { summary, options, scene } = model;
+  const facts: (readonly [Key, string])[] = [
+    ["walking.fact.on", model.walk_set.title],
+    [
+      "walking.model.scene",
+      scene?.title ??
+        t(
+          model.walk_set.origin === "population"
+            ? "walking.model.scene.own"
+            : "walking.model.scene.open",
+        ),
+    ],
+    ["walking.fact.by", `${nameOf(model.by)}, ${dateTime(model.at, language)}`],
+    [
+      "walking.fact.options",
+      t("walking.fact.options.are", {
+        steps: options.steps ?? 0,
+        k: options.k ?? 0,
+        entries: n(options.entries ?? 0),
+        seed: options.seed ?? 0,
+      }),
+    ],
+  ];
+  if (summary !== null) {
+    const { reading } = summary;
+    facts.push(
+      [
+        "walking.fact.walks",
+        t("walking.walksOf", { walks: n(summary.walks), people: n(summary.people) }),
+      ],
+      ...Object.entries(summary.dependencies).map(
+        ([name, one]) => [`walking.fact.${name}` as Key, range(one)] as const,
+      ),
+      [
+        "walking.fact.reading",
+        t("walking.fact.reading.is", {
+          normalisation: reading.normalisation,
+          power: n(reading.power),
+          tau: reading.time_constant_s === null ? "–" : `${n(reading.time_constant_s)} s`,
+        }),
+      ],
+      ["walking.fact.hash", summary.model_hash.slice(0, 16)],
+    );
+  }
+  return (
+    <section className={classes.card}>
+      <Title order={2} size="h3" mb="xs">
+        {t("walking.fact")}
+      </Title>
+      <dl className={classes.facts}>
+        {facts.map(([key, value]) => (
+          <Fact key={key} name={t(key)} value={value} />
+        ))}
+      </dl>
+    </section>
+  );
+}
+
+const Fact = ({ name, value }: { readonly name: string; readonly value: string }): JSX.Element => (
+  <>
+    <dt>{name}</dt>
+    <dd className="numbers">{value}</dd>
+  </>
+);
+
+function LeftOut({ summary }: PartProps): JSX.Element {
+  const { t, language } = useTexts();
+  const n = (value: number) => number(value, language, 3);
+  const best = summary.readings[0];
+  return (
+    <section className={classes.card}>
+      <Title order={2} size="h3">
+        {t("walking.leftOut")}
+      </Title>
+      <p className={classes.soft}>{t("walking.leftOut.lead")}</p>
+      <table className={classes.numbersTable}>
+        <thead>
+          <tr>
+            <th>{t("walking.leftOut.what")}</th>
+            <th>{t("walking.leftOut.mean")}</th>
+            <th>{t("walking.leftOut.sd")}</th>
+            <th>{t("walking.leftOut.n")}</th>
+          </tr>
+        </thead>
+        <tbody>
+          {(["neighbours", "nodes", "people"] as const).map((name) => (
+            <tr key={name}>
+              <td>{t(`walking.leftOut.${name}`)}</td>
+              <td className="numbers">{n(summary.left_out[name].mean_percent)}</td>
+              <td className="numbers">{n(summary.left_out[name].sd_percent)}</td>
+              <td className="numbers">{number(summary.left_out[name].entries, language)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {best !== undefined && (
+        <p className={classes.soft}>
+          {t("walking.leftOut.crps", { value: n(best.crps_s), tried: summary.readings.length })}
+        </p>
+      )}
+    </section>
+  );
+}
+
+function Census({ model, summary }: PartProps): JSX.Element {
+  const { t, language } = useTexts();
+  const parameter = useParameter();
+  const n = (value: number) => number(value, language);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: words follow the language.
+  const figure = useMemo(
+    () =>
+      censusFigure(summary.census, {
+        length: t("walking.axis.length"),
+        count: t("walking.axis.paths"),
+      }),
+    [summary, language],
+  );
+  const synthetic = model.kind === "synthetic";
+  return (
+    <section className={classes.card} aria-label={t("walking.census")}>
+      <div className={classes.cardHead}>
+        <Title order={2} size="h3">
+          {t("walking.census")}
+        </Title>
+        {synthetic && <Synthetic />}
+      </div>
+      <Figure
+        figure={figure}
+        label={t("walking.census")}
+        watermark={synthetic ? t("walking.watermark") : null}
+        loading={t("walking.drawing")}
+        failed={t("walking.notDrawn")}
+      />
+      <p className={classes.soft}>
+        {t("walking.census.told", {
+          from: n(summary.census.quartiles_m[0]),
+          to: n(summary.census.quartiles_m[2]),
+          median: n(summary.census.quartiles_m[1]),
+          cutoff: n(summary.census.cutoff_m),
+        })}
+      </p>
+      <p className={classes.soft}>
+        {t("walking.stat")}:{" "}
+        {summary.parameters
+          .map(
+            ({ name, unit }, at) => `${parameter(name, unit)} ${n(summary.static_vector[at] ?? 0)}`,
+          )
+          .join(" · ")}
+      </p>
+    </section>
+  );
+}

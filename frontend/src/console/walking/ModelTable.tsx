@@ -1,0 +1,104 @@
+/** The list of models: state, progress, and what can be done with each. */
+import { Button, Table } from "@mantine/core";
+import { type ModelListed, walking } from "@shared/api/walking";
+import { number } from "@shared/format";
+import { useMutation, useQueryClient } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { Link } from "wouter";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { useMay } from "../may";
+import { DeleteButton } from "./DeleteButton";
+import { FitProgress } from "./FitProgress";
+import { modelsQuery } from "./queries";
+import { Synthetic } from "./Synthetic";
+import classes from "./Walking.module.css";
+import { Made, WalkingTable } from "./WalkingTable";
+
+const COLUMNS = ["title", "state", "on", "by"] as const;
+
+export function ModelTable({ models }: { readonly models: readonly ModelListed[] }): JSX.Element {
+  return (
+    <WalkingTable columns={COLUMNS}>
+      {models.map((model) => (
+        <Row key={model.id} model={model} />
+      ))}
+    </WalkingTable>
+  );
+}
+
+function Row({ model }: { readonly model: ModelListed }): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <Table.Tr>
+      <Table.Td>
+        <Link href={`/walking/models/${model.id}`} className={classes.title ?? ""}>
+          {model.title}
+        </Link>{" "}
+        {model.kind === "synthetic" && <Synthetic />}
+      </Table.Td>
+      <Table.Td miw={180}>
+        {t(`walking.state.${model.state}`)}
+        <FitProgress model={model} />
+        {model.trouble !== null && <span className={classes.sub}>{model.trouble}</span>}
+      </Table.Td>
+      <Table.Td>
+        {model.walk_set.title}
+        {model.walks !== null && (
+          <span className={classes.sub}>
+            {t("walking.walksOf", {
+              walks: number(model.walks, language),
+              people: number(model.people ?? 0, language),
+            })}
+          </span>
+        )}
+      </Table.Td>
+      <Made at={model.at} by={model.by} />
+      <Table.Td className={classes.doing ?? ""}>
+        <Doing model={model} />
+      </Table.Td>
+    </Table.Tr>
+  );
+}
+
+interface DoingProps {
+  readonly model: ModelListed;
+  readonly onDeleted?: () => void;
+}
+
+const NOTHING = () => {};
+
+export function Doing({ model, onDeleted = NOTHING }: DoingProps): JSX.Element | null {
+  const { t } = useTexts();
+  const mayWrite = useMay()("walking");
+  const queries = useQueryClient();
+  const act = useMutation({
+    mutationFn: (what: "stop" | "resume") =>
+      what === "stop" ? walking.stopModel(model.id) : walking.resumeModel(model.id),
+    onSettled: () => queries.invalidateQueries({ queryKey: modelsQuery.queryKey }),
+  });
+  if (!mayWrite) return null;
+  const what = model.state === "fitting" ? "stop" : "resume";
+  return (
+    <>
+      {model.state !== "ready" && (
+        <Button
+          size="compact-sm"
+          variant="default"
+          loading={act.isPending}
+          aria-label={t(`walking.${what}.of`, { title: model.title })}
+          onClick={() => act.mutate(what)}
+        >
+          {t(`walking.${what}`)}
+        </Button>
+      )}
+      <DeleteButton
+        title={model.title}
+        remove={() => walking.removeModel(model.id)}
+        changes={modelsQuery.queryKey}
+        onDone={onDeleted}
+      />
+      {act.isError && <Failure error={act.error} />}
+    </>
+  );
+}

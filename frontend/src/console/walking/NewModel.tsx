@@ -1,0 +1,115 @@
+/** Orders a model: on which walks, in which scene, and how it is fitted. */
+import { Button, Group, Modal, Select, Stack } from "@mantine/core";
+import { type WalkSet, type NewModel as Wish, walking } from "@shared/api/walking";
+import { useMutation, useQueryClient } from "@tanstack/react-query";
+import { type JSX, useState } from "react";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n";
+import { NameField, SceneField, WholeNumbers } from "./FormFields";
+import { modelsQuery } from "./queries";
+
+interface NewModelProps {
+  readonly opened: boolean;
+  readonly sets: readonly WalkSet[];
+  readonly onClose: () => void;
+}
+
+type Options = Required<NonNullable<Wish["options"]>>;
+const USUAL: Options = { steps: 10, k: 100, entries: 5000, reading: "chosen", seed: 1 };
+const READINGS = ["chosen", "paper", "time-aware"] as const;
+const NUMBERS = [
+  { name: "steps", min: 3, max: 12 },
+  { name: "k", min: 1, max: 1000 },
+  { name: "entries", min: 10, max: 20_000 },
+  { name: "seed", min: 0, max: 2 ** 31 - 1 },
+] as const;
+
+export function NewModel({ opened, sets, onClose }: NewModelProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Modal
+      opened={opened}
+      onClose={onClose}
+      title={t("walking.model.new")}
+      size="lg"
+      closeButtonProps={{ "aria-label": t("action.close") }}
+    >
+      <Form sets={sets} onDone={onClose} />
+    </Modal>
+  );
+}
+
+function Form({
+  sets,
+  onDone,
+}: {
+  readonly sets: readonly WalkSet[];
+  readonly onDone: () => void;
+}): JSX.Element {
+  const { t } = useTexts();
+  const queries = useQueryClient();
+  const [setId, setSetId] = useState(sets[0]?.id ?? "");
+  const [title, setTitle] = useState(sets[0]?.title ?? "");
+  const [scene, setScene] = useState<string | null>(null);
+  const [options, setOptions] = useState(USUAL);
+  const chosen = sets.find(({ id }) => id === setId);
+  const isMadeUp = chosen?.origin.kind === "population";
+  const order = useMutation({
+    mutationFn: () =>
+      walking.addModel({ title, walk_set_id: setId, scene: isMadeUp ? null : scene, options }),
+    onSuccess: async () => {
+      await queries.invalidateQueries({ queryKey: modelsQuery.queryKey });
+      onDone();
+    },
+  });
+  return (
+    <form
+      onSubmit={(event) => {
+        event.preventDefault();
+        order.mutate();
+      }}
+    >
+      <Stack>
+        <Select
+          label={t("walking.sets.one")}
+          data={sets.map((one) => ({ value: one.id, label: one.title }))}
+          value={setId}
+          onChange={(value) => value !== null && setSetId(value)}
+          allowDeselect={false}
+        />
+        <NameField value={title} onChange={setTitle} />
+        {!isMadeUp && (
+          <SceneField
+            label={t("walking.model.scene")}
+            description={t("walking.model.scene.hint")}
+            placeholder={t("walking.model.scene.open")}
+            value={scene}
+            onChange={setScene}
+          />
+        )}
+        <Select
+          label={t("walking.reading")}
+          description={t(`walking.reading.${options.reading}.hint`)}
+          data={READINGS.map((value) => ({ value, label: t(`walking.reading.${value}`) }))}
+          value={options.reading}
+          onChange={(value) => {
+            const reading = READINGS.find((one) => one === value);
+            if (reading !== undefined) setOptions({ ...options, reading });
+          }}
+          allowDeselect={false}
+        />
+        <WholeNumbers
+          fields={NUMBERS}
+          values={options}
+          onChange={(name, value) => setOptions({ ...options, [name]: value })}
+        />
+        {order.isError && <Failure error={order.error} />}
+        <Group justify="flex-end">
+          <Button type="submit" loading={order.isPending} disabled={title.trim() === ""}>
+            {t("walking.fit")}
+          </Button>
+        </Group>
+      </Stack>
+    </form>
+  );
+}

@@ -1,0 +1,173 @@
+/** The scene with the path, and the same path as numbers for whoever does not draw. */
+import { ActionIcon, Button, NumberInput, Select, Switch, Title } from "@mantine/core";
+import type { Point, Prediction, Scene } from "@shared/api/walking";
+import { number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import type { Dispatch, JSX } from "react";
+import { useTexts } from "../i18n";
+import type { DrawnPath, PathChange } from "./drawnPath";
+import { SceneDrawing } from "./SceneDrawing";
+import { Synthetic } from "./Synthetic";
+import classes from "./Walking.module.css";
+
+interface PathPanelProps {
+  readonly scene: Scene;
+  readonly path: DrawnPath;
+  readonly planned: boolean;
+  readonly prediction: Prediction | undefined;
+  readonly onPlanned: (planned: boolean) => void;
+  readonly onChange: Dispatch<PathChange>;
+}
+
+export function PathPanel(props: PathPanelProps): JSX.Element {
+  const { scene, path, planned, prediction, onPlanned, onChange } = props;
+  const { t, language } = useTexts();
+  const seenAt = (prediction?.quantiles_s.p50 ?? 0) / 2;
+  const synthetic = prediction?.kinds.includes("synthetic") ?? false;
+  return (
+    <section className={classes.card} aria-label={t("walking.path")}>
+      <div className={classes.cardHead}>
+        <Title order={2} size="h3">
+          {t("walking.path")}
+        </Title>
+        {synthetic && <Synthetic />}
+        <div className={classes.buttons}>
+          <Switch
+            label={t("walking.plan")}
+            checked={planned}
+            onChange={(event) => onPlanned(event.currentTarget.checked)}
+          />
+          <Button
+            size="compact-sm"
+            variant="default"
+            disabled={path.before.length === 0}
+            onClick={() => onChange({ do: "undo" })}
+          >
+            {t("walking.undo")}
+          </Button>
+          <Button
+            size="compact-sm"
+            variant="default"
+            disabled={path.points.length === 0}
+            onClick={() => onChange({ do: "set", points: [] })}
+          >
+            {t("walking.clear")}
+          </Button>
+        </div>
+      </div>
+      <SceneDrawing
+        scene={scene}
+        points={path.points}
+        way={path.points.length > 1 ? (prediction?.points_m ?? null) : null}
+        walkers={path.points.length > 1 ? (prediction?.walkers ?? []) : []}
+        synthetic={synthetic}
+        atS={seenAt}
+        onChange={onChange}
+      />
+      {prediction !== undefined && path.points.length > 1 && (
+        <p className={classes.soft}>
+          {t("walking.seen", {
+            count: prediction.walkers.length,
+            value: number(seenAt, language, 1),
+          })}
+        </p>
+      )}
+      <p className={classes.soft}>{t(planned ? "walking.hint.planned" : "walking.hint.drawn")}</p>
+      <Places scene={scene} onChange={onChange} />
+      <Numbers points={path.points} onChange={onChange} />
+    </section>
+  );
+}
+
+function Places({
+  scene,
+  onChange,
+}: {
+  readonly scene: Scene;
+  readonly onChange: Dispatch<PathChange>;
+}): JSX.Element | null {
+  const { t } = useTexts();
+  if (scene.paths.length === 0) return null;
+  return (
+    <Select
+      label={t("walking.scenePath")}
+      placeholder={t("walking.scenePath.choose")}
+      data={scene.paths.map(({ name }) => name)}
+      value={null}
+      onChange={(name) => {
+        const chosen = scene.paths.find((one) => one.name === name);
+        const [start, goal] = [scene.places[chosen?.start ?? ""], scene.places[chosen?.goal ?? ""]];
+        if (start !== undefined && goal !== undefined) {
+          onChange({ do: "set", points: [start, goal] });
+        }
+      }}
+      mt="xs"
+    />
+  );
+}
+
+interface NumbersProps {
+  readonly points: readonly Point[];
+  readonly onChange: Dispatch<PathChange>;
+}
+
+function Numbers({ points, onChange }: NumbersProps): JSX.Element {
+  const { t } = useTexts();
+  const last = points.at(-1) ?? [0, 0];
+  return (
+    <details>
+      <summary className={classes.soft}>{t("walking.numbers")}</summary>
+      <table className={classes.numbersTable}>
+        <thead>
+          <tr>
+            <th>{t("walking.point")}</th>
+            <th>{t("walking.x")}</th>
+            <th>{t("walking.y")}</th>
+            <td />
+          </tr>
+        </thead>
+        <tbody>
+          {points.map((point, at) => (
+            // biome-ignore lint/suspicious/noArrayIndexKey: a point is its place in the path.
+            <tr key={at}>
+              <td className="numbers">{at + 1}</td>
+              {[0, 1].map((axis) => (
+                <td key={axis}>
+                  <NumberInput
+                    aria-label={t(axis === 0 ? "walking.x.of" : "walking.y.of", { at: at + 1 })}
+                    size="xs"
+                    step={0.1}
+                    decimalScale={2}
+                    value={point[axis] ?? 0}
+                    onChange={(value) => {
+                      if (typeof value !== "number") return;
+                      const moved: Point = axis === 0 ? [value, point[1]] : [point[0], value];
+                      onChange({ do: "move", at, point: moved });
+                    }}
+                  />
+                </td>
+              ))}
+              <td>
+                <ActionIcon
+                  variant="subtle"
+                  color="gray"
+                  aria-label={t("walking.remove", { at: at + 1 })}
+                  onClick={() => onChange({ do: "remove", at })}
+                >
+                  <Icon name="close" size={16} />
+                </ActionIcon>
+              </td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      <Button
+        size="compact-sm"
+        variant="default"
+        onClick={() => onChange({ do: "add", point: [last[0] + 0.5, last[1]] })}
+      >
+        {t("walking.add")}
+      </Button>
+    </details>
+  );
+}

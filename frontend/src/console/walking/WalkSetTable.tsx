@@ -1,0 +1,89 @@
+/** The list of sets of walks: who walked, how many, how far. */
+import { Table } from "@mantine/core";
+import { type WalkSet, walking } from "@shared/api/walking";
+import { number } from "@shared/format";
+import type { JSX } from "react";
+import { useTexts } from "../i18n";
+import { useMay } from "../may";
+import { DeleteButton } from "./DeleteButton";
+import { walkSetsQuery } from "./queries";
+import { Synthetic } from "./Synthetic";
+import classes from "./Walking.module.css";
+import { Made, WalkingTable } from "./WalkingTable";
+
+const COLUMNS = ["walks", "origin", "lengths", "durations", "by"] as const;
+
+export function WalkSetTable({ sets }: { readonly sets: readonly WalkSet[] }): JSX.Element {
+  return (
+    <WalkingTable columns={COLUMNS}>
+      {sets.map((set) => (
+        <Row key={set.id} set={set} />
+      ))}
+    </WalkingTable>
+  );
+}
+
+function Row({ set }: { readonly set: WalkSet }): JSX.Element {
+  const { t, language } = useTexts();
+  const mayWrite = useMay()("walking");
+  const { census, duration_s: duration, walks, people } = set.summary;
+  const n = (value: number) => number(value, language);
+  const [first, second, third] = census.quartiles_m;
+  return (
+    <Table.Tr>
+      <Table.Td>
+        <span className={classes.title}>{set.title}</span>{" "}
+        {set.kind === "synthetic" && <Synthetic />}
+        <span className={classes.sub}>
+          {t("walking.walksOf", { walks: n(walks), people: n(people) })}
+        </span>
+      </Table.Td>
+      <Table.Td>
+        <Origin set={set} />
+      </Table.Td>
+      <Table.Td className="numbers">
+        {t("walking.m", { value: n(second) })}
+        <span className={classes.sub}>
+          {t("walking.m.quartiles", { from: n(first), to: n(third) })}
+        </span>
+      </Table.Td>
+      <Table.Td className="numbers">
+        {t("walking.s", { value: n(duration.median) })}
+        <span className={classes.sub}>
+          {t("walking.s.range", { from: n(duration.low), to: n(duration.high) })}
+        </span>
+      </Table.Td>
+      <Made at={set.at} by={set.by} />
+      <Table.Td className={classes.doing ?? ""}>
+        {mayWrite && (
+          <DeleteButton
+            title={set.title}
+            remove={() => walking.removeWalkSet(set.id)}
+            changes={walkSetsQuery.queryKey}
+          />
+        )}
+      </Table.Td>
+    </Table.Tr>
+  );
+}
+
+function Origin({ set }: { readonly set: WalkSet }): JSX.Element {
+  const { t } = useTexts();
+  const { origin } = set;
+  switch (origin.kind) {
+    case "population":
+      return (
+        <>
+          {t("walking.origin.population", { name: origin.population })}
+          <span className={classes.sub}>
+            {t("walking.origin.seed", { seed: origin.seed ?? 1 })} ·{" "}
+            {origin.scene ?? t("walking.origin.laboratory")}
+          </span>
+        </>
+      );
+    case "captures":
+      return <>{t("walking.origin.captures", { count: origin.captures.length })}</>;
+    default:
+      return <>{origin.file_name}</>;
+  }
+}

@@ -1,0 +1,43 @@
+/** A list of what walking has, in a table; and the cell that tells who made a thing, and when. */
+import { Table } from "@mantine/core";
+import { dateTime } from "@shared/format";
+import type { JSX, ReactNode } from "react";
+import { nameOf } from "../captures/nameOf";
+import { useTexts } from "../i18n";
+import { ListTable } from "../ui/ListTable";
+import classes from "./Walking.module.css";
+
+type Column = "title" | "state" | "on" | "walks" | "origin" | "lengths" | "durations" | "by";
+
+interface WalkingTableProps {
+  readonly columns: readonly Column[];
+  readonly children: ReactNode;
+}
+
+export function WalkingTable({ columns, children }: WalkingTableProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <ListTable
+      columns={columns.map((column) => t(`walking.column.${column}`))}
+      withDoing
+      className={classes.list}
+    >
+      {children}
+    </ListTable>
+  );
+}
+
+interface MadeProps {
+  readonly at: string;
+  readonly by: string;
+}
+
+export function Made({ at, by }: MadeProps): JSX.Element {
+  const { language } = useTexts();
+  return (
+    <Table.Td>
+      {dateTime(at, language)}
+      <span className={classes.sub}>{nameOf(by)}</span>
+    </Table.Td>
+  );
+}

@@ -1,0 +1,69 @@
+import { describe, expect, it } from "vitest";
+import { changedPath, isWay, NO_PATH } from "./drawnPath";
+import { planOf, ticks, WIDTH } from "./plan";
+import { binned } from "./walkingFigures";
+
+describe("a drawn path", () => {
+  const two = [
+    { do: "add", point: [0, 0.123] },
+    { do: "add", point: [1, 1] },
+  ] as const;
+  const drawn = two.reduce(changedPath, NO_PATH);
+
+  it("keeps centimetres, and can be asked about from two points on", () => {
+    expect(drawn.points).toEqual([
+      [0, 0.12],
+      [1, 1],
+    ]);
+    expect([
+      isWay(NO_PATH.points),
+      isWay(drawn.points),
+      isWay([
+        [1, 1],
+        [1, 1],
+      ]),
+    ]).toEqual([false, true, false]);
+  });
+
+  it("goes back step by step, and not for a change that changes nothing", () => {
+    const still = changedPath(drawn, { do: "move", at: 1, point: [1.001, 1] });
+    expect(still).toBe(drawn);
+    const moved = changedPath(drawn, { do: "move", at: 1, point: [2, 1] });
+    const fewer = changedPath(moved, { do: "remove", at: 0 });
+    expect(fewer.points).toEqual([[2, 1]]);
+    const back = changedPath(changedPath(fewer, { do: "undo" }), { do: "undo" });
+    expect(back.points).toEqual(drawn.points);
+    expect(changedPath(NO_PATH, { do: "undo" })).toBe(NO_PATH);
+  });
+});
+
+describe("the picture of a scene", () => {
+  const plan = planOf([-4, -3, 4, 4]);
+
+  it("has y upwards, one scale, and finds back to the floor", () => {
+    expect(plan.y(4)).toBeLessThan(plan.y(-3));
+    expect(plan.x(1) - plan.x(0)).toBeCloseTo(plan.y(0) - plan.y(1), 9);
+    const [x, y] = plan.floor(plan.x(1.5), plan.y(-2));
+    expect([x, y].map((value) => Math.round(value * 1e9) / 1e9)).toEqual([1.5, -2]);
+    expect(plan.x(4)).toBeLessThan(WIDTH);
+    expect(plan.floor(-100, 10_000)).toEqual([-4, -3]);
+  });
+
+  it("has round metres within bounds, both ends included", () => {
+    expect(ticks(-2, 1, 60)).toEqual([-2, -1, 0, 1]);
+    expect(ticks(0, 1, 400)).toEqual([0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1]);
+  });
+});
+
+describe("the histogram of durations", () => {
+  it("counts every walk once, the slowest too", () => {
+    const durations = Array.from({ length: 200 }, (_, at) => 2 + (at / 199) ** 2);
+    const { edges, counts } = binned(durations);
+    expect(counts.reduce((sum, count) => sum + count, 0)).toBe(200);
+    expect([edges[0], edges.at(-1)]).toEqual([2, 3]);
+  });
+
+  it("holds walks that all take equally long", () => {
+    expect(binned([3, 3, 3]).counts[0]).toBe(3);
+  });
+});

@@ -1,0 +1,74 @@
+/** Requests about what came out of a study: its figures, their rows, and its tests. */
+import { answer, server } from "./request";
+import type { components } from "./schema";
+import type { DataKind } from "./types";
+
+type Schemas = components["schemas"];
+export type Dashboard = Schemas["DashboardView"];
+export type FigureEntry = Schemas["FigureView"];
+export type FigureGroup = FigureEntry["group"];
+export type FigureFilter = Schemas["FigureFilter"];
+export type FilterChoices = Schemas["FilterChoices"];
+export type Statistics = Schemas["StatisticsView"];
+export type Measure = Schemas["MeasureView"];
+export type Result = Schemas["ResultView"];
+
+/** Which sessions are drawn; what is left out chooses nothing. */
+export interface Asked {
+  readonly kind: DataKind;
+  readonly participant: readonly string[];
+  readonly order: string | null;
+  readonly rows: "valid" | "all";
+  readonly since: string | null;
+  readonly until: string | null;
+  readonly limb: "hand" | "foot" | null;
+}
+
+/** What was chosen as the words of an address; whatever is usual is left out. */
+export function searchOf(asked: Asked): URLSearchParams {
+  const search = new URLSearchParams();
+  if (asked.kind !== "people") search.set("kind", asked.kind);
+  for (const code of asked.participant) search.append("participant", code);
+  if (asked.rows !== "valid") search.set("rows", asked.rows);
+  for (const name of ["order", "since", "until", "limb"] as const) {
+    const value = asked[name];
+    if (value !== null && value !== "") search.set(name, value);
+  }
+  return search;
+}
+
+/** The reverse; what an address says wrongly is as if it said nothing. */
+export function askedOf(search: URLSearchParams): Asked {
+  const one = <Word extends string>(name: string, known: readonly Word[]): Word | null =>
+    known.find((word) => word === search.get(name)) ?? null;
+  const day = (name: string): string | null =>
+    /^\d{4}-\d\d-\d\d$/.test(search.get(name) ?? "") ? search.get(name) : null;
+  return {
+    kind: one("kind", ["people", "simulated", "test"]) ?? "people",
+    participant: search.getAll("participant"),
+    order: search.get("order"),
+    rows: one("rows", ["valid", "all"]) ?? "valid",
+    since: day("since"),
+    until: day("until"),
+    limb: one("limb", ["hand", "foot"]),
+  };
+}
+
+export const analysis = {
+  /** One group of the figures: it is there sooner than all of them. */
+  dashboard: (key: string, asked: Asked, group: FigureGroup) =>
+    answer<Dashboard>(
+      server.GET("/api/studies/{key}/dashboard", {
+        params: { path: { key }, query: { ...asked, group } },
+      }),
+    ),
+  rowsUrl: (key: string, figure: string, asked: Asked) => {
+    const search = searchOf(asked).toString();
+    const path = `/api/studies/${encodeURIComponent(key)}/dashboard/${figure}/rows`;
+    return search === "" ? path : `${path}?${search}`;
+  },
+  statistics: (key: string, kind: DataKind) =>
+    answer<Statistics>(
+      server.GET("/api/studies/{key}/statistics", { params: { path: { key }, query: { kind } } }),
+    ),
+};

@@ -1,0 +1,119 @@
+/** Requests about captures of movement, and about what becomes of them on avatars. */
+import { decodeMotion, type PointMotion } from "../stage/motion";
+import { errorFromBody, Unreachable } from "./errors";
+import { answer, server } from "./request";
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
+export type CaptureListed = Schemas["CaptureListed"];
+export type Capture = Schemas["CaptureView"];
+export type CapturePage = Schemas["CapturePage"];
+export type Conventions = Schemas["ConventionsView"];
+export type Origin = Schemas["ConventionView"]["origin"];
+export type ReadingChoice = Required<Schemas["ReadingChoice"]>;
+export type CaptureKind = CaptureListed["kind"];
+export type JointMapView = Schemas["JointMapView"];
+export type JointSource = JointMapView["sources"][string];
+export type Verification = Schemas["VerificationView"];
+export type Walker = Schemas["WalkerView"];
+export type AvatarWalker = Schemas["AvatarWalkerView"];
+export type Shown = "recorded" | "skeleton";
+
+/** One or two files that make a capture: an AMC goes with its ASF. */
+export interface CaptureFiles {
+  readonly file: File;
+  readonly companion: File | null;
+}
+
+export interface Uploaded {
+  readonly capture: Capture;
+  /** False where the same content was here already. */
+  readonly isNew: boolean;
+}
+
+const at = (id: string) => ({ params: { path: { capture_id: id } } });
+
+export const captures = {
+  list: () =>
+    answer<CapturePage>(server.GET("/api/captures", { params: { query: { limit: 1000 } } })),
+  get: (id: string) => answer<Capture>(server.GET("/api/captures/{capture_id}", at(id))),
+  change: (id: string, change: Schemas["CaptureChange"]) =>
+    answer<Capture>(server.PATCH("/api/captures/{capture_id}", { ...at(id), body: change })),
+  remove: (id: string) => answer<undefined>(server.DELETE("/api/captures/{capture_id}", at(id))),
+  motion: (id: string, shown: Shown) => motionFrom(`${path(id)}/motion?shown=${shown}`),
+  onAvatar: (id: string, avatar: string, lockFeet: boolean) =>
+    motionFrom(`${path(id)}/retargeted-motion?avatar=${avatar}&lock_feet=${lockFeet}`),
+  jointMap: (id: string) =>
+    answer<JointMapView>(server.GET("/api/captures/{capture_id}/joint-map", at(id))),
+  saveJointMap: (id: string, version: number, map: Readonly<Record<string, string>>) =>
+    answer<JointMapView>(
+      server.PUT("/api/captures/{capture_id}/joint-map", {
+        ...at(id),
+        body: { joint_map: { ...map }, version },
+      }),
+    ),
+  resetJointMap: (id: string, version: number) =>
+    answer<JointMapView>(
+      server.DELETE("/api/captures/{capture_id}/joint-map", {
+        params: { path: { capture_id: id }, query: { version } },
+      }),
+    ),
+  verification: (id: string, avatars: readonly string[], lockFeet: boolean) =>
+    answer<Verification>(
+      server.GET("/api/captures/{capture_id}/verification", {
+        params: {
+          path: { capture_id: id },
+          query: { avatars: [...avatars], lock_feet: lockFeet },
+        },
+      }),
+    ),
+  fileUrl: (id: string, companion: boolean) => `${path(id)}/file?companion=${companion}`,
+  exportUrl: (id: string, avatar: string, format: "bvh" | "csv", lockFeet: boolean) =>
+    `${path(id)}/retargeted?avatar=${avatar}&format=${format}&lock_feet=${lockFeet}`,
+};
+
+const path = (id: string): string => `/api/captures/${encodeURIComponent(id)}`;
+
+async function motionFrom(url: string): Promise<PointMotion> {
+  const response = await fetch(url, { credentials: "same-origin" }).catch((cause: unknown) => {
+    throw new Unreachable("The server cannot be reached.", { cause });
+  });
+  if (!response.ok) throw errorFromBody(response.status, await response.json().catch(() => null));
+  return decodeMotion(await response.arrayBuffer());
+}
+
+/** The address of an upload, whose body is the file and then its companion. */
+export function uploadUrl({ file, companion }: CaptureFiles): string {
+  const query = new URLSearchParams({ name: file.name });
+  if (companion !== null) {
+    query.set("companion", companion.name);
+    query.set("companion_bytes", String(companion.size));
+  }
+  return `/api/captures?${query}`;
+}
+
+/**
+ * Send a capture; `onSent` is told the share of its bytes that has gone out.
+ *
+ * By XMLHttpRequest, because `fetch` does not tell how far an upload is.
+ */
+export function uploadCapture(
+  files: CaptureFiles,
+  onSent: (share: number) => void,
+): Promise<Uploaded> {
+  return new Promise((resolve, reject) => {
+    const request = new XMLHttpRequest();
+    request.open("POST", uploadUrl(files));
+    request.responseType = "json";
+    request.upload.onprogress = (event) => {
+      if (event.lengthComputable) onSent(event.loaded / event.total);
+    };
+    request.onload = () => {
+      if (request.status >= 200 && request.status < 300) {
+        resolve({ capture: request.response as Capture, isNew: request.status === 201 });
+      } else reject(errorFromBody(request.status, request.response));
+    };
+    request.onerror = () => reject(new Unreachable("The server cannot be reached."));
+    request.send(new Blob([files.file, ...(files.companion === null ? [] : [files.companion])]));
+  });
+}

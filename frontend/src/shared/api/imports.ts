@@ -1,0 +1,51 @@
+/** Requests about answers that were collected elsewhere. */
+import { answer, server } from "./request";
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
+export type ImportMapping = Required<Schemas["Mapping"]>;
+export type ImportLook = Omit<Schemas["LookView"], "proposal"> & {
+  readonly proposal: ImportMapping | null;
+};
+export type ImportCheck = Schemas["CheckView"];
+export type CellProblem = Schemas["CellProblem"];
+export type AnswerImport = Schemas["ImportView"];
+export type ImportDetail = Schemas["ImportDetail"];
+export type ScoreResult = Schemas["ScoreResult"];
+
+const of = (key: string) => ({ params: { path: { key } } });
+const one = (key: string, id: string) => ({ params: { path: { key, import_id: id } } });
+
+export const imports = {
+  list: (key: string) =>
+    answer<readonly AnswerImport[]>(server.GET("/api/studies/{key}/imports", of(key))),
+  get: (key: string, id: string) =>
+    answer<ImportDetail>(server.GET("/api/studies/{key}/imports/{import_id}", one(key, id))),
+  look: (key: string, text: string, instrument: string | null, headerRows: number | null) =>
+    answer<ImportLook>(
+      server.POST("/api/studies/{key}/imports/look", {
+        ...of(key),
+        body: { text, instrument, header_rows: headerRows },
+      }),
+    ),
+  check: (key: string, text: string, mapping: ImportMapping) =>
+    answer<ImportCheck>(
+      server.POST("/api/studies/{key}/imports/check", { ...of(key), body: { text, mapping } }),
+    ),
+  takeIn: (key: string, fileName: string, text: string, mapping: ImportMapping) =>
+    answer<AnswerImport>(
+      server.POST("/api/studies/{key}/imports", {
+        ...of(key),
+        body: { file_name: fileName, text, mapping },
+      }),
+    ),
+  undo: (key: string, id: string, reason: string) =>
+    answer<AnswerImport>(
+      server.POST("/api/studies/{key}/imports/{import_id}/undo", {
+        ...one(key, id),
+        body: { reason },
+      }),
+    ),
+  tableUrl: (key: string, id: string) =>
+    `/api/studies/${encodeURIComponent(key)}/imports/${encodeURIComponent(id)}/table`,
+};

@@ -1,0 +1,158 @@
+/**
+ * The live movement of a session over a WebSocket.
+ *
+ * Poses come in binary (`app/features/poses/service.py` tells the layout), everything else in JSON.
+ * Whoever has drawn a pose says so by `drawn`: the server never has more than a few on the way, so
+ * what is shown is the newest, however slow the page is.
+ */
+import type { FeedState } from "./live";
+
+export type PoseStream = "target" | "actual";
+type Vector = readonly [x: number, y: number, z: number];
+
+export interface PoseSurface {
+  readonly key: string;
+  readonly kind: "panel" | "side" | "target" | "start";
+  readonly box: number | null;
+  readonly center_m: Vector;
+  readonly half_size_m: Vector;
+}
+
+/** What poses are drawn with; who is blinded gets the participant's figure only. */
+export interface PoseSetup {
+  readonly type: "setup";
+  readonly blinded: boolean;
+  readonly simulated: boolean;
+  readonly recording: boolean;
+  readonly limb: "hand" | "foot" | null;
+  readonly stature_m: number;
+  readonly stature_known: boolean;
+  readonly joints: readonly string[];
+  readonly parents: readonly number[];
+  readonly offsets_m: readonly Vector[];
+  readonly surfaces: readonly PoseSurface[];
+}
+
+/** A contact that is over, or a completed task. */
+export interface PoseTouch {
+  readonly number: readonly [epoch: number, seq: number];
+  readonly phase_id: number;
+  readonly kind: PoseSurface["kind"] | "completion";
+  readonly effect: string;
+  readonly surface: string | null;
+  readonly part: string | null;
+}
+
+export interface Pose {
+  readonly stream: PoseStream;
+  /** Whether the phase's clock ran. */
+  readonly running: boolean;
+  readonly phaseId: number;
+  /** The client's clock, seconds. */
+  readonly time: number;
+  /** Root position in metres, then a rotation wxyz of each joint in its parent's frame. */
+  readonly values: Float32Array;
+}
+
+const HEADER_BYTES = 28;
+const MAGIC = "RMP1";
+
+/** Null where the bytes are no pose. */
+export function decodePose(bytes: ArrayBuffer): Pose | null {
+  if (bytes.byteLength < HEADER_BYTES) return null;
+  const view = new DataView(bytes);
+  const magic = String.fromCharCode(...new Uint8Array(bytes, 0, 4));
+  const count = view.getUint16(6, true);
+  if (magic !== MAGIC || bytes.byteLength !== HEADER_BYTES + 4 * count) return null;
+  const code = view.getUint8(4);
+  if (code !== 1 && code !== 2) return null;
+  return {
+    stream: code === 1 ? "target" : "actual",
+    running: (view.getUint8(5) & 1) === 1,
+    phaseId: view.getUint32(8, true),
+    time: view.getFloat64(20, true),
+    values: Float32Array.from({ length: count }, (_, at) =>
+      view.getFloat32(HEADER_BYTES + 4 * at, true),
+    ),
+  };
+}
+
+export interface PoseFeed {
+  /** So many poses have been drawn, or were left out for newer ones. */
+  readonly drawn: (count: number) => void;
+  readonly close: () => void;
+}
+
+export interface PoseFeedOptions {
+  readonly url: string;
+  readonly onState: (state: FeedState) => void;
+  readonly onSetup: (setup: PoseSetup) => void;
+  readonly onPose: (pose: Pose) => void;
+  readonly onTouches: (touches: readonly PoseTouch[]) => void;
+  readonly open?: (url: string) => WebSocket;
+}
+
+const WAITS_MS = [500, 1000, 2000, 4000] as const;
+/** Nobody is signed in, or the session is not theirs: trying again would not help. */
+const REFUSED = [4401, 4403];
+
+/** Not every browser takes an address without a scheme here. */
+function socketUrl(path: string): string {
+  const url = new URL(path, location.href);
+  url.protocol = url.protocol.replace("http", "ws");
+  return url.href;
+}
+
+/** Open the feed; it comes back by itself after a broken line. */
+export function openPoses(options: PoseFeedOptions): PoseFeed {
+  const open = options.open ?? ((url: string) => new WebSocket(socketUrl(url)));
+  let socket: WebSocket | null = null;
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  let failures = 0;
+  let closed = false;
+
+  const connect = () => {
+    const opened = open(options.url);
+    opened.binaryType = "arraybuffer";
+    socket = opened;
+    opened.onmessage = ({ data }) => {
+      failures = 0;
+      take(data);
+    };
+    opened.onclose = ({ code }) => {
+      if (closed) return;
+      options.onState("lost");
+      if (REFUSED.includes(code)) return;
+      timer = setTimeout(connect, WAITS_MS[Math.min(failures, WAITS_MS.length - 1)]);
+      failures += 1;
+    };
+  };
+
+  const take = (data: unknown) => {
+    if (data instanceof ArrayBuffer) {
+      const pose = decodePose(data);
+      if (pose !== null) options.onPose(pose);
+      return;
+    }
+    const told = JSON.parse(String(data)) as
+      | PoseSetup
+      | { readonly type: "touches"; readonly touches: readonly PoseTouch[] };
+    if (told.type === "touches") return options.onTouches(told.touches);
+    options.onState("live");
+    options.onSetup(told);
+  };
+
+  options.onState("connecting");
+  connect();
+  return {
+    drawn: (count) => {
+      if (socket?.readyState !== 1) return;
+      for (let one = 0; one < count; one++) socket.send("");
+    },
+    close: () => {
+      closed = true;
+      clearTimeout(timer);
+      socket?.close();
+    },
+  };
+}

@@ -1,0 +1,104 @@
+/** Requests about phases that are looked at again: what happened in them, and the movement. */
+import type { PointMotion } from "../stage/motion";
+import { MotionError } from "../stage/motion";
+import { errorFromBody, Unreachable } from "./errors";
+import { answer, server } from "./request";
+import type { components } from "./schema";
+
+type Schemas = components["schemas"];
+export type Replay = Schemas["Replay"];
+export type ReplayContact = Schemas["ReplayContact"];
+export type ReplaySurface = Schemas["ReplaySurface"];
+export type ReplayMoment = Schemas["Moment"];
+
+/** A stretch of the phase's time, seconds. */
+export type Span = readonly [begin: number, end: number];
+
+/** What moved in a phase; the avatar is missing for readers who must not learn the latency. */
+export interface ReplayMovement {
+  readonly participant: PointMotion;
+  readonly avatar: PointMotion | null;
+  /** Stretches in which nothing was recorded. */
+  readonly gaps: readonly Span[];
+  readonly errors: JointErrors;
+}
+
+/** Angles between what the avatar was asked for and what it did: radians, [frame][joint]. */
+export interface JointErrors {
+  readonly joints: readonly string[];
+  readonly frames: number;
+  readonly rateHz: number;
+  readonly values: Float32Array;
+}
+
+interface Header {
+  readonly names: readonly string[];
+  readonly parents: readonly number[];
+  readonly bodies: readonly string[];
+  readonly frames: number;
+  readonly rate_hz: number;
+  readonly error_joints: readonly string[];
+  readonly error_frames: number;
+  readonly error_rate_hz: number;
+  readonly gaps: readonly Span[];
+}
+
+export const replays = {
+  get: (id: string, phase: number) =>
+    answer<Replay>(
+      server.GET("/api/sessions/{session_id}/phases/{phase_id}/replay", {
+        params: { path: { session_id: id, phase_id: phase } },
+      }),
+    ),
+  movement: async (id: string, phase: number): Promise<ReplayMovement> => {
+    const url = `/api/sessions/${encodeURIComponent(id)}/phases/${phase}/movement`;
+    const response = await fetch(url, { credentials: "same-origin" }).catch((cause: unknown) => {
+      throw new Unreachable("The server cannot be reached.", { cause });
+    });
+    if (!response.ok) throw errorFromBody(response.status, await response.json().catch(() => null));
+    return decodeMovement(await response.arrayBuffer());
+  },
+};
+
+/**
+ * Read the server's form: the header's length, the header as JSON, then float32, little-endian:
+ * places of each body, then joint errors.
+ *
+ * Throws MotionError where the bytes do not hold what the header says.
+ */
+export function decodeMovement(bytes: ArrayBuffer): ReplayMovement {
+  if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes hold no movement.`);
+  const length = new DataView(bytes).getUint32(0, true);
+  if (4 + length > bytes.byteLength) {
+    throw new MotionError(`The header should have ${length} bytes; the answer has fewer.`);
+  }
+  const header = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length))) as Header;
+  const ofBody = header.frames * header.names.length * 3;
+  const ofErrors = header.error_frames * header.error_joints.length;
+  const wanted = header.bodies.length * ofBody + ofErrors;
+  const there = (bytes.byteLength - 4 - length) / 4;
+  if (there !== wanted) {
+    throw new MotionError(`Expected ${wanted} numbers after the header, got ${there}.`);
+  }
+  const all = new Float32Array(bytes, 4 + length, wanted);
+  const body = (name: string): PointMotion | null => {
+    const at = header.bodies.indexOf(name);
+    if (at < 0) return null;
+    const positions = all.subarray(at * ofBody, (at + 1) * ofBody);
+    const { names, parents, frames, rate_hz: rateHz } = header;
+    return { kind: "skeleton", names, parents, frames, rateHz, recordedRateHz: rateHz, positions };
+  };
+  const participant = body("target");
+  if (participant === null) throw new MotionError("The participant is missing.");
+  return {
+    participant,
+    avatar: body("actual"),
+    gaps: header.gaps,
+    errors: {
+      joints: header.error_joints,
+      frames: header.error_frames,
+      rateHz: header.error_rate_hz,
+      values: all.subarray(header.bodies.length * ofBody),
+    },
+  };
+}

@@ -1,0 +1,109 @@
+import { describe, expect, it } from "vitest";
+import type { Instrument } from "../api/types";
+import { administration, instrument, words } from "./example";
+import { firstProblem, problemOf } from "./problems";
+import { answersOf, type Question, questionPages } from "./questions";
+
+const options = { language: "en", words, mayOmit: false };
+const questions = (changed = {}, of = administration): readonly Question[] =>
+  questionPages(of, { ...options, ...changed }).flat();
+const asked = (key: string, changed = {}, of = administration): Question => {
+  const found = questions(changed, of).find((one) => one.key === key);
+  if (found === undefined) throw new Error(`no question ${key}`);
+  return found;
+};
+const withItems = (change: Partial<Instrument>) => ({
+  ...administration,
+  instrument: { ...instrument, ...change },
+});
+
+describe("an instrument as a form", () => {
+  it("shows every item once, in the order the server drew", () => {
+    expect(questions().map(({ key }) => key)).toEqual(administration.item_order);
+  });
+
+  it("speaks the language asked for", () => {
+    expect(questions({ language: "de" })[0]?.title).toBe("Glasses (de)");
+  });
+
+  it("says at the few questions that may be left out that they may", () => {
+    expect(asked("weight").title).toBe("Weight (optional)");
+    expect(asked("weight", { mayOmit: true }).title).toBe("Weight");
+  });
+
+  it("offers every step of the scale with its label", () => {
+    const question = asked("calm");
+    expect(question).toMatchObject({ kind: "rating", ends: null });
+    expect(question.kind === "rating" && question.options.map(({ value }) => value)).toEqual([
+      1, 2, 3, 4, 5,
+    ]);
+    expect(question.kind === "rating" && question.options[0]?.text).toBe("strongly disagree");
+  });
+
+  it("names both ends where only they have labels", () => {
+    const labels = [{ en: "low" }, { en: "high" }];
+    const question = asked("calm", {}, withItems({ scale: { minimum: 0, maximum: 20, labels } }));
+    expect(question).toMatchObject({ kind: "rating", ends: ["low", "high"] });
+    expect(question.kind === "rating" && question.options).toHaveLength(21);
+  });
+
+  it("gives an item its own scale, in its own steps", () => {
+    const labels = [{ en: "perfect" }, { en: "failure" }];
+    const own = { minimum: 0, maximum: 100, step: 25, labels };
+    const items = instrument.items.map((item) =>
+      item.key === "calm" ? { ...item, scale: own } : item,
+    );
+    const question = asked("calm", {}, withItems({ items }));
+    expect(question.kind === "rating" && question.options.map(({ value }) => value)).toEqual([
+      0, 25, 50, 75, 100,
+    ]);
+  });
+});
+
+describe("what is wrong with a form", () => {
+  it("does not go on without the required answers, and says so", () => {
+    expect(problemOf(asked("calm"), undefined, words)).toBe("Please answer.");
+    expect(problemOf(asked("job"), "   ", words)).toBe("Please answer.");
+    expect(problemOf(asked("weight"), undefined, words)).toBeNull();
+    expect(firstProblem(questions(), { glasses: "no" }, words)?.key).toBe("calm");
+  });
+
+  it("lets the operator leave out what was not answered", () => {
+    expect(firstProblem(questions({ mayOmit: true }), {}, words)).toBeUndefined();
+  });
+
+  it("takes zero and no for answers", () => {
+    const scale = { minimum: 0, maximum: 4, labels: [] };
+    expect(problemOf(asked("calm", {}, withItems({ scale })), 0, words)).toBeNull();
+    expect(problemOf(asked("glasses"), "no", words)).toBeNull();
+  });
+
+  it("refuses a number out of range and half a year", () => {
+    const age = asked("age");
+    expect(problemOf(age, "17", words)).toBe("At least 18 years.");
+    expect(problemOf(age, "111", words)).toBe("At most 110 years.");
+    expect(problemOf(age, "20.5", words)).toBe("A whole number.");
+    expect(problemOf(age, "20", words)).toBeNull();
+    expect(problemOf(asked("weight"), "70.5", words)).toBeNull();
+  });
+});
+
+describe("the answers of a form", () => {
+  it("come back by item, with the type the server expects", () => {
+    const data = { calm: 4, age: "31", hand: "left", glasses: "no", job: "baker" };
+    expect(answersOf(instrument, data)).toEqual({
+      calm: 4,
+      age: 31,
+      weight: null,
+      hand: "left",
+      glasses: false,
+      job: "baker",
+      problems: null,
+    });
+  });
+
+  it("tell zero and no from nothing", () => {
+    const answers = answersOf(instrument, { weight: 0, glasses: "no", problems: "" });
+    expect(answers).toMatchObject({ weight: 0, glasses: false, problems: null, age: null });
+  });
+});

@@ -1,0 +1,160 @@
+/** An instrument as the questions of a form, page by page, and its answers back again. */
+import type { Administration, Answer, Instrument, Item, Scale } from "../api/types";
+import { inLanguage } from "../text";
+import { isLong, pagesOf } from "./pages";
+
+export interface FormWords {
+  readonly yes: string;
+  readonly no: string;
+  readonly optional: string;
+  /** Said where an answer is missing. */
+  readonly required: string;
+  /** What a number may be: `{low}`, `{high}` and `{unit}` are filled in. */
+  readonly range: (low: number | null, high: number | null, unit: string) => string;
+  /** Said where a number does not fit. */
+  readonly whole: string;
+  readonly atLeast: (low: number, unit: string) => string;
+  readonly atMost: (high: number, unit: string) => string;
+}
+
+export interface FormOptions {
+  readonly language: string;
+  readonly words: FormWords;
+  /** The operator may leave out what the participant did not answer. */
+  readonly mayOmit: boolean;
+}
+
+export interface Option {
+  readonly value: string | number;
+  readonly text: string;
+}
+
+interface Asked {
+  readonly key: string;
+  readonly title: string;
+  readonly required: boolean;
+}
+
+/** `ends`: what the lowest and the highest step are called, where only they have a name. */
+export interface Rating extends Asked {
+  readonly kind: "rating";
+  readonly options: readonly Option[];
+  readonly ends: readonly [string, string] | null;
+}
+
+export interface Choosing extends Asked {
+  readonly kind: "choice";
+  readonly options: readonly Option[];
+}
+
+export interface NumberField extends Asked {
+  readonly kind: "number";
+  readonly whole: boolean;
+  readonly low: number | null;
+  readonly high: number | null;
+  readonly unit: string;
+  readonly hint: string;
+}
+
+export interface TextField extends Asked {
+  readonly kind: "text";
+  readonly long: boolean;
+  readonly most: number | null;
+}
+
+export type Question = Rating | Choosing | NumberField | TextField;
+
+/** The questions in the order the server drew, spread over pages. */
+export function questionPages(
+  { instrument, item_order }: Administration,
+  options: FormOptions,
+): readonly (readonly Question[])[] {
+  const byKey = new Map(instrument.items.map((item) => [item.key, item]));
+  const ordered = item_order.flatMap((key) => byKey.get(key) ?? []);
+  const scaleOf = (item: Item) => item.scale ?? instrument.scale ?? null;
+  return pagesOf(ordered, (item) => stepsOf(scaleOf(item)).length).map((items) =>
+    items.map((item) => question(item, scaleOf(item), options)),
+  );
+}
+
+function question(item: Item, scale: Scale | null, options: FormOptions): Question {
+  const { language, words, mayOmit } = options;
+  const text = inLanguage(item.text, language);
+  const free = item.required === false;
+  const asked: Asked = {
+    key: item.key,
+    // Which question is required is said in words, at the few that are not.
+    title: free && !mayOmit ? `${text} (${words.optional})` : text,
+    required: !free && !mayOmit,
+  };
+  switch (item.type) {
+    case "likert":
+      return { ...asked, ...rating(scale, language) };
+    case "choice":
+      return { ...asked, kind: "choice", options: choices(item, language) };
+    case "boolean":
+      return { ...asked, kind: "choice", options: yesOrNo(words) };
+    case "integer":
+    case "number":
+      return { ...asked, ...numberField(item, words) };
+    case "text":
+      return { ...asked, kind: "text", long: isLong(item), most: item.max_length ?? null };
+  }
+}
+
+const choices = (item: Item, language: string): readonly Option[] =>
+  (item.choices ?? []).map((one) => ({ value: one.key, text: inLanguage(one.label, language) }));
+
+const yesOrNo = (words: FormWords): readonly Option[] => [
+  { value: YES, text: words.yes },
+  { value: NO, text: words.no },
+];
+
+function stepsOf(scale: Scale | null): readonly number[] {
+  const { minimum, maximum, step = 1 } = scale ?? { minimum: 1, maximum: 7 };
+  const count = Math.floor((maximum - minimum) / step) + 1;
+  return Array.from({ length: count }, (_, index) => minimum + step * index);
+}
+
+/** Every step is written out where it has a label of its own; else the ends are. */
+function rating(scale: Scale | null, language: string): Omit<Rating, keyof Asked> {
+  const steps = stepsOf(scale);
+  const written = (scale?.labels ?? []).map((label) => inLanguage(label, language));
+  const [low, high] = written;
+  return {
+    kind: "rating",
+    options: steps.map((value, index) => ({
+      value,
+      text: (written.length === steps.length ? written[index] : undefined) ?? String(value),
+    })),
+    ends: written.length === 2 && low !== undefined && high !== undefined ? [low, high] : null,
+  };
+}
+
+function numberField(item: Item, words: FormWords): Omit<NumberField, keyof Asked> {
+  const low = item.minimum ?? null;
+  const high = item.maximum ?? null;
+  const unit = item.unit ?? "";
+  const whole = item.type === "integer";
+  return { kind: "number", whole, low, high, unit, hint: words.range(low, high, unit) };
+}
+
+const YES = "yes";
+const NO = "no";
+
+export type Data = Readonly<Record<string, unknown>>;
+
+/** Every item's answer by its key; what was left out is null, which is not the same as zero. */
+export function answersOf(instrument: Instrument, data: Data): Readonly<Record<string, Answer>> {
+  return Object.fromEntries(
+    instrument.items.map((item) => [item.key, answerOf(item, data[item.key])]),
+  );
+}
+
+function answerOf(item: Item, value: unknown): Answer {
+  if (value === undefined || value === null || value === "") return null;
+  if (item.type === "boolean") return value === YES;
+  if (item.type === "text" || item.type === "choice") return String(value);
+  const parsed = typeof value === "number" ? value : Number(value);
+  return Number.isFinite(parsed) ? parsed : null;
+}

@@ -1,0 +1,112 @@
+/** A form while it is filled in: its pages, its answers with their times, what is still missing. */
+import { useMemo, useRef, useState } from "react";
+import type { Administration, Answer } from "../api/types";
+import type { FormDraft } from "./draft";
+import { firstProblem, problemOf } from "./problems";
+import { answersOf, type FormWords, type Question, questionPages } from "./questions";
+import { answered, pageShown } from "./traces";
+
+export interface FilledFormOptions {
+  readonly administration: Administration;
+  readonly language: string;
+  readonly texts: FormWords;
+  readonly draft: FormDraft;
+  readonly startedAt: Date;
+  readonly mayOmit?: boolean;
+  readonly onChange: (draft: FormDraft) => void;
+  readonly onSubmit: (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => void;
+}
+
+/** Where the page is to be read from now: its beginning, or a question that has to be answered. */
+export interface Goal {
+  /** Null: the beginning. */
+  readonly question: string | null;
+}
+
+export interface FilledForm {
+  readonly questions: readonly Question[];
+  readonly page: number;
+  readonly pages: number;
+  /** Another one at every move; null before the first. */
+  readonly goal: Goal | null;
+  readonly valueOf: (question: Question) => unknown;
+  readonly problemOf: (question: Question) => string | null;
+  readonly answer: (question: Question, value: string | number | undefined) => void;
+  readonly back: () => void;
+  readonly next: () => void;
+  readonly submit: () => void;
+}
+
+export function useFilledForm(options: FilledFormOptions): FilledForm {
+  const { administration, language, texts, mayOmit = false } = options;
+  const [draft, setDraft] = useState(options.draft);
+  // Questions whose problems are told: those of pages that somebody wanted to leave.
+  const [checked, setChecked] = useState<ReadonlySet<string>>(new Set());
+  const [goal, setGoal] = useState<Goal | null>(null);
+  const turn = useRef(pageShown(performance.now()));
+  // The words change a moment after the language: a word of theirs tells which one they are in.
+  // biome-ignore lint/correctness/useExhaustiveDependencies: texts are new at every drawing
+  const pages = useMemo(
+    () => questionPages(administration, { language, words: texts, mayOmit }),
+    [administration.key, language, mayOmit, texts.required],
+  );
+  const page = Math.min(draft.page, Math.max(0, pages.length - 1));
+  const questions = pages[page] ?? [];
+
+  const keep = (changed: Partial<FormDraft>): void => {
+    const kept = { ...draft, ...changed };
+    setDraft(kept);
+    options.onChange(kept);
+  };
+  const show = (number: number, question: string | null = null): void => {
+    setGoal({ question });
+    if (number === page) return;
+    turn.current = pageShown(performance.now());
+    keep({ page: number });
+  };
+  /** Tells what is wrong on a page, if anything is, and leads there. */
+  const stays = (number: number): boolean => {
+    const asked = pages[number] ?? [];
+    const wrong = firstProblem(asked, draft.data, texts);
+    if (wrong === undefined) return false;
+    setChecked(new Set([...checked, ...asked.map(({ key }) => key)]));
+    show(number, wrong.key);
+    return true;
+  };
+  return {
+    questions,
+    page,
+    pages: pages.length,
+    goal,
+    valueOf: ({ key }) => draft.data[key],
+    problemOf: (question) =>
+      checked.has(question.key) ? problemOf(question, draft.data[question.key], texts) : null,
+    answer: ({ key, kind }, value) => {
+      const typed = kind === "text" || kind === "number";
+      const now = performance.now();
+      const noted = answered(draft.traces, turn.current, { item: key, typed }, now);
+      turn.current = noted.turn;
+      const elapsed = (Date.now() - options.startedAt.getTime()) / 1000;
+      const timings = { ...draft.timings, [key]: Math.round(elapsed * 10) / 10 };
+      keep({ data: withAnswer(draft.data, key, value), timings, traces: noted.traces });
+    },
+    back: () => show(page - 1),
+    next: () => {
+      if (!stays(page)) show(page + 1);
+    },
+    submit: () => {
+      if (!pages.some((_, number) => stays(number)))
+        options.onSubmit(answersOf(administration.instrument, draft.data), draft);
+    },
+  };
+}
+
+/** What was taken back or wiped out counts as never answered. */
+function withAnswer(
+  data: FormDraft["data"],
+  key: string,
+  value: string | number | undefined,
+): FormDraft["data"] {
+  const { [key]: _, ...others } = data;
+  return value === undefined || value === "" ? others : { ...others, [key]: value };
+}

@@ -1,0 +1,170 @@
+/**
+ * Bodies, markers and trackers in space over a measured floor, whatever they come from.
+ *
+ * Seen in 3-D where the browser can, else from the side with a notice. The camera is moved by mouse
+ * or touch, or by the page's own buttons through `StageHandle`.
+ */
+import { Center, Loader, useComputedColorScheme } from "@mantine/core";
+import { type JSX, type Ref, useEffect, useImperativeHandle, useRef, useState } from "react";
+import { Notice } from "../ui/Notice";
+import type { Seconds } from "../units";
+import type { Block, BlockTones } from "./blocks";
+import { type CameraMode, type Figure, type LookFrom, paletteOf } from "./figure";
+import { type Mounted, mount } from "./mount";
+import type { Pointed } from "./pointed";
+import { SideView } from "./SideView";
+import classes from "./Stage.module.css";
+import type { Stage3d } from "./scene";
+
+export interface StageTexts {
+  readonly loading: string;
+  readonly flat: string;
+  readonly flatRemedy: string;
+  /** The size of the floor's squares, given in metres. */
+  readonly squares: (metres: number) => string;
+}
+
+export interface StageHandle {
+  readonly look: (from: LookFrom) => void;
+  readonly zoom: (factor: number) => void;
+}
+
+interface StageProps {
+  readonly figures: readonly Figure[];
+  readonly time: Seconds;
+  readonly mode: CameraMode;
+  readonly label: string;
+  readonly texts: StageTexts;
+  readonly handle?: Ref<StageHandle>;
+  /** The same array while the same blocks stand there. */
+  readonly blocks?: readonly Block[];
+  /** Figures of other stages that this one is compared with; the same array while they are. */
+  readonly beside?: readonly Figure[];
+  /** The same map while the blocks mean the same. */
+  readonly tones?: BlockTones;
+}
+
+const NO_BLOCKS: readonly Block[] = [];
+const NOBODY: readonly Figure[] = [];
+const ALL_PLAIN: BlockTones = new Map();
+
+type Way = "loading" | "space" | "flat";
+
+export function Stage(props: StageProps): JSX.Element {
+  const { figures, time, mode, label, texts, handle } = props;
+  const { blocks = NO_BLOCKS, beside = NOBODY, tones = ALL_PLAIN } = props;
+  const root = useRef<HTMLDivElement>(null);
+  const { way, stage, step } = useStage3d(root, { figures, time, mode, blocks, beside, tones });
+  const [pointed, setPointed] = useState<Pointed | null>(null);
+  useImperativeHandle(handle, () => ({
+    look: (from) => stage.current?.look(from),
+    zoom: (factor) => stage.current?.zoom(factor),
+  }));
+  if (way === "flat") {
+    return (
+      <div className={classes.stage} data-way={way}>
+        <div className={classes.flat}>
+          <Notice tone="warn" title={texts.flat} remedy={texts.flatRemedy} />
+          <SideView figures={figures} time={time} label={label} />
+        </div>
+      </div>
+    );
+  }
+  return (
+    <div className={classes.stage} data-way={way}>
+      {/* What is in the picture is told by its label; it is moved by the buttons around it. */}
+      <div
+        ref={root}
+        className={classes.canvas}
+        role="img"
+        aria-label={label}
+        onPointerMove={(event) => {
+          const { left, top } = event.currentTarget.getBoundingClientRect();
+          const near = stage.current?.nearest(event.clientX - left, event.clientY - top) ?? null;
+          setPointed((before) => (before?.name === near?.name && near === null ? before : near));
+        }}
+        onPointerLeave={() => setPointed(null)}
+      />
+      {way === "loading" && (
+        <Center pos="absolute" inset={0}>
+          <Loader role="status" aria-label={texts.loading} />
+        </Center>
+      )}
+      {pointed !== null && (
+        <span className={classes.name} style={{ left: pointed.x, top: pointed.y }}>
+          {pointed.name}
+        </span>
+      )}
+      {way === "space" && <span className={classes.scale}>{texts.squares(step)}</span>}
+    </div>
+  );
+}
+
+interface Shown {
+  readonly figures: readonly Figure[];
+  readonly time: Seconds;
+  readonly mode: CameraMode;
+  readonly blocks: readonly Block[];
+  readonly beside: readonly Figure[];
+  readonly tones: BlockTones;
+}
+
+function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: Shown) {
+  const scheme = useComputedColorScheme("light");
+  const stage = useRef<Stage3d | null>(null);
+  const { figures, blocks, beside } = shown;
+  const newest = useRef(shown);
+  newest.current = shown;
+  const [way, setWay] = useState<Way>("loading");
+  const [step, setStep] = useState(1);
+  useEffect(() => {
+    const element = root.current;
+    if (element === null) return;
+    let gone = false;
+    let tidy = () => {};
+    void begin(element, () => gone).then((begun) => {
+      if (gone) return begun?.tidy();
+      if (begun === null) return setWay("flat");
+      tidy = begun.tidy;
+      stage.current = begun.drawing;
+      const now = newest.current;
+      begun.drawing.setFigures(now.figures, paletteOf(element), now);
+      begun.drawing.light(now.tones);
+      setStep(begun.drawing.step);
+      begun.drawing.setMode(newest.current.mode);
+      begun.drawing.show(newest.current.time);
+      setWay("space");
+    });
+    return () => {
+      gone = true;
+      stage.current = null;
+      tidy();
+      setWay("loading");
+    };
+  }, [root]);
+  // The appearance is asked for: another one has other colours.
+  useEffect(() => {
+    if (stage.current === null || root.current === null || scheme === undefined) return;
+    stage.current.setFigures(figures, paletteOf(root.current), { blocks, beside });
+    stage.current.light(newest.current.tones);
+    setStep(stage.current.step);
+  }, [root, figures, blocks, beside, scheme]);
+  useEffect(() => stage.current?.light(shown.tones), [shown.tones]);
+  useEffect(() => stage.current?.show(shown.time), [shown.time]);
+  useEffect(() => stage.current?.setMode(shown.mode), [shown.mode]);
+  return { way, stage, step };
+}
+
+/** A stage on a canvas of its own; null where the browser has no WebGL. */
+async function begin(
+  element: HTMLElement,
+  isGone: () => boolean,
+): Promise<Mounted<Stage3d> | null> {
+  const { Stage3d } = await import("./scene");
+  if (isGone()) return null;
+  return mount(element, (canvas) => {
+    return new Stage3d(canvas, (frame) => {
+      canvas.dataset.frame = String(frame);
+    });
+  });
+}

@@ -1,0 +1,102 @@
+/** What stands on a stage, and how it is told apart. */
+import type { PointMotion } from "./motion";
+
+/** Which points of a skeleton are which part of a body; what is not known is left out. */
+export interface BodyRoles {
+  readonly head: number | null;
+  readonly leftHip: number | null;
+  readonly rightHip: number | null;
+  readonly left: ReadonlySet<number>;
+  readonly right: ReadonlySet<number>;
+}
+
+export interface Figure {
+  readonly key: string;
+  readonly motion: PointMotion;
+  /** A ghost is there for comparison: grey and translucent. */
+  readonly tone: "solid" | "ghost";
+  /** Moved aside on the floor, metres. */
+  readonly aside?: readonly [x: number, z: number];
+  readonly roles?: BodyRoles;
+  /** A point to point at. */
+  readonly highlighted?: number | null;
+}
+
+/** `orbit` stays where it is put, `follow` goes along, `eyes` looks out of the first figure's. */
+export type CameraMode = "orbit" | "follow" | "eyes";
+export type LookFrom = "corner" | "front" | "side" | "top";
+
+export interface StagePalette {
+  readonly ground: string;
+  readonly line: string;
+  readonly lineStrong: string;
+  readonly ink: string;
+  readonly trunk: string;
+  readonly left: string;
+  readonly right: string;
+  readonly ghost: string;
+  readonly unseen: string;
+  readonly highlight: string;
+  readonly shadow: string;
+  readonly font: string;
+}
+
+/** Told apart with any kind of colour vision; the same in both appearances. */
+export const LEFT_COLOUR = "#8067c9";
+export const RIGHT_COLOUR = "#d55e00";
+
+export function paletteOf(element: HTMLElement): StagePalette {
+  const style = getComputedStyle(element);
+  const token = (name: string, fallback: string) => style.getPropertyValue(name).trim() || fallback;
+  return {
+    ground: token("--sunken", "#edf1f1"),
+    line: token("--line", "#dbe2e2"),
+    lineStrong: token("--line-strong", "#8a9898"),
+    ink: token("--ink", "#1a2424"),
+    trunk: token("--accent", "#0e6873"),
+    left: LEFT_COLOUR,
+    right: RIGHT_COLOUR,
+    ghost: token("--ink-soft", "#52605f"),
+    unseen: token("--warn", "#8a5200"),
+    highlight: token("--warn-line", "#d69a3c"),
+    shadow: token("--stage-shadow", "#cbd4d4"),
+    font: style.fontFamily,
+  };
+}
+
+/** The point a camera follows: the middle of the hips where they are known, else of all points. */
+export function middleOf(
+  figure: Figure,
+  placed: Float32Array,
+): readonly [x: number, y: number, z: number] {
+  const { leftHip = null, rightHip = null } = figure.roles ?? {};
+  const chosen =
+    leftHip !== null && rightHip !== null
+      ? [leftHip, rightHip]
+      : figure.motion.names.map((_, point) => point);
+  const sum = [0, 0, 0];
+  let count = 0;
+  for (const point of chosen) {
+    if (Number.isNaN(placed[3 * point] ?? Number.NaN)) continue;
+    count++;
+    for (let axis = 0; axis < 3; axis++) {
+      sum[axis] = (sum[axis] ?? 0) + (placed[3 * point + axis] ?? 0);
+    }
+  }
+  const [x = 0, y = 0, z = 0] = sum.map((value) => value / Math.max(1, count));
+  return [x, y, z];
+}
+
+/** Where a body faces on the floor, from its hips: up x (left to right). Null where it is unknown. */
+export function facingOf(
+  figure: Figure,
+  placed: Float32Array,
+): readonly [x: number, z: number] | null {
+  const { leftHip = null, rightHip = null } = figure.roles ?? {};
+  if (leftHip === null || rightHip === null) return null;
+  const x = (placed[3 * rightHip] ?? 0) - (placed[3 * leftHip] ?? 0);
+  const z = (placed[3 * rightHip + 2] ?? 0) - (placed[3 * leftHip + 2] ?? 0);
+  const length = Math.hypot(x, z);
+  // y x (x, 0, z) = (z, 0, -x)
+  return length > 1e-6 ? [z / length, -x / length] : null;
+}

@@ -1,0 +1,71 @@
+/** How far the floor goes and how it is divided, so that lengths can be read off it. */
+import type { Block } from "./blocks";
+import type { Figure } from "./figure";
+import { type Box, boxOf } from "./motion";
+
+export interface FloorPlan {
+  readonly min: readonly [x: number, z: number];
+  readonly max: readonly [x: number, z: number];
+  /** Between two lines, metres: a power of ten. */
+  readonly step: number;
+  /** What moves on it, from the floor upwards. */
+  readonly box: Box;
+}
+
+const MOST_CELLS = 40;
+const MARGIN_CELLS = 0.25;
+
+export function floorPlan(figures: readonly Figure[], blocks: readonly Block[] = []): FloorPlan {
+  const all = boxOfAll(figures, blocks);
+  const box = figures.some(({ motion }) => motion.names.length > 2) ? all : withRoom(all);
+  const span = Math.max(...box.max.map((value, axis) => value - (box.min[axis] ?? 0)));
+  const step = stepFor(span);
+  const low = (value: number) => Math.floor(value / step - MARGIN_CELLS) * step;
+  const high = (value: number) => Math.ceil(value / step + MARGIN_CELLS) * step;
+  return {
+    min: [low(box.min[0]), low(box.min[2])],
+    max: [high(box.max[0]), high(box.max[2])],
+    step,
+    box,
+  };
+}
+
+/** Whole metres for what happens in a room; tens of them where it does not fit into one. */
+export function stepFor(span: number): number {
+  if (!(span > 0)) return 1;
+  if (span >= MOST_CELLS) return 10 ** Math.floor(Math.log10(span / 4));
+  return span >= 1 ? 1 : 10 ** Math.max(-4, Math.floor(Math.log10(span)));
+}
+
+/** A metre at least: one or two trackers that lie still do not tell how large things are. */
+function withRoom({ min, max }: Box): Box {
+  const [[minX, maxX], [minZ, maxZ]] = ([0, 2] as const).map((axis) => {
+    const more = Math.max(0, 1 - (max[axis] - min[axis])) / 2;
+    return [min[axis] - more, max[axis] + more] as const;
+  }) as [readonly [number, number], readonly [number, number]];
+  return { min: [minX, min[1], minZ], max: [maxX, Math.max(max[1], 0.5), maxZ] };
+}
+
+const boxOfBlock = ({ center, halfSize }: Block): Box => ({
+  min: [center[0] - halfSize[0], center[1] - halfSize[1], center[2] - halfSize[2]],
+  max: [center[0] + halfSize[0], center[1] + halfSize[1], center[2] + halfSize[2]],
+});
+
+function boxOfAll(figures: readonly Figure[], blocks: readonly Block[]): Box {
+  const boxes = figures.flatMap(({ motion, aside = [0, 0] }) => {
+    const box = boxOf(motion);
+    if (box === null) return [];
+    const moved = ([x, y, z]: Box["min"]): Box["min"] => [x + aside[0], y, z + aside[1]];
+    return [{ min: moved(box.min), max: moved(box.max) }];
+  });
+  boxes.push(...blocks.map(boxOfBlock));
+  if (boxes.length === 0) return { min: [-1, 0, -1], max: [1, 1.7, 1] };
+  // The floor belongs to it: a single tracker that lies still has a size only by its height.
+  boxes.push({ min: [Infinity, 0, Infinity], max: [-Infinity, 0, -Infinity] });
+  const over = (pick: (...values: number[]) => number, side: "min" | "max"): Box["min"] => [
+    pick(...boxes.map((box) => box[side][0])),
+    pick(...boxes.map((box) => box[side][1])),
+    pick(...boxes.map((box) => box[side][2])),
+  ];
+  return { min: over(Math.min, "min"), max: over(Math.max, "max") };
+}

@@ -1,0 +1,94 @@
+/** The floor of the scene: lines every step of metres, and what they measure along two edges. */
+import {
+  BufferAttribute,
+  BufferGeometry,
+  CanvasTexture,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Sprite,
+  SpriteMaterial,
+} from "three";
+import type { StagePalette } from "./figure";
+import type { FloorPlan } from "./floor";
+
+const MOST_LABELS = 14;
+
+export function makeFloor(plan: FloorPlan, palette: StagePalette): Group {
+  const floor = new Group();
+  floor.add(lines(plan, 0.5, palette.line, 0.6), lines(plan, 1, palette.lineStrong, 0.55));
+  for (const axis of [0, 1] as const) {
+    const [first, last] = [plan.min[axis], plan.max[axis]];
+    const cells = Math.round((last - first) / plan.step);
+    const every = Math.max(1, Math.ceil(cells / MOST_LABELS));
+    for (let cell = 1; cell <= cells; cell += every) {
+      const value = first + cell * plan.step;
+      const text = `${tidy(value)} m`;
+      const beside = 0.22 * plan.step;
+      const label = sprite(text, palette);
+      if (axis === 0) label.position.set(value, 0, plan.max[1] + beside);
+      else label.position.set(plan.max[0] + 1.4 * beside, 0, value);
+      floor.add(label);
+    }
+  }
+  return floor;
+}
+
+export function disposeFloor(floor: Group): void {
+  for (const part of floor.children) {
+    if (part instanceof LineSegments) {
+      part.geometry.dispose();
+      part.material.dispose();
+    }
+    if (part instanceof Sprite) {
+      part.material.map?.dispose();
+      part.material.dispose();
+    }
+  }
+}
+
+const tidy = (value: number): string => String(Number(value.toPrecision(6)) + 0).replace("-", "−");
+
+function lines(plan: FloorPlan, part: number, colour: string, opacity: number): LineSegments {
+  const step = plan.step * part;
+  const ends: number[] = [];
+  const [minX, minZ] = plan.min;
+  const [maxX, maxZ] = plan.max;
+  for (let n = 0; n <= Math.round((maxX - minX) / step); n++) {
+    ends.push(minX + n * step, 0, minZ, minX + n * step, 0, maxZ);
+  }
+  for (let n = 0; n <= Math.round((maxZ - minZ) / step); n++) {
+    ends.push(minX, 0, minZ + n * step, maxX, 0, minZ + n * step);
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(ends), 3));
+  return new LineSegments(
+    geometry,
+    new LineBasicMaterial({ color: colour, transparent: true, opacity }),
+  );
+}
+
+function sprite(text: string, palette: StagePalette): Sprite {
+  const canvas = document.createElement("canvas");
+  canvas.width = 192;
+  canvas.height = 64;
+  const ink = canvas.getContext("2d");
+  if (ink !== null) {
+    ink.font = `44px ${palette.font}`;
+    ink.fillStyle = palette.ink;
+    ink.textAlign = "center";
+    ink.textBaseline = "middle";
+    ink.fillText(text, 96, 34);
+  }
+  const label = new Sprite(
+    new SpriteMaterial({
+      map: new CanvasTexture(canvas),
+      transparent: true,
+      depthWrite: false,
+      // As large from afar as from nearby: it is there to be read.
+      sizeAttenuation: false,
+    }),
+  );
+  label.scale.set(0.078, 0.026, 1);
+  return label;
+}

@@ -1,0 +1,135 @@
+/**
+ * Points over time, as a stage draws them: the joints of a skeleton, markers, or rigid bodies.
+ *
+ * The world is y up and right-handed, in metres. A point that was not seen is NaN.
+ */
+import { type Seconds, seconds } from "../units";
+
+export type PointKind = "skeleton" | "markers" | "bodies";
+
+export interface PointMotion {
+  readonly kind: PointKind;
+  readonly names: readonly string[];
+  /** Index of the point above each, -1 where there is none. */
+  readonly parents: readonly number[];
+  readonly frames: number;
+  readonly rateHz: number;
+  /** Before frames were left out for drawing. */
+  readonly recordedRateHz: number;
+  /** x, y, z in metres: [frame][point][axis]. */
+  readonly positions: Float32Array;
+}
+
+/** The bytes are no movement: cut off, or of another form. */
+export class MotionError extends Error {
+  override readonly name = "MotionError";
+}
+
+interface Header {
+  readonly kind: PointKind;
+  readonly names: readonly string[];
+  readonly parents: readonly number[];
+  readonly frames: number;
+  readonly rate_hz: number;
+  readonly recorded_rate_hz: number;
+}
+
+/**
+ * Read the server's form: the header's length, the header as JSON, then float32, all little-endian.
+ *
+ * Throws MotionError where the bytes do not hold what the header says.
+ */
+export function decodeMotion(bytes: ArrayBuffer): PointMotion {
+  if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes hold no movement.`);
+  const length = new DataView(bytes).getUint32(0, true);
+  if (4 + length > bytes.byteLength) {
+    throw new MotionError(`The header should have ${length} bytes; the answer has fewer.`);
+  }
+  const header = headerOf(new Uint8Array(bytes, 4, length));
+  const wanted = header.frames * header.names.length * 3;
+  const there = (bytes.byteLength - 4 - length) / 4;
+  if (there !== wanted) {
+    throw new MotionError(`Expected ${wanted} numbers after the header, got ${there}.`);
+  }
+  return {
+    kind: header.kind,
+    names: header.names,
+    parents: header.parents,
+    frames: header.frames,
+    rateHz: header.rate_hz,
+    recordedRateHz: header.recorded_rate_hz,
+    positions: numbers(bytes, 4 + length, wanted),
+  };
+}
+
+function headerOf(bytes: Uint8Array): Header {
+  try {
+    return JSON.parse(new TextDecoder().decode(bytes)) as Header;
+  } catch (cause) {
+    throw new MotionError("The header is no JSON.", { cause });
+  }
+}
+
+function numbers(bytes: ArrayBuffer, from: number, count: number): Float32Array {
+  if (from % 4 === 0 && isLittleEndian()) return new Float32Array(bytes, from, count);
+  const view = new DataView(bytes, from);
+  return Float32Array.from({ length: count }, (_, index) => view.getFloat32(4 * index, true));
+}
+
+const isLittleEndian = (): boolean => new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;
+
+/** When the last frame is shown; a single frame lasts no time. */
+export const durationOf = (motion: PointMotion): Seconds =>
+  seconds(Math.max(0, motion.frames - 1) / motion.rateHz);
+
+/** The frame that is nearest to a time. */
+export function frameAt(motion: PointMotion, time: Seconds): number {
+  // A time that was made from a frame must lead back to it.
+  const frame = Math.round(time * motion.rateHz + 1e-6);
+  return Math.min(Math.max(frame, 0), Math.max(0, motion.frames - 1));
+}
+
+export const timeOf = (motion: PointMotion, frame: number): Seconds =>
+  seconds(frame / motion.rateHz);
+
+/** Its number in the recording, counted from 0. */
+export const recordedFrame = (motion: PointMotion, frame: number): number =>
+  Math.round((frame / motion.rateHz) * motion.recordedRateHz);
+
+export interface Box {
+  readonly min: readonly [x: number, y: number, z: number];
+  readonly max: readonly [x: number, y: number, z: number];
+}
+
+/** What all seen points of all frames fit into; null where nothing was ever seen. */
+export function boxOf(motion: PointMotion): Box | null {
+  const min: [number, number, number] = [Infinity, Infinity, Infinity];
+  const max: [number, number, number] = [-Infinity, -Infinity, -Infinity];
+  const { positions } = motion;
+  for (let at = 0; at < positions.length; at += 3) {
+    for (let axis = 0; axis < 3; axis++) {
+      const value = positions[at + axis] ?? Number.NaN;
+      // NaN is neither smaller nor larger than anything.
+      if (value < (min[axis] ?? 0)) min[axis] = value;
+      if (value > (max[axis] ?? 0)) max[axis] = value;
+    }
+  }
+  return Number.isFinite(min[0]) ? { min, max } : null;
+}
+
+/** The largest side of what one frame takes up; of a body about its height. */
+export function sizeOf(motion: PointMotion): number {
+  const points = motion.names.length;
+  const every = Math.max(1, Math.floor(motion.frames / 20));
+  let largest = 0;
+  for (let frame = 0; frame < motion.frames; frame += every) {
+    const from = frame * points * 3;
+    const one = { ...motion, positions: motion.positions.subarray(from, from + points * 3) };
+    const box = boxOf(one);
+    if (box === null) continue;
+    for (let axis = 0; axis < 3; axis++) {
+      largest = Math.max(largest, (box.max[axis] ?? 0) - (box.min[axis] ?? 0));
+    }
+  }
+  return largest;
+}

@@ -1,0 +1,80 @@
+/**
+ * Opens the tablet's page without a network, also after its browser was killed.
+ *
+ * A service worker of a few lines. When it is installed it keeps the page and the hashed files that
+ * belong to it; a new build is another worker, which takes over as soon as it has all of its own.
+ * What a participant enters is not here: `drafts/store.ts` keeps that.
+ */
+import { type Build, cacheName, outdated, planFor } from "./plan";
+
+interface Lasting extends Event {
+  waitUntil(done: Promise<unknown>): void;
+}
+
+interface Asking extends Lasting {
+  readonly request: Request;
+  respondWith(answer: Promise<Response>): void;
+}
+
+interface Worker {
+  readonly BUILD: Build;
+  readonly clients: { claim(): Promise<void> };
+  skipWaiting(): Promise<void>;
+  addEventListener(type: "install" | "activate", listener: (event: Lasting) => void): void;
+  addEventListener(type: "fetch", listener: (event: Asking) => void): void;
+}
+
+const worker = self as unknown as Worker;
+const build = worker.BUILD;
+const own = cacheName(build.version);
+/** A server that takes longer is treated like one that is not there. */
+const PATIENCE_MS = 3000;
+
+worker.addEventListener("install", (event) => event.waitUntil(install()));
+worker.addEventListener("activate", (event) => event.waitUntil(takeOver()));
+worker.addEventListener("fetch", (event) => {
+  const plan = planFor(event.request, location.origin, build.page);
+  if (plan === "page") event.respondWith(page(event.request));
+  if (plan === "asset") event.respondWith(asset(event.request));
+});
+
+async function install(): Promise<void> {
+  try {
+    await keepAll(await caches.open(own));
+  } catch (error) {
+    // Half a build is none; the worker before goes on, and the next start tries again.
+    await caches.delete(own);
+    throw error;
+  }
+  await worker.skipWaiting();
+}
+
+async function keepAll(cache: Cache): Promise<void> {
+  await cache.addAll(build.files);
+  const fetched = await fetch(build.page, { cache: "no-cache" });
+  // The server may be of the next build by now; its page needs that build's worker.
+  const script = build.files[0] ?? "";
+  if (!fetched.ok || !(await fetched.clone().text()).includes(script)) {
+    throw new Error(`${build.page} is not of this worker's build.`);
+  }
+  await cache.put(build.page, fetched);
+}
+
+async function takeOver(): Promise<void> {
+  await Promise.all(outdated(await caches.keys(), own).map((name) => caches.delete(name)));
+  await worker.clients.claim();
+}
+
+async function page(request: Request): Promise<Response> {
+  const kept = await (await caches.open(own)).match(build.page);
+  if (kept === undefined) return fetch(request);
+  const late = new Promise<undefined>((resolve) => {
+    setTimeout(() => resolve(undefined), PATIENCE_MS);
+  });
+  const fresh = await Promise.race([fetch(request).catch(() => undefined), late]);
+  return fresh?.ok ? fresh : kept;
+}
+
+async function asset(request: Request): Promise<Response> {
+  return (await caches.match(request)) ?? fetch(request);
+}

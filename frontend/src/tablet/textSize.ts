@@ -1,0 +1,26 @@
+/** How large the participant wants to read: kept on this tablet until its page is closed. */
+import { useEffect, useState } from "react";
+
+export const TEXT_SIZES = [1, 1.2, 1.45] as const;
+export type TextSize = (typeof TEXT_SIZES)[number];
+
+const KEY = "reembody.tablet.textSize";
+
+/** The size that was chosen; the usual one where none was, or none that there is. */
+export function storedSize(stored: string | null): TextSize {
+  return TEXT_SIZES.find((size) => String(size) === stored) ?? 1;
+}
+
+/** The next larger size; after the largest the usual one again. */
+export function nextSize(size: TextSize): TextSize {
+  return TEXT_SIZES[(TEXT_SIZES.indexOf(size) + 1) % TEXT_SIZES.length] ?? 1;
+}
+
+export function useTextSize(): readonly [TextSize, () => void] {
+  const [size, setSize] = useState(() => storedSize(sessionStorage.getItem(KEY)));
+  useEffect(() => {
+    document.documentElement.style.setProperty("--text-scale", String(size));
+    sessionStorage.setItem(KEY, String(size));
+  }, [size]);
+  return [size, () => setSize(nextSize)];
+}

@@ -1,0 +1,79 @@
+"""The cockpit by keyboard: the pre-flight asks for a reason, and the movement is seen live."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+from tests.e2e.people import PATIENCE_MS, Experimenter
+from tests.e2e.test_first_study import STUDY, short_study
+from tests.e2e.wearer import Wearer
+from tests.features.headset.site import Site
+from tests.features.lab import ok
+
+
+def test_a_start_needs_a_reason_and_the_boxes_light_up(
+    headset_site: Site,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+) -> None:
+    """Without a tablet the start is asked about; avatar and boxes are drawn as they move."""
+    if headset_site.operator.get(f"/api/studies/{STUDY}").status_code == 404:
+        ok(headset_site.operator.post("/api/studies", json={"yaml": short_study()}))
+    view = ok(headset_site.operator.post(f"/api/studies/{STUDY}/sessions", json={}))
+    session_id = str(view["id"])
+    code = ok(
+        headset_site.operator.post(
+            f"/api/sessions/{session_id}/pairings", json={"device": "headset"}
+        )
+    )["code"]
+    page = page_factory((1280, 800))
+    console = Experimenter(page, headset_site.server.url)
+    console.log_in()
+    with Wearer(headset_site.server.url, code) as wearer:
+        page.goto(f"{headset_site.server.url}/#/sessions/{session_id}")
+        connected = page.locator('[data-check="headset"]').get_by_text("Paired and connected")
+        expect(connected).to_be_visible(timeout=PATIENCE_MS)
+        expect(page.locator('[data-check="tablet"]')).to_contain_text("Not in order")
+        assert axe(page) == []
+        screenshot(page, "preflight")
+        page.keyboard.press("Enter")
+        dialog = page.get_by_role("dialog", name="Start although not everything is in order")
+        expect(dialog.get_by_label("Reason")).to_be_focused()
+        page.keyboard.type("Answers are asked aloud")
+        page.keyboard.press("Enter")
+        console.sees_step("Consent")
+        types = [one["type"] for one in ok(headset_site.operator.get(_events(session_id)))]
+        assert types == ["check_overridden", "session_started"]
+        _walk_to_the_hand_task(headset_site, session_id)
+        picture = page.locator("[data-pictures]")
+        expect(picture).to_have_attribute("data-lit", "", timeout=PATIENCE_MS)
+        headset_site.command(session_id, "begin_phase")
+        lit = page.locator('[data-lit*="hand/"]')
+        expect(lit).to_be_visible(timeout=PATIENCE_MS)
+        expect(picture).to_have_attribute("data-pictures", re.compile(r"^[1-9]"))
+        page.keyboard.press("1")
+        expect(page.get_by_role("radio", name="First person")).to_be_checked()
+        assert axe(page) == []
+        screenshot(page, "cockpit-live")
+        headset_site.command(session_id, "abort", reason="seen enough")
+    assert wearer.error is None
+
+
+def _events(session_id: str) -> str:
+    return f"/api/sessions/{session_id}/events"
+
+
+def _walk_to_the_hand_task(site: Site, session_id: str) -> None:
+    """Skip what is before the avatar, let it appear, skip on."""
+    while True:
+        view = site.view(session_id)
+        step = view["steps"][view["current"]["index"]]
+        if step["key"] == "block1.hand":
+            return
+        if step["kind"] == "materialise":
+            site.command(session_id, "materialise")
+        else:
+            site.command(session_id, "skip", reason="not in this test")

@@ -1,0 +1,73 @@
+"""Figures and tests on the pages: chosen by the address, saved as files, read by everybody."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from playwright.sync_api import Page, expect
+
+from app.database import open_database
+from app.features.studies.service import add_version, study_by_key
+from app.protocol.plan import Step
+from tests.e2e.people import PATIENCE_MS, Experimenter
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session
+from tests.protocol.helpers import STUDY as FILE
+from tests.protocol.test_preregistration import SECTION
+from tests.support.server import LiveServer
+
+
+def _falling(step: Step, _: str) -> int:
+    """Ratings that fall with the added latency."""
+    return 6 - int((step.latency_ms or 0.0) / 100.0)
+
+
+def test_figures_are_chosen_by_the_address_and_saved(
+    live_server: LiveServer,
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+    screenshot: Callable[[Page, str], Path],
+) -> None:
+    """A filter in the address, a picture and rows of a figure, statistics, what was declared."""
+    database = open_database(f"sqlite:///{live_server.data_dir / 'reembody.sqlite'}")
+    with database.writing() as db:
+        add_version(db, study_by_key(db, STUDY), FILE + SECTION, NOW)
+        for at in range(3):
+            code = f"SIM-{at:04d}"
+            build_session(db, SessionSpec(code, kind="simulated", likert=_falling))
+    database.close()
+    page = page_factory((1280, 800))
+    Experimenter(page, live_server.url).log_in()
+    page.goto(f"{live_server.url}/?kind=simulated&participant=SIM-0001#/studies/{STUDY}/dashboard")
+    expect(page.get_by_text("from 1 completed session")).to_be_visible(timeout=PATIENCE_MS)
+    agency = page.get_by_role("figure").filter(has_text="Agency by added latency")
+    agency.scroll_into_view_if_needed()
+    expect(agency.locator(".js-plotly-plot")).to_be_visible(timeout=PATIENCE_MS)
+    expect(agency).to_contain_text("Only participants SIM-0001")
+    with page.expect_download() as picture:
+        agency.get_by_role("button", name="PNG", exact=True).click()
+    assert picture.value.path().read_bytes().startswith(b"\x89PNG")
+    with page.expect_download() as rows:
+        agency.get_by_role("button", name="CSV", exact=True).click()
+    text = rows.value.path().read_text()
+    assert "SIMULATED DATA" in text
+    assert "SIM-0002" not in text
+
+    page.get_by_role("tab", name="Statistics").click()
+    assert "participant=" not in page.url
+    page.get_by_text("Simulated", exact=True).first.click()
+    expect(page.get_by_role("heading", name="Agency", exact=True)).to_be_visible(
+        timeout=PATIENCE_MS
+    )
+    expect(page.get_by_text("Too few participants for any result").first).to_be_visible()
+    assert axe(page) == []
+    screenshot(page, "statistics")
+    page.emulate_media(color_scheme="dark")
+    assert axe(page) == []
+
+    page.get_by_role("tab", name="Preregistration").click()
+    page.get_by_text("Simulated", exact=True).first.click()
+    expect(page.get_by_text("n = 3 of 12 planned")).to_be_visible(timeout=PATIENCE_MS)
+    expect(page.get_by_text("Fewer than 60 frames per second")).to_be_visible()
+    assert axe(page) == []
+    page.emulate_media(color_scheme="light")
+    assert axe(page) == []
+    screenshot(page, "preregistration")

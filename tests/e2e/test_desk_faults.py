@@ -1,0 +1,122 @@
+"""What goes wrong at the desk when hands are faster than pages: in real browsers, with figures."""
+
+import re
+import time
+from collections.abc import Callable
+from typing import Any
+
+from playwright.sync_api import Page, expect
+
+from tests.e2e.people import PATIENCE_MS, Experimenter, Participant
+from tests.e2e.test_tablet_offline import EXPERT, FORM, code_for, stored
+from tests.faults.figures import note
+from tests.features.headset.site import Site
+from tests.features.lab import ok
+from tests.support.browser import PageWatch
+
+TIMES = 50
+EVERY_SUBMISSION_AT_ONCE = """(() => {
+    const once = window.fetch.bind(window);
+    window.receipts = [];
+    window.fetch = async (asked, options) => {
+        const request = new Request(asked, options);
+        if (!request.url.endsWith("/api/tablet/submissions")) return once(request);
+        const copies = Array.from({ length: %d }, () => request.clone());
+        const answers = await Promise.all(copies.map((copy) => once(copy)));
+        window.receipts = await Promise.all(answers.map(async (answer) =>
+            [answer.status, (await answer.clone().json()).receipt_id]));
+        return answers[0];
+    };
+})()"""
+
+# By the pages' own clocks: one press after the other would be two operators who take turns.
+TOGETHER_IN_S = 1.5
+PRESS_AT = """(at_ms) => {
+    const press = () => [...document.querySelectorAll("[role=dialog] button")]
+        .find((button) => button.textContent === "Start anyway").click();
+    setTimeout(press, at_ms - Date.now());
+}"""
+
+
+def test_a_form_sent_fifty_times_at_once_is_stored_once(
+    headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
+) -> None:
+    """The tablet's own request with its key, in parallel from one browser: one row, one receipt."""
+    page_watch.allow(r"status of 401")
+    session_id = headset_site.join()
+    headset_site.skip_to(session_id, FORM)
+    page = page_factory((1180, 820))
+    page.add_init_script(EVERY_SUBMISSION_AT_ONCE % TIMES)
+    participant = Participant(page, headset_site.server.url)
+    participant.pair(code_for(headset_site, session_id))
+    expect(page.locator('[data-name^="q"]').first).to_be_visible(timeout=PATIENCE_MS)
+    participant.fill_in(EXPERT)
+    page.wait_for_function("() => window.receipts.length > 0", timeout=PATIENCE_MS)
+    receipts = page.evaluate("() => window.receipts")
+    note(9, f"a browser sends a form {TIMES} times at once", "answered", len(receipts))
+    note(9, f"a browser sends a form {TIMES} times at once", "receipts", len(as_set(receipts)))
+    forms = stored(headset_site, session_id)
+    note(9, f"a browser sends a form {TIMES} times at once", "forms stored", len(forms))
+    assert len(receipts) == TIMES
+    assert [status for status, _ in as_set(receipts)] == [200]
+    assert len(forms) == 1
+
+
+def as_set(receipts: list[list[Any]]) -> set[tuple[int, str]]:
+    """The different answers."""
+    return {(status, receipt) for status, receipt in receipts}
+
+
+def test_of_two_tablets_with_one_code_one_holds_the_session(
+    headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
+) -> None:
+    """The second is told what to do; a new code is the takeover, and the first one says so."""
+    page_watch.allow(r"status of (401|404|410)")
+    session_id, url = headset_site.join(), headset_site.server.url
+    headset_site.command(session_id, "start")
+    code = code_for(headset_site, session_id)
+    pages = [page_factory((1180, 820)) for _ in range(2)]
+    for page in pages:
+        page.goto(f"{url}/tablet?code={code}", wait_until="commit")
+    agree, refused = "I agree to take part", "this code was used already"
+    for page in pages:
+        held = page.get_by_role("button", name=agree)
+        told = page.get_by_text(refused, exact=False)
+        expect(held.or_(told).first).to_be_visible(timeout=PATIENCE_MS)
+    holding = [page for page in pages if page.get_by_role("button", name=agree).is_visible()]
+    note(11, "two tablets, one code", "tablets that hold the session", len(holding))
+    assert len(holding) == 1
+    (first,) = holding
+    (second,) = [page for page in pages if page is not first]
+    second.goto(f"{url}/tablet?code={code_for(headset_site, session_id)}")
+    expect(second.get_by_role("button", name=agree)).to_be_visible(timeout=PATIENCE_MS)
+    expect(first.get_by_text("This tablet was disconnected")).to_be_visible(timeout=PATIENCE_MS)
+    note(11, "a new code for another tablet", "dual holders", 0)
+
+
+def test_two_operators_press_start_in_two_browsers(
+    headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
+) -> None:
+    """The session begins once, and whoever came second reads on the page that it has begun."""
+    page_watch.allow(r"status of 409")
+    session_id = headset_site.join()
+    pages = [page_factory((1280, 800)) for _ in range(2)]
+    for page in pages:
+        desk = Experimenter(page, headset_site.server.url)
+        desk.log_in()
+        page.goto(f"{headset_site.server.url}/#/sessions/{session_id}")
+        desk.press("Start session")
+        asked = page.get_by_role("dialog")
+        asked.get_by_label("Reason").fill("Only the desk is tried")
+    together_ms = 1000 * (time.time() + TOGETHER_IN_S)
+    for page in pages:
+        page.evaluate(PRESS_AT, together_ms)
+    for page in pages:
+        expect(page.get_by_text(re.compile(r"^Step 1 of"))).to_be_visible(timeout=PATIENCE_MS)
+    events = ok(headset_site.operator.get(f"/api/sessions/{session_id}/events"))
+    starts = [one for one in events if one["type"] == "session_started"]
+    note(25, "two operators press start in two browsers", "starts on record", len(starts))
+    assert len(starts) == 1
+    told = sum(page.get_by_text("The session was started.").count() > 0 for page in pages)
+    note(25, "two operators press start in two browsers", "pages that tell of the other", told)
+    assert told == 1

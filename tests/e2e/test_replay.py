@@ -1,0 +1,75 @@
+"""A phase looked at again at the console: by keyboard, by a link, and two side by side."""
+
+import re
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Page, expect
+from sqlalchemy import select
+
+from app.models import Phase
+from tests.e2e.people import PATIENCE_MS, Experimenter
+from tests.features.builders import SessionSpec, build_session
+from tests.features.headset.site import Site
+from tests.features.latency_builders import HISTORY_S, store_movement
+
+DURATION_S = 12.0
+
+
+@pytest.fixture
+def phases(headset_site: Site) -> list[Phase]:
+    """Two hand phases of a session that is over, each with twelve seconds of movement."""
+    with headset_site.database.writing() as db:
+        session = build_session(db, SessionSpec("P-replay"))
+        found = db.scalars(
+            select(Phase)
+            .where(Phase.session_id == session.id, Phase.limb == "hand")
+            .order_by(Phase.phase_id)
+        ).all()[:2]
+        for epoch, phase in enumerate(found, start=1):
+            phase.active_s = DURATION_S
+            clock_s = (phase.client_started_s or 0.0) - HISTORY_S
+            latency_s = phase.latency_ms / 1000.0
+            store_movement(
+                db, phase, latency_s, duration_s=DURATION_S, epoch=epoch, clock_s=clock_s
+            )
+        return list(found)
+
+
+def test_a_phase_is_replayed_in_step_with_what_happened(
+    headset_site: Site,
+    phases: list[Phase],
+    page_factory: Callable[..., Page],
+    axe: Callable[[Page], list[str]],
+) -> None:
+    """From the session's page to the moment of a touch; a link leads there again, and to two."""
+    first, second = phases
+    url = headset_site.server.url
+    page = page_factory()
+    Experimenter(page, url).log_in()
+    page.goto(f"{url}/#/sessions/{first.session_id}")
+    page.get_by_role("link", name="Replay Hand task").first.click()
+    expect(page.locator("[data-way=space]")).to_be_visible(timeout=PATIENCE_MS)
+    times = page.locator("[data-time]")
+    expect(times).to_have_attribute("data-time", "0.000")
+    for key, time in (("L", "1.000"), (".", "1.033"), ("ArrowRight", "2.033"), ("]", "5.000")):
+        page.keyboard.press(key)
+        expect(times).to_have_attribute("data-time", time)
+    expect(page.locator("[aria-current=time]")).to_contain_text("Panel of box 1")
+    expect(page.locator("canvas")).to_have_attribute("data-frame", "150")
+    page.get_by_role("button", name=re.compile("Task 1 completed")).click()
+    expect(times).to_have_attribute("data-time", "10.000")
+    page.keyboard.press("Space")
+    expect(page.get_by_role("button", name="Pause (space)")).to_be_visible()
+    expect(times).not_to_have_attribute("data-time", "10.000")
+    page.keyboard.press("Space")
+    page.get_by_role("tab", name="Answers after").click()
+    expect(page.get_by_role("tabpanel").get_by_role("heading").first).to_be_visible()
+    page.goto(
+        f"{url}/#/sessions/{first.session_id}/replay?phase={first.phase_id}&t=3.5&with={second.phase_id}"
+    )
+    expect(page.locator("canvas")).to_have_count(2, timeout=PATIENCE_MS)
+    expect(times).to_have_attribute("data-time", "3.500")
+    for canvas in page.locator("canvas").all():
+        expect(canvas).to_have_attribute("data-frame", "105")
+    assert axe(page) == []
