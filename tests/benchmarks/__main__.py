@@ -26,11 +26,12 @@ def main(arguments: list[str]) -> int:
     duration = parser.add_mutually_exclusive_group()
     duration.add_argument("--seconds", type=float, help="how long a load lasts, where there is one")
     duration.add_argument("--minutes", type=float, help="the same in minutes")
+    parser.add_argument("--write", action="store_true", help="store what the product ships of it")
     asked = parser.parse_args(arguments)
     # Whoever ends a benchmark ends its servers too.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
     benchmark = importlib.import_module(f"tests.benchmarks.{asked.name}")
-    given = {}
+    given: dict[str, float | bool] = {"write": True} if asked.write else {}
     if asked.seconds or asked.minutes:
         given["duration_s"] = asked.seconds or 60.0 * asked.minutes
     report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS), **given)

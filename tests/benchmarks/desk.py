@@ -27,7 +27,7 @@ PARTS = ("login", "pages")
 PARTICIPANTS = 1000
 REPEATS, LOGINS = 25, 20
 CALL_LIMIT_MS, LOGIN_LIMIT_MS = 100.0, 300.0
-NO_PAGE = ("/live", "/export", "/access")
+NO_PAGE = ("/live", "/export", "/access", "/rows")
 """Streams and files, which take as long as they are large."""
 
 

@@ -1,0 +1,203 @@
+"""The avatar: how much faster than real time it runs, and what control costs.
+
+`speed` lets an avatar of the product's own settings swing its limbs beside the eight boxes of a
+study, frame by frame at 90 Hz, with fingers and without: how many seconds it simulates in one
+second, beside bare `mj_step` of the same model on the same inputs in the same run. What is between
+the two is ours: poses to angles, targets at every step, hips, contacts watched, the body read back;
+at least 0.8 of the bare rate must remain. Time is processor time, and the two take turns, so that
+others on the machine count as little as they can. `control` is one frame of it without any
+simulation: a pose turned into angles, and the body told as joints. Rates are those of the fastest
+round.
+
+`bullet` is PyBullet with the same body, boxes and inputs (`peers.bullet_body` tells what differs):
+as it comes, with 50 solver iterations and targets at every step as ours, and with 10 and targets
+once a frame; beside it, how near either body comes to its targets. `humanoid` is each engine's own,
+limp: MuJoCo's where the shared data are there. PyBullet is installed on first use, and left out
+where that fails.
+"""
+
+import time
+from collections.abc import Callable, Iterator
+from functools import cache
+
+import mujoco
+import numpy as np
+
+from app.science.avatar.following import Follower
+from app.science.avatar.model import AvatarModel
+from app.science.avatar.parts import AXIS_NAMES
+from app.science.avatar.simulation import PhysicsAvatar
+from app.science.rotations import FloatArray, from_rotation_vector
+from app.science.skeleton import JOINT_COUNT
+from tests.benchmarks.clips import shared_file
+from tests.benchmarks.peers.bullet import bullet_avatar, bullet_humanoid_steps_per_s
+from tests.benchmarks.report import Figure, Report
+from tests.science.avatar.captured import RATE_HZ
+from tests.science.avatar.simulated import EIGHT_BOXES, model, target_angles
+
+PARTS = ("speed", "control", "bullet", "humanoid")
+ROUNDS, FRAMES, CALLS = 9, 270, 2000
+BULLET_ROUNDS, HUMANOID_STEPS, HUMANOID_STEP_S = 5, 5000, 0.002
+HIPS_M = np.array([0.0, 0.954, 0.0])
+SWING_RAD, SWING_HZ = 0.35, 1.0
+
+
+def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
+    """Measure the named parts; nothing here has a duration to choose."""
+    report = Report("avatar")
+    if "speed" in parts:
+        for fingers in (False, True):
+            report.add(_speed(fingers=fingers))
+    if "control" in parts:
+        report.add(*_control())
+    if "bullet" in parts:
+        for fingers in (False, True):
+            report.add(*_beside_bullet(fingers=fingers))
+    if "humanoid" in parts:
+        report.add(*_humanoids())
+    return report
+
+
+def _speed(*, fingers: bool) -> Figure:
+    rounds = [(_followed_s(fingers=fingers), _bare_s(fingers=fingers)) for _ in range(ROUNDS)]
+    simulated_s = FRAMES / RATE_HZ
+    told = _told(fingers=fingers)
+    ours, bare = (simulated_s / min(column) for column in zip(*rounds, strict=True))
+    return Figure("speed", f"{told}, 8 boxes", ours, "x real time", "bare mj_step", bare)
+
+
+def _followed_s(*, fingers: bool) -> float:
+    follower, poses = _started(model(EIGHT_BOXES, fingers=fingers))[1], _poses()
+    start_s = time.process_time()
+    for frame in range(FRAMES):
+        follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame])
+    return time.process_time() - start_s
+
+
+def _bare_s(*, fingers: bool) -> float:
+    """The same steps of the same model with the same targets, and nothing else."""
+    built = model(EIGHT_BOXES, fingers=fingers)
+    inputs = _inputs(built, fingers=fingers)
+    body = _started(built)[0]
+    step, bare, data = mujoco.mj_step, body.model, body.data
+    start_s = time.process_time()
+    for controls in inputs:
+        data.ctrl[:] = controls
+        step(bare, data)
+    return time.process_time() - start_s
+
+
+@cache
+def _recorded(*, fingers: bool) -> FloatArray:
+    """(FRAMES + 1, n) the command at the beginning and at each frame's end."""
+    built = model(EIGHT_BOXES, fingers=fingers)
+    body, follower = _started(built)
+    poses = _poses()
+    states = [body.state()]
+    states += [
+        follower.frame((frame + 1) / RATE_HZ, HIPS_M, poses[frame]).state for frame in range(FRAMES)
+    ]
+    columns = [AXIS_NAMES.index(name) for name in body.axis_names]
+    return np.stack([state.command_rad[columns] for state in states])
+
+
+def _inputs(built: AvatarModel, *, fingers: bool) -> FloatArray:
+    """(steps, nu) what the motors are told at each step: straight lines between commands."""
+    commands = _recorded(fingers=fingers)
+    body = PhysicsAvatar(built.mjcf)
+    step_s = body.model.opt.timestep
+    ends = np.round(np.arange(FRAMES + 1) / RATE_HZ / step_s)
+    passed = np.arange(int(ends[-1])) + 0.5
+    frames = np.searchsorted(ends, passed) - 1
+    slopes = np.diff(commands, axis=0) / np.diff(ends)[:, np.newaxis]
+    angles = commands[frames] + slopes[frames] * (passed - ends[frames])[:, np.newaxis]
+    return np.stack((angles, slopes[frames] / step_s), axis=-1).reshape(len(passed), -1)
+
+
+def _started(built: AvatarModel) -> tuple[PhysicsAvatar, Follower]:
+    body = PhysicsAvatar(built.mjcf)
+    follower = Follower(body, target_angles(built))
+    follower.start(HIPS_M, _poses()[0])
+    return body, follower
+
+
+def _poses() -> FloatArray:
+    """(FRAMES, 22, 4): every joint swings about an axis of its own."""
+    rng = np.random.default_rng(1)
+    axes = rng.normal(size=(JOINT_COUNT, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    phase = rng.uniform(0.0, 2.0 * np.pi, JOINT_COUNT)
+    turned = 2.0 * np.pi * SWING_HZ * np.arange(FRAMES)[:, np.newaxis] / RATE_HZ + phase
+    vectors = SWING_RAD * np.sin(turned)[..., np.newaxis] * axes
+    vectors[:, 0] = 0.0
+    return from_rotation_vector(vectors)
+
+
+def _beside_bullet(*, fingers: bool) -> Iterator[Figure]:
+    built = model(EIGHT_BOXES, fingers=fingers)
+    body = PhysicsAvatar(built.mjcf)
+    controls = _inputs(built, fingers=fingers)
+    steps = round(1.0 / RATE_HZ / body.model.opt.timestep)
+    peers = bullet_avatar(body.model, controls, steps_per_frame=steps, rounds=BULLET_ROUNDS)
+    if not peers:
+        return
+    told, simulated_s = _told(fingers=fingers), FRAMES / RATE_HZ
+    ours = simulated_s / min(_followed_s(fingers=fingers) for _ in range(BULLET_ROUNDS))
+    error = _mean_error_deg(body, controls)
+    for peer in peers:
+        rate = simulated_s / peer.fastest_s
+        yield Figure("bullet", f"{told}, 8 boxes", ours, "x real time", peer.name, rate)
+        name = f"{told}: error of the axes, mean"
+        yield Figure("bullet", name, error, "deg", peer.name, peer.mean_error_deg)
+
+
+def _mean_error_deg(body: PhysicsAvatar, controls: FloatArray) -> float:
+    """How far all axes are from their targets after each step, but for the first sixth."""
+    data, errors = body.data, []
+    data.qpos[:] = controls[0, 0::2]
+    for row in controls:
+        data.ctrl[:] = row
+        mujoco.mj_step(body.model, data)
+        errors.append(np.mean(np.abs(data.qpos - row[0::2])))
+    return float(np.degrees(np.mean(errors[len(errors) // 6 :])))
+
+
+def _humanoids() -> Iterator[Figure]:
+    theirs = bullet_humanoid_steps_per_s(HUMANOID_STEP_S, HUMANOID_STEPS, BULLET_ROUNDS)
+    beside = "" if theirs is None else "PyBullet's own humanoid"
+    path = shared_file("models", "humanoid.xml")
+    if path is None:
+        return
+    humanoid = mujoco.MjModel.from_xml_path(str(path))
+    humanoid.opt.timestep = HUMANOID_STEP_S
+    rounds = [_limp_s(humanoid) for _ in range(BULLET_ROUNDS)]
+    ours = HUMANOID_STEPS / min(rounds)
+    yield Figure("humanoid", "MuJoCo's own humanoid, limp", ours, "steps/s", beside, theirs)
+
+
+def _limp_s(humanoid: mujoco.MjModel) -> float:
+    data = mujoco.MjData(humanoid)
+    start_s = time.process_time()
+    for _ in range(HUMANOID_STEPS):
+        mujoco.mj_step(humanoid, data)
+    return time.process_time() - start_s
+
+
+def _told(*, fingers: bool) -> str:
+    return "52 parts" if fingers else "without fingers"
+
+
+def _control() -> Iterator[Figure]:
+    built = model(EIGHT_BOXES, fingers=True)
+    body, angles, pose = PhysicsAvatar(built.mjcf), target_angles(built), _poses()[40]
+    yield Figure("control", "pose to angles", _call_us(lambda: angles.follow(pose)), "us")
+    yield Figure("control", "body read back", _call_us(body.state), "us")
+    yield Figure("control", "contacts", _call_us(body.contacts), "us")
+
+
+def _call_us(call: Callable[[], object]) -> float:
+    call()
+    start_s = time.process_time()
+    for _ in range(CALLS):
+        call()
+    return 1e6 * (time.process_time() - start_s) / CALLS

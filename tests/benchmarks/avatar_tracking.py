@@ -1,0 +1,116 @@
+"""The avatar: how near it follows real people, and whether it is as late as it is told to be.
+
+`tracking` tunes the product's own body and lets it follow a walk, a reach and a turn at 90 Hz with
+nothing around it: the difference of every driven axis from its clamped target, at most 1.5 deg on
+average and 5 deg at the 95th percentile, beside the same with the gains that come with the product
+and with hips that are welded; the difference from what the person did, with the share that the
+limits took away; and the share of frames that ask some axis for more than 40 rad/s, which no target
+may do. On a floor a body is where that puts it: all samples, then those free of touch, are told
+without a limit. `delay` orders no, 125 and 350 ms and
+measures what came of it, at most one frame off.
+
+Needs the shared data; captures that are missing are left out.
+"""
+
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from app.science.achieved_latency import achieved_latency
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.defaults import default_configuration
+from app.science.avatar.model import avatar_model
+from app.science.avatar.scene import FLOOR_ONLY, Scene
+from app.science.avatar.simulation import MAX_SPEED_RAD_S
+from app.science.avatar.targets import TargetAngles, joint_rotations
+from app.science.avatar.tuning import Spread, follow_capture, track, tune
+from app.science.avatar.tuning.tracking import NOTHING
+from app.science.skeleton import Movement
+from tests.benchmarks.clips import CLIPS, LONG_WALK, movement, movements
+from tests.benchmarks.report import Figure, Report
+from tests.science.avatar.captured import RATE_HZ, STATURE_M
+from tests.science.avatar.simulated import follow
+
+PARTS = ("tracking", "delay")
+MEAN_LIMIT_DEG, P95_LIMIT_DEG, FRAME_MS = 1.5, 5.0, 1e3 / RATE_HZ
+DELAYS_MS = (0.0, 125.0, 350.0)
+
+
+def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
+    """Measure the named parts; nothing here has a duration to choose."""
+    report = Report("avatar_tracking")
+    if "tracking" in parts:
+        for name, clip in movements():
+            report.add(*_tracked(name, clip))
+    if "delay" in parts:
+        report.add(*_delays())
+    return report
+
+
+@cache
+def _tuned() -> Configuration:
+    return tune(default_configuration(), STATURE_M, wall_s=time.monotonic).configuration
+
+
+def _tracked(name: str, clip: Movement) -> Iterator[Figure]:
+    found = follow_capture(_tuned(), STATURE_M, clip)
+    usual = track(default_configuration(), STATURE_M, clip)
+    welded = track(replace(_tuned(), hips="welded"), STATURE_M, clip)
+    for told, one in (("tuned", found.alone), ("by hand", usual), ("tuned, hips welded", welded)):
+        yield from _row(name, told, one.clamped, MEAN_LIMIT_DEG, P95_LIMIT_DEG)
+    yield from _row(name, "tuned, to the unclamped targets", found.alone.unclamped)
+    shares = {
+        "samples clipped by limits": found.alone.clipped_share,
+        "frames with a target faster than 40 rad/s": _too_fast(clip),
+    }
+    for told, share in shares.items():
+        yield Figure("tracking", f"{name}: {told}", 100.0 * share, "%")
+    yield from _row(name, "tuned, on a floor", found.on_floor.clamped)
+    yield from _row(name, "tuned, on a floor, free of touch", found.on_floor.free)
+    share = found.on_floor.touching.samples / found.on_floor.clamped.samples
+    yield Figure("tracking", f"{name}: on a floor, samples in touch", 100.0 * share, "%")
+
+
+def _too_fast(clip: Movement) -> float:
+    targets = TargetAngles(_tuned().in_force).batch(clip.rotations).angles_rad
+    fastest = np.abs(np.diff(targets, axis=0)).max(axis=1) * clip.rate_hz
+    return float(np.mean(fastest > MAX_SPEED_RAD_S))
+
+
+def _row(
+    name: str, told: str, found: Spread, mean: float | None = None, p95: float | None = None
+) -> Iterator[Figure]:
+    if found.samples:
+        beside = "" if mean is None else "at most"
+        yield Figure("tracking", f"{name}: {told}, mean", found.mean_deg, "deg", beside, mean)
+        yield Figure("tracking", f"{name}: {told}, p95", found.p95_deg, "deg", beside, p95)
+
+
+def _delays() -> Iterator[Figure]:
+    for name, file, scene in (
+        ("walk and bend", LONG_WALK, NOTHING),
+        ("reach", CLIPS["reach"][0], NOTHING),
+        ("reach on a floor", CLIPS["reach"][0], FLOOR_ONLY),
+    ):
+        clip = movement(file)
+        if clip is not None:
+            yield from _delayed(name, clip, scene)
+
+
+def _delayed(name: str, clip: Movement, scene: Scene) -> Iterator[Figure]:
+    built = avatar_model(_tuned(), STATURE_M, scene=scene)
+    times_s = np.arange(clip.frame_count) / RATE_HZ
+    for ordered_ms in DELAYS_MS:
+        followed = follow(built, clip, delay_s=ordered_ms / 1e3)
+        command = joint_rotations(followed.targets.angles_rad, clip.rotations[:, 0])
+        found = achieved_latency(times_s, command, times_s, followed.rotations)
+        told = f"{name}, {ordered_ms:g} ms ordered"
+        if found.latency_s is None:
+            raise AssertionError(f"{told}: no latency was found: {found.reason}")
+        late_ms = 1e3 * found.latency_s
+        yield Figure("delay", f"{told}: achieved", late_ms, "ms")
+        off_ms = abs(late_ms - ordered_ms)
+        yield Figure("delay", f"{told}: off by", off_ms, "ms", "at most", FRAME_MS)

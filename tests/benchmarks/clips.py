@@ -1,0 +1,40 @@
+"""The real movements that benchmarks follow, where the shared data are there."""
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from app.science.skeleton import Movement
+from tests.conftest import SHARED_DATA_VARIABLE
+from tests.science.avatar.captured import LONG, REACH, TURN, WALK, movement_of
+
+CLIPS = {"walk": (WALK, False), "reach": (REACH, False), "turn": (TURN, True)}
+"""File, and whether it travels: CMU 02_01 in place; a person who inspects objects on tables; CMU
+05_06, a dancer who turns round four times over four metres."""
+LONG_WALK = LONG
+"""Long enough to measure a latency on."""
+
+
+def movement(name: str, *, travels: bool = False) -> Movement | None:
+    """A capture of the shared data on the product's body at 90 Hz; None where it is missing."""
+    path = shared_file("motion", name)
+    return None if path is None else movement_of(path, travels=travels)
+
+
+def shared_file(kind: str, name: str) -> Path | None:
+    """A file of the shared data; None, with that told, where it is missing."""
+    beside = Path(__file__).resolve().parents[3] / "shared" / "data"
+    path = Path(os.environ.get(SHARED_DATA_VARIABLE) or beside) / kind / name
+    if path.is_file():
+        return path
+    print(f"  {kind}/{name} is left out: {SHARED_DATA_VARIABLE} has no such file", file=sys.stderr)
+    return None
+
+
+def movements() -> Iterator[tuple[str, Movement]]:
+    """Those of `CLIPS` that are there."""
+    for told, (name, travels) in CLIPS.items():
+        found = movement(name, travels=travels)
+        if found is not None:
+            yield told, found

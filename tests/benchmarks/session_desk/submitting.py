@@ -1,0 +1,119 @@
+"""Tablets that fill in form after form: `python -m tests.benchmarks.session_desk.submitting`.
+
+Reads the plan as JSON from standard input and prints how long every submission took, and how long
+all of them together. A tablet sends a form, fetches the next one, and so on, without a pause: what
+a room full of people does only in the worst second of the day.
+"""
+
+import asyncio
+import json
+import sys
+import time
+import uuid
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import uvloop
+
+from tests.benchmarks.session_desk.lean_http import Answer, LeanHttp
+
+OK, MOVED = 200, (302, 303, 307)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """`who`: a tablet's cookie header (ours), or a participant's first path (oTree)."""
+
+    server: Literal["ours", "otree"]
+    port: int
+    who: tuple[str, ...]
+    forms: int
+    items: int
+
+    def as_json(self) -> str:
+        """One line."""
+        return json.dumps(asdict(self))
+
+
+@dataclass(frozen=True)
+class Submitted:
+    """Seconds: of each submission (sent to answered), of the whole, of the server's processor."""
+
+    submits_s: tuple[float, ...]
+    total_s: float
+    cpu_s: float = 0.0
+
+
+class Refused(RuntimeError):
+    """A submission was not taken."""
+
+
+async def our_tablet(plan: Plan, cookie: str) -> list[float]:
+    """Fill in forms as our page does: the state, then the answers."""
+    http, took_s = LeanHttp(plan.port, {"cookie": cookie}), []
+    for _ in range(plan.forms):
+        state = json.loads(_good(await http.ask("GET", "/api/tablet/state"), OK).body)
+        body = json.dumps(_answers(state["administration"])).encode()
+        began_s = time.perf_counter()
+        answer = await http.ask("POST", "/api/tablet/submissions", body)
+        took_s.append(time.perf_counter() - began_s)
+        _good(answer, OK)
+    await http.close()
+    return took_s
+
+
+async def otree_browser(plan: Plan, path: str) -> list[float]:
+    """Fill in forms as a browser does: the page, then the fields, then where it is sent."""
+    http, took_s = LeanHttp(plan.port), []
+    path = _good(await http.ask("GET", path), *MOVED).headers["location"]
+    fields = "&".join(f"q{number}={1 + number % 7}" for number in range(1, plan.items + 1))
+    for _ in range(plan.forms):
+        _good(await http.ask("GET", path), OK)
+        began_s = time.perf_counter()
+        answer = await http.ask("POST", path, fields.encode(), "application/x-www-form-urlencoded")
+        took_s.append(time.perf_counter() - began_s)
+        path = _good(answer, *MOVED).headers["location"]
+    await http.close()
+    return took_s
+
+
+def _answers(administration: dict[str, Any]) -> dict[str, Any]:
+    items = administration["instrument"]["items"]
+    rated = {item["key"]: 1 + at % 7 for at, item in enumerate(items) if item["type"] == "likert"}
+    open_ones = {item["key"]: None for item in items if item["type"] != "likert"}
+    return {
+        "idempotency_key": uuid.uuid4().hex,
+        "administration": administration["key"],
+        "answers": rated | open_ones,
+        "shown_order": administration["item_order"],
+        "seed": administration["seed"],
+        "language": administration["language"],
+        "timings": dict.fromkeys(rated, 1.5),
+    }
+
+
+def _good(answer: Answer, *expected: int) -> Answer:
+    if answer.status not in expected:
+        raise Refused(f"status {answer.status}: {answer.body[:500]!r}")
+    return answer
+
+
+async def run(plan: Plan) -> Submitted:
+    """All tablets at once."""
+    fill_in = our_tablet if plan.server == "ours" else otree_browser
+    began_s = time.perf_counter()
+    found = await asyncio.gather(*(fill_in(plan, one) for one in plan.who))
+    total_s = time.perf_counter() - began_s
+    return Submitted(tuple(took_s for one in found for took_s in one), total_s)
+
+
+def main() -> None:
+    """Run the plan."""
+    read: dict[str, Any] = json.loads(sys.stdin.readline())
+    plan = Plan(**{**read, "who": tuple(read["who"])})
+    with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
+        print(json.dumps(asdict(runner.run(run(plan)))), flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,20 @@
+"""The walking model: planner and maps (`walking_maps`), draws (`walking_sampling`)."""
+
+from tests.benchmarks import walking_maps, walking_sampling
+from tests.benchmarks.report import Report
+
+FIGURES = {
+    "planner": walking_maps.planner_figures,
+    "maps": walking_maps.map_figures,
+    "sampling": walking_sampling.sampling_figures,
+}
+PARTS = tuple(FIGURES)
+
+
+def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
+    """Measure the named parts; nothing here has a duration to choose."""
+    report = Report("walking")
+    for part, figures in FIGURES.items():
+        if part in parts:
+            report.add(*figures())
+    return report

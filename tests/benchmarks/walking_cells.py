@@ -1,0 +1,104 @@
+"""All three models on all populations: the cells that the walking model is judged by.
+
+For each population a database of 24 people over the laboratory's sixteen scenes. A cell is a
+population in one of three situations, and nobody is ever on both sides:
+
+    laboratory    people left out of the database, a quarter at a time
+    workplace 1   ten other people in the paper's first scene, in which nobody of the database was
+    workplace 2   the same in its second
+
+Readings are chosen on the people whom a model is fitted on.
+"""
+
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from app.adapters.walks.scene_file import load_shipped
+from app.science.walking.database import WalkDatabase, database_of
+from app.science.walking.evaluation import Evaluation, evaluate, pooled
+from app.science.walking.fitting import FitOptions, FittedWalking, fitted
+from app.science.walking.following import SteeringFollower
+from app.science.walking.maps import MapMaker, maps_of
+from app.science.walking.model import LENGTH, STATURE, TURNING, PlannedWalk
+from app.science.walking.populations import POPULATIONS, Population
+from app.science.walking.reading_choice import person_folds
+from app.science.walking.synthetic_walks import Sample, laboratory_scenes, synthetic_walks
+
+NAMES = (LENGTH, TURNING, STATURE)
+PEOPLE, FOLDS, OTHERS, REPETITIONS = 24, 4, 10, 2
+FOLLOWER = SteeringFollower()
+SCENES = ("car-and-three-racks", "car-between-two-racks")
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """A population in a situation."""
+
+    population: str
+    situation: str
+    evaluation: Evaluation
+
+
+@dataclass(frozen=True, eq=False)
+class Studied:
+    """One population: its database, the model fitted on all of it, and its cells.
+
+    Attributes:
+        workplaces: walks of other people in the two scenes.
+    """
+
+    population: Population
+    entries: list[PlannedWalk]
+    database: WalkDatabase
+    fit: FittedWalking
+    workplaces: tuple[list[PlannedWalk], list[PlannedWalk]]
+    cells: tuple[Cell, ...]
+
+
+def made(entries: Sequence[PlannedWalk], maker: MapMaker, names: tuple[str, ...]) -> WalkDatabase:
+    """A database with all its maps."""
+    return database_of(entries, [one for _, one in maps_of(entries, maker)], names)
+
+
+@cache
+def studied() -> tuple[Studied, ...]:
+    """Everything, once in a process; takes some minutes."""
+    return tuple(_study(population, seed) for seed, population in enumerate(POPULATIONS, start=1))
+
+
+def _study(population: Population, seed: int) -> Studied:
+    began = time.perf_counter()
+    entries = list(synthetic_walks(population, laboratory_scenes(), Sample(PEOPLE, seed=seed)))
+    database = made(entries, MapMaker(), NAMES)
+    fit = fitted(database, FitOptions(seed=seed))
+    sample = Sample(OTHERS, REPETITIONS, seed=1000 + seed, prefix="other ")
+    one, two = (
+        list(synthetic_walks(population, [scene], sample)) for scene in map(load_shipped, SCENES)
+    )
+    rng = np.random.default_rng(seed)
+    cells = [
+        Cell(population.name, "laboratory", _left_out(entries, database, seed, rng)),
+        Cell(population.name, "workplace 1", evaluate(fit.models, FOLLOWER, one, rng)),
+        Cell(population.name, "workplace 2", evaluate(fit.models, FOLLOWER, two, rng)),
+    ]
+    took = time.perf_counter() - began
+    print(f"  {population.name}: {len(entries)} walks, {took:.0f} s", file=sys.stderr)
+    return Studied(population, entries, database, fit, (one, two), tuple(cells))
+
+
+def _left_out(
+    entries: list[PlannedWalk], database: WalkDatabase, seed: int, rng: np.random.Generator
+) -> Evaluation:
+    parts = []
+    for fold in person_folds(database, rng, FOLDS):
+        out = database.is_of(fold)
+        fit = fitted(database.only(~out), FitOptions(seed=seed))
+        assert not set(fit.database.subjects) & set(fold)
+        left = [entries[at] for at in np.flatnonzero(out)]
+        parts.append(evaluate(fit.models, FOLLOWER, left, rng))
+    return pooled(parts)

@@ -1,0 +1,124 @@
+"""How well the walking model predicts travel times: populations, the paper's tables, real people.
+
+    ./run bench walking_evaluation [--json]                    the figures with their limits
+    .venv/bin/python -m tests.benchmarks.walking_evaluation --write    docs/walking-replication.md
+
+`populations` are the cells of `walking_cells`: P_prob's CRPS at most .9 of P_adapt's and below
+P_stat's, P_adapt's below P_stat's, each in 80 % of the cells; the interquartile range of
+predictions over that of the walks, median over courses, from .75 to 1.5. `replication` are the
+experiments of the paper; of them only leaving out has limits. `real` needs the shared data. A few
+minutes.
+"""
+
+import sys
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from tests.benchmarks.report import Figure, Report
+from tests.benchmarks.walking_cells import Cell, studied
+from tests.benchmarks.walking_real import RealWalks, real_walks, shared_folder
+from tests.benchmarks.walking_replication import Replication, replication
+
+DOCUMENT = Path(__file__).resolve().parents[2] / "docs" / "walking-replication.md"
+SHARE, RATIO, IQR_LOW, IQR_HIGH = 80.0, 0.9, 0.75, 1.5
+NEIGHBOURS_LIMITS, NODES_LIMITS = (0.5, 5.5), (0.05, 0.17)
+
+
+def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
+    """Measure the named parts; nothing here has a duration to choose."""
+    report = Report("walking_evaluation")
+    for part, figures in FIGURES.items():
+        if part in parts:
+            report.add(*figures())
+    return report
+
+
+def cells() -> list[Cell]:
+    """All cells of all populations."""
+    return [cell for one in studied() for cell in one.cells]
+
+
+@cache
+def repeated() -> Replication:
+    """The paper's experiments on the first population."""
+    return replication(studied()[0])
+
+
+@cache
+def real() -> RealWalks | None:
+    """Real walks, None where the shared data are not there."""
+    folder = shared_folder()
+    return None if folder is None else real_walks(folder)
+
+
+def population_figures() -> Iterator[Figure]:
+    """Shares of cells, and the median of interquartile ratios."""
+    part, found = "populations", [cell.evaluation for cell in cells()]
+    by_adapt = np.array([one.crps_ratio("prob", "adapt") for one in found])
+    by_stat = np.array([one.crps_ratio("prob", "stat") for one in found])
+    adapt = np.array([one.crps_ratio("adapt", "stat") for one in found])
+    yield Figure(part, "cells", float(len(found)), "")
+    yield Figure(part, "CRPS prob <= .9 adapt", 100.0 * float((by_adapt <= RATIO).mean()), "%",
+                 "at least", SHARE)  # fmt: skip
+    yield Figure(part, "CRPS prob / adapt, median", float(np.median(by_adapt)), "", "goal", 0.8)
+    yield Figure(part, "CRPS prob / adapt, worst", float(by_adapt.max()), "", "at most", RATIO)
+    yield Figure(part, "CRPS prob < stat", 100.0 * float((by_stat < 1.0).mean()), "%",
+                 "at least", SHARE)  # fmt: skip
+    yield Figure(part, "CRPS adapt < stat", 100.0 * float((adapt < 1.0).mean()), "%",
+                 "at least", SHARE)  # fmt: skip
+    ratios = [ratio for one in found for ratio in one.iqr_ratios("prob")]
+    yield Figure(part, "IQR ratio, median", float(np.median(ratios)), "", "at least", IQR_LOW)
+    yield Figure(part, "IQR ratio, median", float(np.median(ratios)), "", "at most", IQR_HIGH)
+
+
+def replication_figures() -> Iterator[Figure]:
+    """Leaving out, by neighbours and by radial bases."""
+    one, part = repeated(), "replication"
+    for name, left, limits in (
+        ("neighbours left out", one.neighbours, NEIGHBOURS_LIMITS),
+        ("nodes left out", one.nodes, NODES_LIMITS),
+    ):
+        yield Figure(part, f"{name}, |mean|", abs(left.mean), "%", "at most", limits[0])
+        yield Figure(part, f"{name}, sd", left.sd, "%", "at most", limits[1])
+    for near in one.sweep:
+        yield Figure(part, f"k = {near.k}, CRPS", near.crps_s, "s")
+
+
+def real_figures() -> Iterator[Figure]:
+    """Distances of the table within one deviation."""
+    found = real()
+    if found is None:
+        return
+    off = [one.off_sds for one in found.distances]
+    yield Figure("real", "peak speed off, worst distance", max(off), "sd", "at most", 1.0)
+    errors = [abs(one.predicted_s - one.duration_s) for one in found.distances]
+    yield Figure("real", "duration off, median of distances", float(np.median(errors)), "s")
+    for name, outcome in found.captures.outcomes.items():
+        yield Figure("real", f"CMU walks left out, CRPS {name}", outcome.mean_crps_s, "s")
+
+
+FIGURES = {
+    "populations": population_figures,
+    "replication": replication_figures,
+    "real": real_figures,
+}
+PARTS = tuple(FIGURES)
+
+
+def main(arguments: list[str]) -> int:
+    """Write the replication report with --write; else print it."""
+    from tests.benchmarks.walking_report import replication_report
+
+    text = replication_report(studied(), repeated(), real())
+    if "--write" in arguments:
+        DOCUMENT.write_text(text, encoding="utf-8")
+    else:
+        print(text)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
