@@ -94,6 +94,17 @@ def test_of_two_tablets_with_one_code_one_holds_the_session(
     note(11, "a new code for another tablet", "dual holders", 0)
 
 
+def wait_for_any(pages: list[Page], text: str) -> list[Page]:
+    """The pages that say `text` once one of them does: who was second first asks what changed."""
+    until_s = time.monotonic() + PATIENCE_MS / 1000
+    while time.monotonic() < until_s:
+        saying = [page for page in pages if page.get_by_text(text).count()]
+        if saying:
+            return saying
+        pages[0].wait_for_timeout(50)
+    return []
+
+
 def test_two_operators_press_start_in_two_browsers(
     headset_site: Site, page_factory: Callable[..., Page], page_watch: PageWatch
 ) -> None:
@@ -117,6 +128,6 @@ def test_two_operators_press_start_in_two_browsers(
     starts = [one for one in events if one["type"] == "session_started"]
     note(25, "two operators press start in two browsers", "starts on record", len(starts))
     assert len(starts) == 1
-    told = sum(page.get_by_text("The session was started.").count() > 0 for page in pages)
+    told = len(wait_for_any(pages, "The session was started."))
     note(25, "two operators press start in two browsers", "pages that tell of the other", told)
     assert told == 1
