@@ -17,7 +17,7 @@ from dataclasses import fields
 from typing import Any
 
 from app.client.http import Operator, ServerRefusedError, UnreachableError
-from app.rehearsal.cast import ENDED, perform
+from app.rehearsal.cast import ENDED, OVERTAKEN, perform
 from app.rehearsal.rehearse import RehearsalPlan, assembled
 
 LONGEST_WORDS = 400
@@ -51,20 +51,25 @@ async def _rehearse(plan: RehearsalPlan) -> None:
         try:
             await perform(cast)
         except BaseException:
-            await _end_session(cast.operator)
+            await end_session(cast.operator)
             raise
 
 
-async def _end_session(operator: Operator) -> None:
-    """Leave no simulated session that looks as if somebody were in it."""
-    try:
+async def end_session(operator: Operator) -> None:
+    """Leave no simulated session that looks as if somebody were in it.
+
+    What the three devices had sent last may still arrive, and move the session on between the look
+    and the order: then both are done again.
+    """
+    # Where nobody answers, the server goes away too.
+    with contextlib.suppress(TimeoutError, ServerRefusedError, UnreachableError):
         async with asyncio.timeout(ENDS_WITHIN_S):
-            view = await operator.view()
-            if view["status"] not in ENDED:
-                await operator.command(view, "abort", reason=STOPPED)
-    except (TimeoutError, ServerRefusedError, UnreachableError):
-        # The server goes away too, or somebody else was first.
-        return
+            while (view := await operator.view())["status"] not in ENDED:
+                try:
+                    await operator.command(view, "abort", reason=STOPPED)
+                except ServerRefusedError as error:
+                    if error.code not in OVERTAKEN:
+                        raise
 
 
 def plan_from(told: dict[str, Any]) -> RehearsalPlan:

@@ -14,6 +14,8 @@ from app.rehearsal.headset import Headset
 
 Json = dict[str, Any]
 ENDED = ("completed", "aborted", "withdrawn")
+OVERTAKEN = ("stale", "not_now")
+"""What the server says where somebody else, or the headset, was first."""
 LOOK_EVERY_S = 0.1
 
 
@@ -55,8 +57,7 @@ async def operate(cast: Cast) -> None:
             try:
                 await cast.operator.command(view, kind, **fields)
             except ServerRefusedError as error:
-                # Somebody else, or the headset, was first: look again.
-                if error.code not in ("stale", "not_now"):
+                if error.code not in OVERTAKEN:
                     raise
         await asyncio.sleep(LOOK_EVERY_S)
 

@@ -1,0 +1,49 @@
+"""A rehearsal that is stopped ends its session, whatever still arrives of it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from httpx2 import ASGITransport, AsyncClient
+
+from app.client.http import Operator
+from app.rehearsal.__main__ import end_session
+from tests.features.lab import Lab
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Overtaken(Operator):
+    """Whenever it has looked, an order that was on its way arrives, as long as there are any."""
+
+    lab: Lab
+    on_the_way: list[str]
+
+    async def view(self) -> Json:
+        """What it saw, which is no longer so."""
+        seen = await super().view()
+        if self.on_the_way:
+            await super().command(seen, self.on_the_way.pop(0), reason="on its way")
+        return seen
+
+
+def test_a_stopped_rehearsal_aborts_a_session_that_moves_on(lab: Lab) -> None:
+    """Two orders arrive between look and abort; the session is aborted all the same, once."""
+    session_id = lab.command(lab.join(kind="simulated"), "start")["id"]
+    late = ["skip", "skip"]
+
+    async def stop() -> None:
+        transport = ASGITransport(app=lab.app)
+        headers = {"authorization": lab.operator.headers["authorization"]}
+        async with AsyncClient(
+            transport=transport, base_url="http://localhost", headers=headers
+        ) as client:
+            await end_session(Overtaken(client, session_id, lab, late))
+
+    portal = lab.operator.portal
+    assert portal is not None
+    portal.call(stop)
+    assert late == []
+    assert lab.view(session_id)["status"] == "aborted"
+    ends = [one for one in lab.events(session_id) if one["type"] == "session_ended"]
+    assert len(ends) == 1
