@@ -62,6 +62,12 @@ def test_figures_are_chosen_by_the_address_and_saved(
     screenshot(page, "statistics")
     page.emulate_media(color_scheme="dark")
     assert axe(page) == []
+    screenshot(page, "statistics-dark")
+    glance = page.get_by_role("region", name="At a glance")
+    agency_row = glance.get_by_role("row").filter(has=page.get_by_role("button", name="Agency"))
+    expect(agency_row).to_contain_text("falls, p = .005")
+    agency_row.get_by_role("button").click()
+    expect(page.get_by_role("heading", name="Agency", exact=True)).to_be_in_viewport()
 
     page.get_by_role("tab", name="Preregistration").click()
     page.get_by_text("Simulated", exact=True).first.click()

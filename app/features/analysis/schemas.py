@@ -93,8 +93,26 @@ class ResultView(BaseModel):
     exploratory: bool
 
 
+class GlanceView(BaseModel):
+    """The answers of one limb in a few signs each; null where it could not be tested.
+
+    `differ`: whether the latencies differ at all. `first`: the first latency that differs from the
+    smallest one, empty where none does. `trend` along latency, and the `way` it goes or was
+    predicted to go.
+    """
+
+    limb: str
+    differ: str | None
+    first: str | None
+    trend: str | None
+    way: Literal["rises", "falls"] | None
+
+
 class MeasureView(BaseModel):
-    """What was asked of one measure; `left_out` says in words who is not in it, and why."""
+    """What was asked of one measure; `left_out` says in words who is not in it, and why.
+
+    `glance` has a row for each limb whose latencies were compared.
+    """
 
     key: str
     title: str
@@ -102,6 +120,7 @@ class MeasureView(BaseModel):
     about: str
     n: int
     left_out: list[str]
+    glance: list[GlanceView]
     results: list[ResultView]
 
 

@@ -59,6 +59,20 @@ def test_everybody_alike_gives_the_smallest_p_there_is(database: Database) -> No
     assert [row[4] for row in predicted.rows] == [".031", ".031"]
     agency = _measure(found, "karas2020_agency")
     assert (agency.n, agency.left_out) == (6, ["P-9999: withdrawn"])
+    assert [tuple(one.model_dump().values()) for one in agency.glance] == [
+        ("hand", "p < .001, W = 1.00", None, "p < .001", "falls"),
+        ("foot", "p < .001, W = 1.00", None, "p < .001", "falls"),
+    ]
+
+
+@pytest.mark.one_engine
+def test_what_does_not_change_goes_neither_way(database: Database) -> None:
+    """Completed tasks are the same everywhere: no direction is told, and p is 1."""
+    found = _found(database, 4)
+    told = _result(found, "completions", "trend_hand")
+    assert "By ranks the measure goes neither way with latency." in told.sentence
+    line = _measure(found, "completions").glance[0]
+    assert (line.differ, line.first, line.trend, line.way) == (None, None, "p = 1.000", None)
 
 
 def test_nothing_is_significant_and_alpha_is_told(database: Database) -> None:

@@ -19,7 +19,7 @@ from app.features.analysis.questions.relations import (
 )
 from app.features.analysis.questions.reliability import reliability
 from app.features.analysis.questions.words import Said
-from app.features.analysis.schemas import MeasureView, StatisticsResults
+from app.features.analysis.schemas import GlanceView, MeasureView, StatisticsResults
 
 USUAL_ALPHA = 0.05
 FEWEST = 2
@@ -65,6 +65,7 @@ def _measures(material: Material, alpha: float) -> Iterator[MeasureView]:
         if len(measure.levels) < FEWEST:
             continue
         n = int(measure.values["participant_code"].nunique())
+        results = list(_results(measure, alpha))
         yield MeasureView(
             key=measure.key,
             title=measure.title,
@@ -72,7 +73,8 @@ def _measures(material: Material, alpha: float) -> Iterator[MeasureView]:
             about=measure.about,
             n=n,
             left_out=[*out, *measure.missing()],
-            results=[one.view() for one in _results(measure, alpha)],
+            glance=_glance(measure, results),
+            results=[one.view() for one in results],
         )
     yield from _explored(material, found, out)
 
@@ -84,6 +86,21 @@ def _results(measure: Measure, alpha: float) -> Iterator[Said]:
     if measure.continuous:
         yield from model_results(measure, alpha)
     yield from carry_over_result(measure)
+
+
+def _glance(measure: Measure, results: Sequence[Said]) -> list[GlanceView]:
+    brief = {one.key: one.brief for one in results if one.brief is not None}
+    text = {key: one.text for key, one in brief.items()}
+    return [
+        GlanceView(
+            limb=limb,
+            differ=text.get(f"friedman_{limb}"),
+            first=text.get(f"planned_{limb}"),
+            trend=text.get(f"trend_{limb}"),
+            way=brief[f"trend_{limb}"].way if f"trend_{limb}" in brief else None,
+        )
+        for limb in measure.limbs
+    ]
 
 
 def _explored(
@@ -102,5 +119,12 @@ def _explored(
         views = [one.view() for one in results]
         if views:
             yield MeasureView(
-                key=key, title=title, unit="", about="", n=n, left_out=out, results=views
+                key=key,
+                title=title,
+                unit="",
+                about="",
+                n=n,
+                left_out=out,
+                glance=[],
+                results=views,
             )

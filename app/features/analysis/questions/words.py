@@ -12,6 +12,7 @@ from importlib.resources import files
 
 from app.features.analysis.schemas import ResultView
 from app.science.statistics.error_rates_table import ErrorRates, error_rates_from_json
+from app.science.statistics.planned import Direction
 
 _SMALLEST_P = 0.001
 _BOUNDED_DIGITS = 3
@@ -20,8 +21,19 @@ NONE = "–"
 
 
 @dataclass(frozen=True)
+class Brief:
+    """A result in the few signs of a table cell; `way` of a trend: where the measure goes."""
+
+    text: str
+    way: Direction | None = None
+
+
+@dataclass(frozen=True)
 class Said:
-    """A result before it travels; see `ResultView`."""
+    """A result before it travels; see `ResultView`.
+
+    `brief`: None where it could not be tested.
+    """
 
     key: str
     title: str
@@ -33,6 +45,7 @@ class Said:
     source: str
     warnings: Sequence[str] = field(default_factory=tuple)
     exploratory: bool = False
+    brief: Brief | None = None
 
     def view(self) -> ResultView:
         """As it travels; doubled warnings are told once."""

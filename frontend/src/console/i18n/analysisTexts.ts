@@ -47,6 +47,18 @@ export const analysisEn = {
   "statistics.exploratory": "exploratory",
   "statistics.copy": "Copy as text (APA)",
   "statistics.copied": "Copied",
+  "glance.title": "At a glance",
+  "glance.about":
+    "Each line is tested for itself: Holm’s rule covers the latencies of a line, nothing covers all lines together.",
+  "glance.measure": "Measure",
+  "glance.task": "Task",
+  "glance.differ": "Do the latencies differ?",
+  "glance.first": "First that differs from the smallest",
+  "glance.trend": "Trend along latency",
+  "glance.rises": "rises",
+  "glance.falls": "falls",
+  "glance.none": "none",
+  "glance.untested": "cannot be tested",
 } as const;
 
 export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
@@ -97,4 +109,16 @@ export const analysisDe: Readonly<Record<keyof typeof analysisEn, string>> = {
   "statistics.exploratory": "explorativ",
   "statistics.copy": "Als Text kopieren (APA)",
   "statistics.copied": "Kopiert",
+  "glance.title": "Auf einen Blick",
+  "glance.about":
+    "Jede Zeile ist für sich getestet: Die Holm-Regel gilt für die Latenzen einer Zeile, nichts gilt für alle Zeilen zusammen.",
+  "glance.measure": "Maß",
+  "glance.task": "Aufgabe",
+  "glance.differ": "Unterscheiden sich die Latenzen?",
+  "glance.first": "Erste, die sich von der kleinsten unterscheidet",
+  "glance.trend": "Trend über die Latenz",
+  "glance.rises": "steigt",
+  "glance.falls": "fällt",
+  "glance.none": "keine",
+  "glance.untested": "nicht testbar",
 };

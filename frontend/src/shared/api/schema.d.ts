@@ -4520,6 +4520,26 @@ export interface components {
             readonly note: string | null;
         };
         /**
+         * GlanceView
+         * @description The answers of one limb in a few signs each; null where it could not be tested.
+         *
+         *     `differ`: whether the latencies differ at all. `first`: the first latency that differs from the
+         *     smallest one, empty where none does. `trend` along latency, and the `way` it goes or was
+         *     predicted to go.
+         */
+        readonly GlanceView: {
+            /** Differ */
+            readonly differ: string | null;
+            /** First */
+            readonly first: string | null;
+            /** Limb */
+            readonly limb: string;
+            /** Trend */
+            readonly trend: string | null;
+            /** Way */
+            readonly way: ("rises" | "falls") | null;
+        };
+        /**
          * Health
          * @description Whether the server and its database answer, and whether the record can be written.
          *
@@ -5288,10 +5308,14 @@ export interface components {
         /**
          * MeasureView
          * @description What was asked of one measure; `left_out` says in words who is not in it, and why.
+         *
+         *     `glance` has a row for each limb whose latencies were compared.
          */
         readonly MeasureView: {
             /** About */
             readonly about: string;
+            /** Glance */
+            readonly glance: readonly components["schemas"]["GlanceView"][];
             /** Key */
             readonly key: string;
             /** Left Out */

@@ -10,6 +10,7 @@ import { statisticsQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter } from "../../ui/KindFilter";
 import { Loaded } from "../../ui/Loaded";
+import { AtAGlance } from "./AtAGlance";
 import { ResultCard } from "./ResultCard";
 import classes from "./StatisticsTab.module.css";
 import page from "./StudyPage.module.css";
@@ -65,6 +66,7 @@ function Answers({ found }: { readonly found: Statistics }): JSX.Element {
         <div className={classes.layout}>
           <Contents measures={found.measures} />
           <div>
+            <AtAGlance measures={found.measures} onChoose={goTo} />
             {found.measures.map((measure) => (
               <MeasureSection key={measure.key} measure={measure} />
             ))}
@@ -81,11 +83,7 @@ function Contents({ measures }: { readonly measures: readonly Measure[] }): JSX.
     <nav className={classes.contents} aria-label={t("statistics.contents")}>
       {measures.map(({ key, title }) => (
         // Buttons: the place of the page stands in the address behind its #.
-        <button
-          type="button"
-          key={key}
-          onClick={() => document.getElementById(headingOf(key))?.scrollIntoView()}
-        >
+        <button type="button" key={key} onClick={() => goTo(key)}>
           {title}
         </button>
       ))}
@@ -94,6 +92,8 @@ function Contents({ measures }: { readonly measures: readonly Measure[] }): JSX.
 }
 
 const headingOf = (key: string): string => `measure-${key}`;
+
+const goTo = (key: string): void => document.getElementById(headingOf(key))?.scrollIntoView();
 
 function MeasureSection({ measure }: { readonly measure: Measure }): JSX.Element {
   const { t } = useTexts();
