@@ -10,6 +10,7 @@ from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.features.instruments.test_library import OWN
 from tests.support.browser import ColorScheme
 from tests.support.server import LiveServer
+from tests.support.traffic import Traffic
 
 expect.set_options(timeout=PATIENCE_MS)
 STUDY = "reembodiment-latency"
@@ -172,6 +173,7 @@ def test_editor_and_library_are_accessible(
     writer = Writer(page_factory((1180, 820), scheme), running_server.url)
     writer.log_in()
     page = writer.page
+    traffic = Traffic(page)
     writer.open_tab(STUDY, "edit")
     writer.sees_no_problem()
     sections = ("Conditions", "Orders", "Procedure", "Tasks", "Sickness", "Texts", "Blinding")
@@ -183,7 +185,7 @@ def test_editor_and_library_are_accessible(
     screenshot(page, f"editor-de-{scheme}")
     for tab in ("", "scoring", "try", "file"):
         page.goto(f"{running_server.url}/#/instruments/raw_tlx/{tab}")
-        page.wait_for_load_state("networkidle")
+        traffic.settle()
         assert axe(page) == [], tab
         screenshot(page, f"instrument-{tab or 'items'}-{scheme}")
 

@@ -12,6 +12,7 @@ from playwright.sync_api import Page, expect
 from tests.e2e.people import PATIENCE_MS, Experimenter, Participant
 from tests.support.browser import ColorScheme, PageWatch
 from tests.support.server import ADMIN_PASSWORD, LiveServer
+from tests.support.traffic import Traffic
 
 STUDY = "reembodiment-latency"
 TABS = ("", "ledger", "sessions", "participants", "dashboard", "export", "protocol")
@@ -48,6 +49,7 @@ def test_every_console_page_is_accessible(
 ) -> None:
     """Nothing serious or critical on any page of the console, and no error in its log."""
     page = page_factory((1280, 800), scheme)
+    traffic = Traffic(page)
     page.goto(played_server.url)
     expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
     assert axe(page) == []
@@ -63,7 +65,7 @@ def test_every_console_page_is_accessible(
         if tab == "dashboard":
             plot = page.locator(".js-plotly-plot").first
             expect(plot).to_be_visible(timeout=PATIENCE_MS)
-        page.wait_for_load_state("networkidle")
+        traffic.settle()
         assert axe(page) == [], tab
         screenshot(page, f"console-{tab or 'overview'}-{scheme}")
     experimenter.open_tab(STUDY, "sessions")

@@ -14,6 +14,7 @@ from tests.features.lab import key, ok
 from tests.protocol.helpers import edited
 from tests.support.browser import PageWatch
 from tests.support.server import ADMIN_PASSWORD, LiveServer
+from tests.support.traffic import Traffic
 
 HOSTILE = "hostile"
 SCRIPTS = (
@@ -86,6 +87,7 @@ def test_nothing_that_was_written_is_run(
         shown = ok(api.post(f"/api/sessions/{joined['id']}/pairings", json={"device": "tablet"}))
     experimenter = Experimenter(page_factory(), running_server.url)
     page = experimenter.page
+    traffic = Traffic(page)
     dialogs: list[str] = []
 
     def dismiss(dialog: Dialog) -> None:
@@ -104,7 +106,7 @@ def test_nothing_that_was_written_is_run(
     ):
         page.goto(f"{running_server.url}/#/{address}")
         expect(page.get_by_role("main")).to_be_visible(timeout=PATIENCE_MS)
-        page.wait_for_load_state("networkidle")
+        traffic.settle()
         seen += page.get_by_text("onerror").count() > 0
         assert page.evaluate("window.ran") is None, address
         assert page.locator("iframe, svg[onload], img[src=x]").count() == 0, address

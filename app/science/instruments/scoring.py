@@ -39,9 +39,17 @@ def scores_of_columns(
     """Raw answers (rows,) by item -> scores (rows,); items that are absent count as missing."""
     missing = np.full(rows, np.nan)
     raw = {item.key: columns.get(item.key, missing) for item in instrument.items if item.is_numeric}
-    recoding = instrument.recoding
-    values = raw if recoding is None else {k: evaluate(recoding, {"x": v}) for k, v in raw.items()}
+    values = _recoded(instrument, raw)
     scores: dict[str, FloatArray] = {}
     for key, tree in instrument.formulas.items():
         scores[key] = np.broadcast_to(evaluate(tree, values | scores), rows)
     return scores
+
+
+def _recoded(instrument: Instrument, raw: dict[str, FloatArray]) -> dict[str, FloatArray]:
+    """All items at once: the formula is the same for each."""
+    if instrument.recoding is None or not raw:
+        return raw
+    together = np.stack(list(raw.values()))
+    recoded = np.broadcast_to(evaluate(instrument.recoding, {"x": together}), together.shape)
+    return dict(zip(raw, recoded, strict=True))

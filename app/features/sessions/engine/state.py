@@ -1,6 +1,6 @@
 """Where a session stands: a frozen value, folded from its events."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
@@ -106,7 +106,9 @@ _ADAPTER = TypeAdapter(SessionState)
 
 def state_to_json(state: SessionState) -> dict[str, Any]:
     """The snapshot that is stored beside the events."""
-    return asdict(state)
+    # Every command writes one: dataclasses.asdict took sixteen times as long.
+    snapshot: dict[str, Any] = _ADAPTER.dump_python(state)
+    return snapshot
 
 
 def state_from_json(snapshot: dict[str, Any]) -> SessionState:
