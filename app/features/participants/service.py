@@ -6,7 +6,6 @@ aborted the attempt closes with its data and the same slot is the next to be tak
 counts completed sessions. People, simulated, test and expert sessions have ledgers of their own.
 """
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -14,9 +13,9 @@ from datetime import datetime
 from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
-from app.errors import Conflict, InvalidInput
+from app.errors import Conflict
+from app.features.participants.codes import find_or_add_participant as find_or_add_participant
 from app.models import (
-    Erasure,
     Ledger,
     LedgerSlot,
     Participant,
@@ -29,8 +28,6 @@ from app.protocol import StudyProtocol
 from app.protocol.orders import ledger_block
 
 HOLDING = ("open", "completed")
-_CODE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,39}")
-_PREFIX = {"people": "P", "simulated": "SIM", "test": "TEST", "expert": "EXPERT"}
 
 
 @dataclass(frozen=True)
@@ -141,76 +138,6 @@ def _grow(db: Session, ledger: Ledger, protocol: StudyProtocol) -> None:
     )
     ledger.blocks += 1
     db.flush()
-
-
-def find_or_add_participant(
-    db: Session, *, study_id: str, kind: str, code: str | None, now: datetime
-) -> Participant:
-    """The participant of that code, or a new one with the next free code.
-
-    Raises InvalidInput for an unusable code and Conflict where that participant is in a session or
-    has completed one.
-    """
-    if code is None or not code.strip():
-        return _add_participant(db, study_id, kind, _next_code(db, study_id, kind), now)
-    code = code.strip()
-    if not _CODE.fullmatch(code):
-        raise InvalidInput(
-            f"{code!r} cannot be a participant's code",
-            value=code,
-            valid="1 to 40 letters, digits, - and _",
-            remedy="Use a pseudonym such as P-0007, never a name.",
-        )
-    known = db.scalar(
-        select(Participant).where(
-            Participant.study_id == study_id, Participant.kind == kind, Participant.code == code
-        )
-    )
-    if known is None:
-        return _add_participant(db, study_id, kind, code, now)
-    if db.scalar(select(Erasure.id).where(Erasure.participant_id == known.id)) is not None:
-        raise Conflict(
-            f"the data of {code} were erased, and nobody can be added to what is left",
-            value=code,
-            remedy="Use another code.",
-        )
-    busy = db.scalar(
-        select(StudySession).where(
-            StudySession.participant_id == known.id,
-            StudySession.status.in_(("planned", "active", "completed")),
-        )
-    )
-    if busy is not None:
-        raise Conflict(
-            f"participant {code} has a session that is {busy.status}",
-            value=code,
-            remedy="Open that session, or use another code.",
-            details=[{"session_id": busy.id, "status": busy.status}],
-        )
-    return known
-
-
-def _add_participant(
-    db: Session, study_id: str, kind: str, code: str, now: datetime
-) -> Participant:
-    row = Participant(study_id=study_id, kind=kind, code=code, created_at=now)
-    db.add(row)
-    db.flush()
-    return row
-
-
-def _next_code(db: Session, study_id: str, kind: str) -> str:
-    taken = set(
-        db.scalars(
-            select(Participant.code).where(
-                Participant.study_id == study_id, Participant.kind == kind
-            )
-        )
-    )
-    number = len(taken) + 1
-    while f"{_PREFIX[kind]}-{number:04d}" in taken:
-        number += 1
-    return f"{_PREFIX[kind]}-{number:04d}"
 
 
 def hold_slot(db: Session, slot: LedgerSlot, session: StudySession, now: datetime) -> None:
