@@ -22,10 +22,13 @@ import numpy.typing as npt
 
 from app.science.avatar.delay import delayed_pose
 from app.science.joint_error import (
+    ERROR_AXES,
     Clipping,
     JointErrorError,
+    JointErrors,
     JointErrorSummary,
-    joint_error_summary,
+    joint_errors,
+    summarise_joint_errors,
 )
 from app.science.rotations import FloatArray
 from app.science.skeleton.joints import JOINT_COUNT
@@ -71,10 +74,17 @@ class Recorded:
 
 @dataclass(frozen=True, eq=False)
 class RecordedErrors:
-    """Both comparisons."""
+    """Both comparisons, summed up and frame by frame.
+
+    Attributes:
+        present_rad, command_rad: (N, 21) whole angle of each joint in all frames of the avatar, run
+            after run; NaN where a sample does not count.
+    """
 
     present: JointErrorSummary
     command: JointErrorSummary
+    present_rad: FloatArray
+    command_rad: FloatArray
 
 
 def recorded_errors(runs: Sequence[Recorded], delay_s: float) -> RecordedErrors:
@@ -86,23 +96,31 @@ def recorded_errors(runs: Sequence[Recorded], delay_s: float) -> RecordedErrors:
     """
     if not runs:
         raise JointErrorError("A recording without runs has no errors: give at least one.")
-    return RecordedErrors(
-        _together([run.asked.at(run.partners) for run in runs], runs),
-        _together([_commanded(run, delay_s) for run in runs], runs),
-    )
+    present, present_rad = _together([run.asked.at(run.partners) for run in runs], runs)
+    command, command_rad = _together([_commanded(run, delay_s) for run in runs], runs)
+    return RecordedErrors(present, command, present_rad, command_rad)
 
 
-def _together(asked: Sequence[Asked], runs: Sequence[Recorded]) -> JointErrorSummary:
+def _together(
+    asked: Sequence[Asked], runs: Sequence[Recorded]
+) -> tuple[JointErrorSummary, FloatArray]:
+    """The summary, and the angles that it counts."""
     clippings = [one.clipping for one in asked if one.clipping is not None]
     clipping = clippings[0] if clippings else None
     if clipping is not None:
         every = np.concatenate([one.clipped for one in clippings])
         clipping = Clipping(every, clipping.turns, clipping.hinged)
-    return joint_error_summary(
+    errors = joint_errors(
         np.concatenate([one.rotations for one in asked]),
         np.concatenate([run.actual for run in runs]),
-        clipping,
     )
+    return summarise_joint_errors(errors, clipping), _counted_angles(errors, clipping)
+
+
+def _counted_angles(errors: JointErrors, clipping: Clipping | None) -> FloatArray:
+    """(N, 21) as the summary counts: a joint without a hinge is asked for nothing."""
+    counts = errors.valid if clipping is None else errors.valid & clipping.hinged
+    return np.where(counts, errors.values_rad[..., ERROR_AXES.index("angle")], np.nan)
 
 
 def _commanded(run: Recorded, delay_s: float) -> Asked:

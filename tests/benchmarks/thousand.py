@@ -18,6 +18,7 @@ from app.models import (
     ClockProbe,
     Completion,
     Contact,
+    JointErrorCourseRow,
     JointErrorRow,
     Participant,
     Phase,
@@ -39,8 +40,8 @@ COUNTS = (
     "backwards",
 )
 OWN = (
-    *(Phase, PhaseLatency, PhaseQuality, Contact, Completion, JointErrorRow, ClockProbe),
-    *(SessionContent, SessionEvent, Submission),
+    *(Phase, PhaseLatency, PhaseQuality, Contact, Completion, ClockProbe),
+    *(JointErrorRow, JointErrorCourseRow, SessionContent, SessionEvent, Submission),
 )
 OF_A_SUBMISSION = (Answer, ScoreValue)
 

@@ -1,6 +1,7 @@
 """What happens in a built session: its phases with what they came to, and its forms."""
 
 import hashlib
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -13,6 +14,7 @@ from app.models import (
     Answer,
     Completion,
     Contact,
+    JointErrorCourseRow,
     JointErrorRow,
     Phase,
     ScoreValue,
@@ -23,6 +25,7 @@ from app.models import (
 from app.protocol.plan import Step
 from app.science.instruments import Instrument, item_order, score_answers
 from app.science.joint_error import ERROR_AXES, ERROR_JOINTS
+from app.science.joint_error_course import COURSE_BIN_S
 from tests.features.clock_filler import steady_probes, store_probes
 
 NOW = datetime(2026, 3, 2, 9, 30, tzinfo=UTC)
@@ -93,6 +96,7 @@ class Filler:
         if step.kind == "task":
             self._task_rows(step)
         self._joint_errors(step)
+        self._joint_error_courses(step)
 
     def _task_rows(self, step: Step) -> None:
         """Two parts at one side, overlapping: 1..3 s and 2..4 s, so red for 3 s; one panel."""
@@ -152,6 +156,22 @@ class Filler:
                             excluded=0,
                         )
                     )
+
+    def _joint_error_courses(self, step: Step) -> None:
+        """All bins alike: the mean of the joints, and their 5400 samples evenly over the bins."""
+        bins = math.ceil((step.duration_s or 0.0) / COURSE_BIN_S)
+        mean = float(np.mean([self.spec.joint_error_rad(step, joint) for joint in ERROR_JOINTS]))
+        for reference in ("present", "command"):
+            self.db.add(
+                JointErrorCourseRow(
+                    session_id=self.session.id,
+                    phase_id=self.phase_id,
+                    reference=reference,
+                    bin_s=COURSE_BIN_S,
+                    mean_rad=[mean if reference == "present" else 0.0] * bins,
+                    samples=[5400 * len(ERROR_JOINTS) // bins] * bins,
+                )
+            )
 
     def _form(self, step: Step, attempt: int) -> None:
         version = self.db.get_one(StudyVersion, self.session.study_version_id)

@@ -21,6 +21,7 @@ from app.features.analysis.figures import (
     exclusions_drawing,
     joint_error_blocks_drawing,
     joint_error_body_drawing,
+    joint_error_course_drawing,
     joint_error_drawing,
     joint_error_map_drawing,
     learning_drawing,
@@ -128,6 +129,7 @@ def _movement(rows: _Rows) -> Iterator[Drawing]:
     yield joint_error_drawing(rows.errors).of_group("movement")
     yield achieved_drawing(rows.phases)
     yield joint_error_blocks_drawing(rows.errors)
+    yield joint_error_course_drawing(rows.counting(rows.left.courses))
     yield joint_error_map_drawing(rows.errors).of_group("movement", wide=True)
 
 

@@ -21,6 +21,7 @@ from app.features.analysis.tables import (
     contact_spans_table,
     joint_angles_table,
     phases_table,
+    present_course_table,
     quality_table,
     scores_table,
     sessions_table,
@@ -45,6 +46,7 @@ READ: Mapping[str, Callable[[Session, str, DashboardKind], pd.DataFrame]] = {
     "phases": phases_table,
     "contacts": contact_spans_table,
     "errors": joint_angles_table,
+    "courses": present_course_table,
     "quality": quality_table,
     "alarms": alarms_table,
     "limbs": phase_limbs,
@@ -105,6 +107,11 @@ class Material:
     def errors(self) -> pd.DataFrame:
         """Of the joint errors, the angles to the present pose."""
         return self.tables["errors"]
+
+    @property
+    def courses(self) -> pd.DataFrame:
+        """Bins of active time: joint errors to the present pose."""
+        return self.tables["courses"]
 
     @property
     def quality(self) -> pd.DataFrame:

@@ -4,7 +4,14 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.features.studies.service import newest_version, study_by_key
-from app.models import AlarmRow, Phase, PhaseLatency, PhaseQuality, StudySession
+from app.models import (
+    AlarmRow,
+    JointErrorCourseRow,
+    Phase,
+    PhaseLatency,
+    PhaseQuality,
+    StudySession,
+)
 
 State = tuple[object, ...]
 
@@ -26,7 +33,7 @@ def state_of_data(db: Session, study_key: str, kind: str) -> State:
             .join(StudySession, StudySession.id == table.session_id)
             .where(*sessions)
         )
-        for table in (PhaseQuality, Phase, PhaseLatency, AlarmRow)
+        for table in (PhaseQuality, Phase, PhaseLatency, JointErrorCourseRow, AlarmRow)
     ]
     version = newest_version(db, study).number
     return (version, *db.execute(counted).one(), *of_sessions)

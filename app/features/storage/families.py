@@ -20,6 +20,7 @@ FAMILIES: dict[Family, tuple[str, ...]] = {
     "results": (
         "completions",
         "contacts",
+        "joint_error_courses",
         "joint_errors",
         "phase_latencies",
         "phase_quality",

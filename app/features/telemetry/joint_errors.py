@@ -1,4 +1,4 @@
-"""Joint error of a phase from its stored frames, over active time only.
+"""Joint error of a phase from its stored frames, over active time only: summed up, and its course.
 
 Stored twice: against what the avatar was asked for at that moment (`present`, what the latency
 costs) and against the delayed command (`command`, how good the controller is). What a physics
@@ -11,41 +11,76 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.telemetry.encoding import Frames
 from app.features.telemetry.movement import Run
-from app.models import JointErrorRow, Phase
+from app.models import JointErrorCourseRow, JointErrorRow, Phase
+from app.science.active_time import active_times
 from app.science.joint_error import JointErrorSummary
+from app.science.joint_error_course import joint_error_course
 from app.science.recorded_error import Recorded, recorded_errors
+from app.science.rotations import FloatArray
+
+Indices = NDArray[np.int64]
 
 
-def joint_error_rows(phase: Phase, runs: Sequence[Run]) -> list[JointErrorRow]:
-    """The rows of a phase; none where it has no frames."""
+def joint_error_rows(
+    phase: Phase, runs: Sequence[Run]
+) -> list[JointErrorRow | JointErrorCourseRow]:
+    """The rows of a phase in both tables; none where it has no frames."""
     if not runs:
         return []
-    errors = recorded_errors([_recorded(run) for run in runs], phase.latency_ms / 1000.0)
-    return [*_rows(phase, "present", errors.present), *_rows(phase, "command", errors.command)]
+    pairs = [_counted(run) for run in runs]
+    recorded = [_recorded(run, *own) for run, own in zip(runs, pairs, strict=True)]
+    errors = recorded_errors(recorded, phase.latency_ms / 1000.0)
+    active_s = _active_times(runs, [frames for _, frames in pairs])
+    return [
+        *_rows(phase, "present", errors.present),
+        *_rows(phase, "command", errors.command),
+        _course(phase, "present", errors.present_rad, active_s),
+        _course(phase, "command", errors.command_rad, active_s),
+    ]
 
 
-def _recorded(run: Run) -> Recorded:
-    """The active frames of the avatar that have a partner."""
-    at_target, at_actual = _paired(run.target, run.actual)
+def _counted(run: Run) -> tuple[Indices, Indices]:
+    """The active frames of the avatar that have a partner of the same seq: (partners, frames)."""
+    _, at_target, at_actual = np.intersect1d(
+        run.target.seq, run.actual.seq, assume_unique=True, return_indices=True
+    )
     counted = run.actual.active[at_actual]
-    frames = at_actual[counted]
+    return at_target[counted], at_actual[counted]
+
+
+def _recorded(run: Run, partners: Indices, frames: Indices) -> Recorded:
     return Recorded(
         run.target.times_s,
         run.asked,
-        at_target[counted],
+        partners,
         run.actual.times_s[frames],
         run.actual.rotations[frames],
     )
 
 
-def _paired(target: Frames, actual: Frames) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Indices of the frames of both streams that carry the same seq."""
-    _, at_target, at_actual = np.intersect1d(
-        target.seq, actual.seq, assume_unique=True, return_indices=True
+def _active_times(runs: Sequence[Run], frames: Sequence[Indices]) -> FloatArray:
+    """Active time of the phase, s, at these frames of each run; one goes on as another ended."""
+    spent_s, found = 0.0, []
+    for run, own in zip(runs, frames, strict=True):
+        passed_s = spent_s + active_times(run.actual.times_s, run.actual.active)
+        found.append(passed_s[own])
+        spent_s = float(passed_s[-1])
+    return np.concatenate(found)
+
+
+def _course(
+    phase: Phase, reference: str, angles_rad: FloatArray, active_s: FloatArray
+) -> JointErrorCourseRow:
+    course = joint_error_course(angles_rad, active_s, phase.active_s)
+    return JointErrorCourseRow(
+        session_id=phase.session_id,
+        phase_id=phase.phase_id,
+        reference=reference,
+        bin_s=course.bin_s,
+        mean_rad=[None if np.isnan(one) else float(one) for one in course.mean_rad],
+        samples=course.samples.tolist(),
     )
-    return at_target, at_actual
 
 
 def _rows(phase: Phase, reference: str, summary: JointErrorSummary) -> Iterator[JointErrorRow]:

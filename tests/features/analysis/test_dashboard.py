@@ -33,6 +33,7 @@ KEYS = [
     "joint_error_parts",
     "achieved_latency",
     "joint_error_blocks",
+    "joint_error_course",
     "joint_error_joints",
     "quality",
     "exclusions",
@@ -42,7 +43,7 @@ KEYS = [
 ]
 NEEDS_MOVEMENT = ("achieved_latency", "quality", "alarms")
 """Figures of what is computed from recorded movement, which built sessions have none of."""
-COUNTING = KEYS[:15]
+COUNTING = KEYS[:16]
 """Figures of rows that count; the others show what does not, too."""
 
 

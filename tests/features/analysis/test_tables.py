@@ -13,7 +13,7 @@ from app.errors import NotFound
 from app.features.analysis import tables
 from app.features.analysis.codebook import columns_of
 from app.features.analysis.schemas import Kind
-from app.models import JointErrorRow
+from app.models import JointErrorCourseRow, JointErrorRow
 from tests.features.builders import STUDY, SessionSpec, build_session
 
 Table = Callable[[Session, str, Kind], pd.DataFrame]
@@ -25,6 +25,7 @@ TABLES: dict[str, Table] = {
     "contacts": tables.contacts_table,
     "completions": tables.completions_table,
     "joint_errors": tables.joint_errors_table,
+    "joint_error_course": tables.joint_error_course_table,
     "clock_probes": tables.clock_probes_table,
     "clock_mapping": tables.clock_mapping_table,
     "events": tables.events_table,
@@ -75,7 +76,9 @@ def test_kinds_never_mix(database: Database, table: str) -> None:
     assert len(_read(database, table, "all")) == sum(sizes)
 
 
-@pytest.mark.parametrize("table", ["phases", "contacts", "completions", "joint_errors"])
+@pytest.mark.parametrize(
+    "table", ["phases", "contacts", "completions", "joint_errors", "joint_error_course"]
+)
 def test_a_redone_phase_stays_and_does_not_count(database: Database, table: str) -> None:
     """Both attempts are there; only the second is valid."""
     _build(database, SessionSpec("P-0001", redone=("block1.hand",)))
@@ -140,6 +143,23 @@ def test_joint_errors_are_in_degrees(database: Database) -> None:
     rows = _read(database, "joint_errors")
     present = rows[rows["reference"] == "present"]
     assert present["mean_deg"].tolist() == pytest.approx([90.0] * len(present))
+
+
+def test_a_course_has_a_row_for_every_bin_in_order_of_time(database: Database) -> None:
+    """In degrees, from 0 s on in steps of 5 s, both references; a bin without samples is empty."""
+    _build(database, SessionSpec("P-0001"))
+    own = JointErrorCourseRow.phase_id == 2
+    with database.writing() as db:
+        course = {"mean_rad": [math.pi / 2, None, math.pi], "samples": [42, 0, 21]}
+        db.execute(update(JointErrorCourseRow).where(own).values(**course))
+    rows = _read(database, "joint_error_course")
+    rows = rows[rows["phase_id"] == 2]
+    assert rows["reference"].tolist() == ["present"] * 3 + ["command"] * 3
+    assert rows["begin_active_s"].tolist() == [0.0, 5.0, 10.0] * 2
+    assert rows["end_active_s"].tolist() == [5.0, 10.0, 15.0] * 2
+    assert rows["mean_deg"].fillna(-1.0).tolist() == pytest.approx([90.0, -1.0, 180.0] * 2)
+    assert rows["samples"].tolist() == [42, 0, 21] * 2
+    assert set(rows["participant_code"]) == {"P-0001"}
 
 
 def test_what_limits_took_stands_beside_the_errors(database: Database) -> None:

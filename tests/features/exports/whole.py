@@ -9,7 +9,10 @@ from app.database import Database
 from app.features.exports.service import Exported, export_study
 from tests.features.builders import NOW, STUDY
 
-TABLES = ("sessions", "phases", "answers", "scores", "contacts", "completions", "joint_errors")
+TABLES = (
+    *("sessions", "phases", "answers", "scores", "contacts", "completions", "joint_errors"),
+    "joint_error_course",
+)
 MORE = (
     "corrections",
     "events",

@@ -11,6 +11,7 @@ from app.features.analysis.codebook.column import Column, Describe
 from app.features.analysis.codebook.movement import (
     COMPLETIONS,
     CONTACTS,
+    JOINT_ERROR_COURSE,
     JOINT_ERRORS,
     SAMPLES,
     STREAMS,
@@ -30,6 +31,7 @@ TABLES: dict[str, str] = {
     "contacts": "One row per contact of a body part with a surface.",
     "completions": "One row per completed task.",
     "joint_errors": "One row per phase, reference, joint and axis.",
+    "joint_error_course": "One row per phase, reference and bin of active time.",
     "quality": "One row per phase and stream: what is wrong with its frames.",
     "alarms": "One row per alarm that was raised, and one per alarm that was cleared.",
     "clock_probes": "One row per exchange of clock readings between a headset and the server.",
@@ -50,6 +52,7 @@ CODEBOOK: tuple[Column, ...] = (
     *CONTACTS,
     *COMPLETIONS,
     *JOINT_ERRORS,
+    *JOINT_ERROR_COURSE,
     *QUALITY,
     *ALARMS,
     *CLOCK_PROBES,

@@ -1,4 +1,4 @@
-"""The columns of contacts.csv, completions.csv, joint_errors.csv and samples/*.csv."""
+"""The columns of contacts.csv, completions.csv, the files of joint errors and samples/*.csv."""
 
 from app.features.analysis.codebook.clocks import epoch_column, mapped_columns
 from app.features.analysis.codebook.column import Column, Describe
@@ -8,6 +8,7 @@ from app.science.skeleton import JOINT_NAMES
 _C = Describe("contacts")
 _T = Describe("completions")
 _J = Describe("joint_errors")
+_K = Describe("joint_error_course")
 _M = Describe("samples")
 STREAMS = ("target", "actual")
 
@@ -52,16 +53,21 @@ COMPLETIONS: tuple[Column, ...] = (
     *mapped_columns("completions", "at_utc", "When"),
 )
 
-JOINT_ERRORS: tuple[Column, ...] = (
-    *session_columns("joint_errors"),
-    *phase_columns("joint_errors"),
-    _J.text(
+
+def _reference_column(table: str) -> Column:
+    return Describe(table).text(
         "reference",
         "What the body is compared with: what it was asked for at that moment, or the delayed "
         "command. A delayed copy is asked for the participant's pose; an avatar moved by physics "
         "for what its hinges can make of it, before their limits take anything away.",
         "present, command",
-    ),
+    )
+
+
+JOINT_ERRORS: tuple[Column, ...] = (
+    *session_columns("joint_errors"),
+    *phase_columns("joint_errors"),
+    _reference_column("joint_errors"),
     _J.text(
         "joint",
         "The joint, by its Unity HumanBodyBones name; the hips carry no delay. A joint without a "
@@ -90,6 +96,25 @@ JOINT_ERRORS: tuple[Column, ...] = (
     ),
     _J.integer("samples", "Samples that count.", levels="0 and up"),
     _J.integer("excluded", "Samples left out because they were not usable.", levels="0 and up"),
+)
+
+JOINT_ERROR_COURSE: tuple[Column, ...] = (
+    *session_columns("joint_error_course"),
+    *phase_columns("joint_error_course"),
+    _reference_column("joint_error_course"),
+    _K.number("begin_active_s", "Begin of the bin in active time of the phase.", "s", "0 and up"),
+    _K.number(
+        "end_active_s", "Its end; a phase may be over before its last bin is.", "s", "above 0"
+    ),
+    _K.number(
+        "mean_deg",
+        "Mean whole angle over all samples in the bin, a sample being one joint in one frame. "
+        "Weighted by samples, the bins have the mean of the phase: that of the angles in "
+        "joint_errors, each joint weighted by its samples.",
+        "deg",
+        "0 to 180",
+    ),
+    _K.integer("samples", "Samples that count: joints times frames.", levels="0 and up"),
 )
 
 

@@ -13,6 +13,7 @@ from app.features.analysis.figures.drawing import Drawing
 from app.features.analysis.figures.embodiment import embodiment_drawings
 from app.features.analysis.figures.exclusions import exclusions_drawing
 from app.features.analysis.figures.joint_error_blocks import joint_error_blocks_drawing
+from app.features.analysis.figures.joint_error_course import joint_error_course_drawing
 from app.features.analysis.figures.joint_errors import (
     joint_error_drawing,
     joint_error_map_drawing,
@@ -32,6 +33,7 @@ __all__ = [
     "exclusions_drawing",
     "joint_error_blocks_drawing",
     "joint_error_body_drawing",
+    "joint_error_course_drawing",
     "joint_error_drawing",
     "joint_error_map_drawing",
     "learning_drawing",

@@ -13,14 +13,13 @@ from app.features.analysis.figures.drawing import (
     too_few,
 )
 from app.features.analysis.figures.joint_errors import INTERVAL, task_angles, what_of
-from app.features.analysis.figures.theme import COLOURS, SYMBOLS, new_figure
+from app.features.analysis.figures.theme import COLOURS, DASHES, SYMBOLS, new_figure
 
 KEY, TITLE = "joint_error_blocks", "Joint error over the blocks of a session"
 HOW = (
     "Each value is a participant's mean over joints and the active time of one phase. Where "
     "everybody has a latency in one block only, a line joins different participants."
 )
-_DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 _APART = 0.05
 _NAMES = ("limb", "latency_ms", "block", "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
 
@@ -85,7 +84,7 @@ def _trace(own: pd.DataFrame, latency: float, place: int, shift: float) -> go.Sc
         mode="lines+markers",
         name=f"{latency:g} ms",
         legendgroup=f"{latency:g}",
-        line={"color": colour, "width": 2, "dash": _DASHES[place % len(_DASHES)]},
+        line={"color": colour, "width": 2, "dash": DASHES[place % len(DASHES)]},
         marker={"color": colour, "size": 9, "symbol": SYMBOLS[place % len(SYMBOLS)]},
         hovertemplate=(
             f"{latency:g} ms: mean %{{y:.2f}} deg in block %{{customdata[0]:g}}"

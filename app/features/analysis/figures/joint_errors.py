@@ -28,7 +28,7 @@ WHAT = (
     "averaged over the active time of hand and foot phases. The hips carry no latency and are left "
     "out."
 )
-_HINGES = (
+HINGES = (
     "A physics avatar is compared with what its hinges are asked for, before their limits; joints "
     "without a hinge are left out."
 )
@@ -122,7 +122,7 @@ def _part_rows(by_part: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 def what_of(rows: pd.DataFrame) -> str:
     """What joint error is, for the avatars of these rows."""
-    return f"{WHAT} {_HINGES}" if rows["clipped_share"].notna().any() else WHAT
+    return f"{WHAT} {HINGES}" if rows["clipped_share"].notna().any() else WHAT
 
 
 def _clipped(rows: pd.DataFrame) -> pd.DataFrame:

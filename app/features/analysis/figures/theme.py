@@ -14,6 +14,7 @@ QUIET = "rgba(128, 128, 128, 0.55)"
 CALM = "rgba(128, 128, 128, 0.18)"
 SYMBOLS = ("circle", "square", "diamond", "triangle-up", "x", "star")
 PATTERNS = ("", "/", "x", "-", ".", "+")
+DASHES = ("solid", "dash", "dot", "dashdot", "longdash", "longdashdot")
 _CLEAR = "rgba(0, 0, 0, 0)"
 _LINES = "rgba(128, 128, 128, 0.3)"
 
@@ -60,6 +61,12 @@ def hatched(colour: str, pattern: str) -> dict[str, object]:
 def quiet(lines: int) -> str:
     """The grey of so many lines over each other: the more, the fainter each."""
     return f"rgba(128, 128, 128, {max(0.06, min(0.55, 12.0 / max(lines, 1))):.2f})"
+
+
+def see_through(colour: str) -> str:
+    """A colour "#rrggbb" for areas that lie over each other."""
+    red, green, blue = (int(colour[at : at + 2], 16) for at in (1, 3, 5))
+    return f"rgba({red}, {green}, {blue}, 0.18)"
 
 
 def latency_axis(figure: go.Figure, latencies_ms: list[float]) -> None:

@@ -13,6 +13,10 @@ from app.features.analysis.tables.clocks import clock_mapping_table, clock_probe
 from app.features.analysis.tables.context import KINDS
 from app.features.analysis.tables.corrections import corrections_table
 from app.features.analysis.tables.events import events_table
+from app.features.analysis.tables.joint_error_course import (
+    joint_error_course_table,
+    present_course_table,
+)
 from app.features.analysis.tables.joint_errors import joint_angles_table, joint_errors_table
 from app.features.analysis.tables.phases import phases_table
 from app.features.analysis.tables.quality import alarms_table, quality_table
@@ -38,8 +42,10 @@ __all__ = [
     "corrections_table",
     "events_table",
     "joint_angles_table",
+    "joint_error_course_table",
     "joint_errors_table",
     "phases_table",
+    "present_course_table",
     "quality_table",
     "scores_table",
     "sessions_table",

@@ -28,6 +28,9 @@ export const exportsEn = {
   "export.file.jointErrors": "joint_errors.csv",
   "export.about.jointErrors":
     "Joint error per phase, joint and axis in degrees: mean, RMS, p95, maximum, clipped share.",
+  "export.file.jointErrorCourse": "joint_error_course.csv",
+  "export.about.jointErrorCourse":
+    "How the joint error went within each phase: its mean in degrees for every 5 s of active time.",
   "export.file.events": "events.csv",
   "export.about.events": "The event log of every session, with the hash that chains it.",
   "export.file.quality": "quality.csv",
@@ -80,6 +83,9 @@ export const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.file.jointErrors": "joint_errors.csv",
   "export.about.jointErrors":
     "Gelenkfehler je Phase, Gelenk und Achse in Grad: Mittel, RMS, P95, Maximum, gekappter Anteil.",
+  "export.file.jointErrorCourse": "joint_error_course.csv",
+  "export.about.jointErrorCourse":
+    "Wie der Gelenkfehler innerhalb jeder Aufgabe verlief: sein Mittel in Grad je 5 s aktiver Zeit.",
   "export.file.events": "events.csv",
   "export.about.events": "Das Ereignisprotokoll jeder Sitzung, mit dem Hash, der es verkettet.",
   "export.file.quality": "quality.csv",

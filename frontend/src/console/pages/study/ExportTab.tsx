@@ -25,6 +25,7 @@ const FILES = [
   "completions",
   "contacts",
   "jointErrors",
+  "jointErrorCourse",
   "events",
   "quality",
   "alarms",
