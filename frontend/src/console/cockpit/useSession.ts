@@ -7,6 +7,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
 import { lookAgain } from "../account";
 import { sessionQuery } from "../queries";
+import { orderAnew } from "./anew";
 import { type Change, changesBetween } from "./changes";
 import type { Storage } from "./storage";
 import { TelemetryStore } from "./telemetryStore";
@@ -77,13 +78,12 @@ export function useSession(id: string) {
     command.mutate({ view: query.data, command: order }, { onSuccess: () => onDone?.() });
   };
 
-  /** For an order prepared on `seen` whose own notes have changed the version since. */
+  /** For an order prepared on `seen` with reasons that have changed the version since. */
   const sendAnew = async (seen: SessionView, order: Command): Promise<void> => {
-    const fresh = await sessions.get(id);
-    if (fresh.status !== seen.status) return overtake({ view: seen, command: order }, fresh);
-    await command.mutateAsync({ view: fresh, command: order }).catch((error: unknown) => {
-      if (!isTold(error)) throw error;
-    });
+    const done = await orderAnew(sessions, seen, order);
+    if (done.overtaken) return overtake({ view: seen, command: order }, done.view);
+    setOvertaken(null);
+    accept(done.view);
   };
 
   return {

@@ -189,6 +189,42 @@ describe("the last screen", () => {
   });
 });
 
+describe("a consent that is being given", () => {
+  const asked = {
+    session_id: "session",
+    version: 2,
+    screen: "consent",
+    step_index: 0,
+  } as TabletState;
+  const SIGNING = { ticked: [0, 2], name: "", path: "M1 1L90 40", types: false };
+
+  it("comes back after a restart, for its own step alone", async () => {
+    await store.keepScreen(asked);
+    await store.keepSigning(asked, SIGNING);
+    const again = new DraftStore(name);
+    expect(await again.signing(asked)).toEqual(SIGNING);
+    expect(await again.signing({ ...asked, step_index: 3 })).toBeUndefined();
+    expect(await again.signing({ ...asked, session_id: "other" })).toBeUndefined();
+  });
+
+  it("stays while its screen is told anew, and leaves the tablet once it was given", async () => {
+    await store.keepSigning(asked, SIGNING);
+    await store.keepScreen({ ...asked, version: 3, help_asked: true });
+    expect(await store.signing(asked)).toEqual(SIGNING);
+    await store.keepScreen({ ...asked, version: 4, screen: "form", step_index: 1 });
+    expect(await store.signing(asked)).toBeUndefined();
+  });
+
+  it("goes with the pairing and with the session", async () => {
+    await store.keepSigning(asked, SIGNING);
+    await store.forgetScreen();
+    expect(await store.signing(asked)).toBeUndefined();
+    await store.keepSigning(asked, SIGNING);
+    await store.keepScreen({ ...asked, screen: "finished" });
+    expect(await store.signing(asked)).toBeUndefined();
+  });
+});
+
 describe("a tablet of an older version", () => {
   it("keeps what it had: its records are read, and what they lack is empty", async () => {
     const old = uuid();

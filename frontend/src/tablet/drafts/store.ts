@@ -8,12 +8,14 @@
  * server has confirmed it, and not before.
  *
  * The screen is the newest one of the session that the tablet is paired with; it goes with the end
- * of the session or of the pairing.
+ * of the session or of the pairing. A consent that somebody is about to give is kept with its lines
+ * and its signature for as long as it is on the screen, and is never sent by itself.
  */
 import type { Submission, TabletState } from "@shared/api/types";
 import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
 import { uuid } from "@shared/uuid";
 import { type DBSchema, type IDBPDatabase, openDB } from "idb";
+import type { Signing } from "../screens/signed";
 
 export interface Kept {
   /** Session and administration: one form, filled in once. */
@@ -30,6 +32,7 @@ export interface Kept {
 interface Tables extends DBSchema {
   kept: { key: string; value: Kept };
   screen: { key: string; value: TabletState };
+  signing: { key: string; value: Signing };
 }
 
 /** There is one screen. */
@@ -40,14 +43,18 @@ const OLD_MS = 48 * 3_600_000;
 export const keptId = (sessionId: string, administration: string): string =>
   `${sessionId}/${administration}`;
 
+const signingKey = ({ session_id, step_index }: TabletState): string =>
+  `${session_id}/${step_index}`;
+
 export class DraftStore {
   readonly #database: Promise<IDBPDatabase<Tables>>;
 
   constructor(name = "reembody-tablet") {
-    this.#database = openDB<Tables>(name, 2, {
+    this.#database = openDB<Tables>(name, 3, {
       upgrade: (database, before) => {
         if (before < 1) database.createObjectStore("kept", { keyPath: "id" });
         if (before < 2) database.createObjectStore("screen");
+        if (before < 3) database.createObjectStore("signing");
       },
       // A page of a newer version waits to open it.
       blocking: (_current, _wanted, event) => (event.target as IDBDatabase).close(),
@@ -126,7 +133,13 @@ export class DraftStore {
 
   /** Keep what the server wants to be shown; with the end of the session nothing more is. */
   async keepScreen(state: TabletState): Promise<void> {
-    const transaction = (await this.#database).transaction(["kept", "screen"], "readwrite");
+    const tables = ["kept", "screen", "signing"] as const;
+    const transaction = (await this.#database).transaction(tables, "readwrite");
+    const signings = transaction.objectStore("signing");
+    for (const key of await signings.getAllKeys()) {
+      // It was given, or nobody asks for it any more.
+      if (state.screen !== "consent" || key !== signingKey(state)) await signings.delete(key);
+    }
     const screens = transaction.objectStore("screen");
     if (state.screen === "finished") {
       await screens.delete(LAST);
@@ -146,7 +159,20 @@ export class DraftStore {
 
   /** The tablet has lost its session: what that showed is nobody's business any more. */
   async forgetScreen(): Promise<void> {
-    await (await this.#database).delete("screen", LAST);
+    const transaction = (await this.#database).transaction(["screen", "signing"], "readwrite");
+    await transaction.objectStore("screen").delete(LAST);
+    await transaction.objectStore("signing").clear();
+    await transaction.done;
+  }
+
+  /** Keep how far the consent on this screen has come. */
+  async keepSigning(state: TabletState, signing: Signing): Promise<void> {
+    await (await this.#database).put("signing", signing, signingKey(state));
+  }
+
+  /** How far it had come, before a reload or the browser's end. */
+  async signing(state: TabletState): Promise<Signing | undefined> {
+    return (await this.#database).get("signing", signingKey(state));
   }
 
   /** Drafts that nobody went on with for two days leave the tablet; what waits to be sent stays. */

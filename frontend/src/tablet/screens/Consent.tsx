@@ -6,6 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
+import { useKeptSigning } from "../drafts/useKeptSigning";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { STATE_KEY } from "../useTabletState";
@@ -14,7 +15,7 @@ import { Prose } from "./Prose";
 import { ScrollHint } from "./ScrollHint";
 import { SignaturePad } from "./SignaturePad";
 import screen from "./screens.module.css";
-import { givenOf, missingOf, type Signing, UNSIGNED } from "./signed";
+import { givenOf, missingOf, type Signing } from "./signed";
 
 interface ConsentProps {
   readonly state: TabletState;
@@ -24,7 +25,7 @@ interface ConsentProps {
 export function Consent({ state, form }: ConsentProps): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
-  const [signing, setSigning] = useState<Signing>(UNSIGNED);
+  const [signing, setSigning] = useKeptSigning(state);
   const [asking, setAsking] = useState<"question" | "decline" | null>(null);
   const [shown, setShown] = useState(false);
   const give = useMutation({

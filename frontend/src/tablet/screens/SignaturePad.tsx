@@ -21,6 +21,8 @@ export function SignaturePad({ path, onChange }: SignaturePadProps): JSX.Element
   const { t } = useTexts();
   const drawn = useRef(path);
   const last = useRef<Point | null>(null);
+  // What was kept of it comes a moment after the page.
+  if (last.current === null) drawn.current = path;
   const put = (next: string) => {
     if (next.length > LONGEST) return;
     drawn.current = next;
