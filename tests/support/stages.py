@@ -26,6 +26,8 @@ FRONTEND = REPOSITORY / "frontend"
 OURS = ("app", "migrations", "tests", "hatch_build.py")
 # As many as a small machine has cores: with three, tests that keep real time took twice as long.
 WORKERS = "2"
+# Everything in there is a browser test, and nothing else is one.
+BROWSER_TESTS = "tests/e2e"
 LINT_IMPORTS = "from importlinter.cli import lint_imports_command; lint_imports_command()"
 
 
@@ -94,10 +96,12 @@ def stages(*, long: bool) -> list[Stage]:
             "not browser",
             "--ignore",
             "tests/house",
+            "--ignore",
+            BROWSER_TESTS,
             *also_long,
         ),
         pytest_stage(
-            "browser tests", "-n", WORKERS, "--dist", "loadfile", "-m", "browser", *also_long
+            "browser tests", "-n", WORKERS, "--dist", "loadfile", BROWSER_TESTS, *also_long
         ),
         pytest_stage("house checks", "tests/house", *also_long),
     ]
