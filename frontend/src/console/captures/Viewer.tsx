@@ -8,6 +8,7 @@ import {
   RIGHT_COLOUR,
 } from "@shared/stage/figure";
 import { hasGaps } from "@shared/stage/gaps";
+import legend from "@shared/stage/Legend.module.css";
 import { durationOf } from "@shared/stage/motion";
 import { Stage, type StageHandle } from "@shared/stage/Stage";
 import { Transport } from "@shared/stage/Transport";
@@ -137,7 +138,7 @@ function Legend({ figures }: { readonly figures: readonly Figure[] }): JSX.Eleme
   ];
   if (entries.length === 0) return null;
   return (
-    <ul className={classes.legend}>
+    <ul className={legend.legend}>
       {entries.map(({ name, colour }) => (
         <li key={name} style={{ "--mark": colour } as CSSProperties}>
           {name}

@@ -2,6 +2,7 @@
 import { Center, Loader } from "@mantine/core";
 import type { BlockTones } from "@shared/stage/blocks";
 import { type CameraMode, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
+import legend from "@shared/stage/Legend.module.css";
 import { durationOf } from "@shared/stage/motion";
 import { Stage, type StageHandle } from "@shared/stage/Stage";
 import { type Seconds, seconds } from "@shared/units";
@@ -91,7 +92,7 @@ function Legend({ ghost }: { readonly ghost: boolean }): JSX.Element {
     ...(ghost ? [{ name: t("replay.legend.participant"), colour: "var(--line-strong)" }] : []),
   ];
   return (
-    <ul className={classes.legend}>
+    <ul className={legend.legend}>
       {entries.map(({ name, colour }) => (
         <li key={name} style={{ "--mark": colour } as CSSProperties}>
           {name}

@@ -1,5 +1,6 @@
 /** Play, jump, speed, and the three times of the moment that is shown. */
 import { ActionIcon, CopyButton, SegmentedControl, Tooltip } from "@mantine/core";
+import { Press } from "@shared/stage/Press";
 import type { Playback } from "@shared/stage/usePlayback";
 import { Icon } from "@shared/ui/Icon";
 import { type Seconds, seconds } from "@shared/units";
@@ -76,28 +77,6 @@ function CopyLink({ link }: { readonly link: string }): JSX.Element {
         );
       }}
     </CopyButton>
-  );
-}
-
-interface PressProps {
-  readonly name: string;
-  readonly icon: "back" | "forward" | "play" | "pause";
-  readonly filled?: boolean;
-  readonly onClick: () => void;
-}
-
-function Press({ name, icon, filled = false, onClick }: PressProps): JSX.Element {
-  return (
-    <Tooltip label={name}>
-      <ActionIcon
-        size="lg"
-        variant={filled ? "filled" : "default"}
-        aria-label={name}
-        onClick={onClick}
-      >
-        <Icon name={icon} size={18} />
-      </ActionIcon>
-    </Tooltip>
   );
 }
 

@@ -1,9 +1,9 @@
 /** The controls of a movement: play, step, speed, loop, and a scrubber with its gaps beneath. */
-import { ActionIcon, SegmentedControl, Switch, Tooltip } from "@mantine/core";
+import { SegmentedControl, Switch } from "@mantine/core";
 import { type JSX, useEffect, useMemo } from "react";
-import { Icon } from "../ui/Icon";
 import { gapStretches, unseenNames } from "./gaps";
 import { durationOf, frameAt, type PointMotion, recordedFrame, timeOf } from "./motion";
+import { Press } from "./Press";
 import classes from "./Transport.module.css";
 import { type Playback, SPEEDS } from "./usePlayback";
 
@@ -85,28 +85,6 @@ export function Transport({ motion, playback, texts }: TransportProps): JSX.Elem
       </div>
       <Unseen motion={motion} frame={frame} texts={texts} />
     </div>
-  );
-}
-
-interface PressProps {
-  readonly icon: "back" | "forward" | "play" | "pause";
-  readonly name: string;
-  readonly filled?: boolean;
-  readonly onClick: () => void;
-}
-
-function Press({ icon, name, filled = false, onClick }: PressProps): JSX.Element {
-  return (
-    <Tooltip label={name}>
-      <ActionIcon
-        size="lg"
-        variant={filled ? "filled" : "default"}
-        aria-label={name}
-        onClick={onClick}
-      >
-        <Icon name={icon} size={18} />
-      </ActionIcon>
-    </Tooltip>
   );
 }
 
