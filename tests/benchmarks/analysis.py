@@ -115,11 +115,9 @@ def _growth(folder: Path) -> Iterator[Figure]:
     for sessions in SIZES:
         database = _filled(folder / str(sessions), sessions)
         # The best of a few: whatever else runs here only adds.
-        read_s.append(min(_took_ms(lambda d=database: _material(d)) for _ in range(BEST_OF)) / 1e3)  # type: ignore[misc]  # bound at once
-        material = _material(database)
-        drawn_s.append(
-            min(_took_ms(lambda m=material: dashboard_of(m)) for _ in range(BEST_OF)) / 1e3  # type: ignore[misc]  # bound at once
-        )
+        read, drawn = partial(_material, database), partial(dashboard_of, _material(database))
+        read_s.append(min(_took_ms(read) for _ in range(BEST_OF)) / 1e3)
+        drawn_s.append(min(_took_ms(drawn) for _ in range(BEST_OF)) / 1e3)
         database.close()
         yield Figure("growth", f"tables of {sessions} sessions", read_s[-1], "s")
         yield Figure("growth", f"all figures of {sessions} sessions", drawn_s[-1], "s")

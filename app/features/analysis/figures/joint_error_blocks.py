@@ -13,7 +13,7 @@ from app.features.analysis.figures.drawing import (
     too_few,
 )
 from app.features.analysis.figures.joint_errors import INTERVAL, task_angles, what_of
-from app.features.analysis.figures.theme import COLOURS, DASHES, SYMBOLS, new_figure
+from app.features.analysis.figures.theme import COLOURS, latency_line, new_figure
 
 KEY, TITLE = "joint_error_blocks", "Joint error over the blocks of a session"
 HOW = (
@@ -70,7 +70,6 @@ def _figure(data: pd.DataFrame) -> go.Figure:
 
 
 def _trace(own: pd.DataFrame, latency: float, place: int, shift: float) -> go.Scatter:
-    colour = COLOURS[place % len(COLOURS)]
     half = (own["ci95_high_deg"] - own["mean_deg"]).astype("float64")
     return go.Scatter(
         x=[block + shift for block in own["block"]],
@@ -78,16 +77,12 @@ def _trace(own: pd.DataFrame, latency: float, place: int, shift: float) -> go.Sc
         error_y={
             "type": "data",
             "array": [None if pd.isna(one) else float(one) for one in half],
-            "color": colour,
+            "color": COLOURS[place % len(COLOURS)],
         },
         customdata=own[["block", "n"]].to_numpy().tolist(),
-        mode="lines+markers",
-        name=f"{latency:g} ms",
-        legendgroup=f"{latency:g}",
-        line={"color": colour, "width": 2, "dash": DASHES[place % len(DASHES)]},
-        marker={"color": colour, "size": 9, "symbol": SYMBOLS[place % len(SYMBOLS)]},
         hovertemplate=(
             f"{latency:g} ms: mean %{{y:.2f}} deg in block %{{customdata[0]:g}}"
             "<br>n = %{customdata[1]:g}<extra></extra>"
         ),
+        **latency_line(latency, place, size_px=9),
     )

@@ -15,8 +15,7 @@ from app.features.analysis.figures.drawing import (
 from app.features.analysis.figures.joint_errors import HINGES
 from app.features.analysis.figures.theme import (
     COLOURS,
-    DASHES,
-    SYMBOLS,
+    latency_line,
     new_figure,
     see_through,
 )
@@ -121,7 +120,6 @@ def _band(own: pd.DataFrame, latency: float, place: int) -> go.Scatter:
 
 
 def _line(own: pd.DataFrame, latency: float, place: int) -> go.Scatter:
-    colour = COLOURS[place % len(COLOURS)]
     half = (own["ci95_high_deg"] - own["mean_deg"]).astype("float64")
     words = ["no interval" if pd.isna(one) else f"± {one:.2g} deg" for one in half]
     steps = zip(own["begin_active_s"], own["end_active_s"], words, own["n"], strict=True)
@@ -129,15 +127,11 @@ def _line(own: pd.DataFrame, latency: float, place: int) -> go.Scatter:
         x=_middles(own),
         y=own["mean_deg"].tolist(),
         customdata=[list(step) for step in steps],
-        mode="lines+markers",
-        name=f"{latency:g} ms",
-        legendgroup=f"{latency:g}",
-        line={"color": colour, "width": 2, "dash": DASHES[place % len(DASHES)]},
-        marker={"color": colour, "size": 7, "symbol": SYMBOLS[place % len(SYMBOLS)]},
         hovertemplate=(
             f"{latency:g} ms: mean %{{y:.2f}} deg (%{{customdata[2]}}) from %{{customdata[0]:g}} "
             "to %{customdata[1]:g} s<br>n = %{customdata[3]:g}<extra></extra>"
         ),
+        **latency_line(latency, place, size_px=7),
     )
 
 

@@ -69,6 +69,18 @@ def see_through(colour: str) -> str:
     return f"rgba({red}, {green}, {blue}, 0.18)"
 
 
+def latency_line(latency_ms: float, place: int, *, size_px: int) -> dict[str, object]:
+    """How the line of the latency at this place is drawn: known by colour, dash and shape."""
+    colour = COLOURS[place % len(COLOURS)]
+    return {
+        "mode": "lines+markers",
+        "name": f"{latency_ms:g} ms",
+        "legendgroup": f"{latency_ms:g}",
+        "line": {"color": colour, "width": 2, "dash": DASHES[place % len(DASHES)]},
+        "marker": {"color": colour, "size": size_px, "symbol": SYMBOLS[place % len(SYMBOLS)]},
+    }
+
+
 def latency_axis(figure: go.Figure, latencies_ms: list[float]) -> None:
     """Label the x axes with the study's latencies, a little room at both ends."""
     room = 0.08 * (latencies_ms[-1] - latencies_ms[0]) or 10.0
