@@ -66,6 +66,29 @@ def test_everybody_alike_gives_the_smallest_p_there_is(database: Database) -> No
 
 
 @pytest.mark.one_engine
+def test_a_glance_tells_where_a_measure_goes_and_not_where_it_should(database: Database) -> None:
+    """Agency was predicted to fall; here it rises: that is told, and p is nearly 1."""
+    rising = {0.0: 2, 125.0: 5, 350.0: 7}
+    with database.writing() as db:
+        for at in range(6):
+            spec = SessionSpec(
+                f"P-{at:04d}",
+                likert=lambda step, item: (
+                    8 - rising[step.latency_ms or 0.0]
+                    if item == "q9"
+                    else rising[step.latency_ms or 0.0]
+                ),
+            )
+            build_session(db, spec)
+    with database.reading() as db:
+        found = answers_of(read_material(db, STUDY, "people"))
+    line = _measure(found, "karas2020_agency").glance[0]
+    assert (line.trend, line.way) == ("p = 1.000", "rises")
+    told = _result(found, "karas2020_agency", "trend_hand")
+    assert "The prediction is not supported" in told.sentence
+
+
+@pytest.mark.one_engine
 def test_what_does_not_change_goes_neither_way(database: Database) -> None:
     """Completed tasks are the same everywhere: no direction is told, and p is 1."""
     found = _found(database, 4)

@@ -90,5 +90,5 @@ def _predicted(asked: Asked, found: DirectionalHypothesis) -> Said:
         ),
         source=f"{PAGE_SOURCE} {WILCOXON_SOURCE} Direction: Waltemate et al. 2016.",
         warnings=(signed_floor(found.against_first), measured("page_given_ties")),
-        brief=Brief(p_words(found.p), found.predicted),
+        brief=Brief(p_words(found.p), _way(found.trend)),
     )

@@ -4524,8 +4524,8 @@ export interface components {
          * @description The answers of one limb in a few signs each; null where it could not be tested.
          *
          *     `differ`: whether the latencies differ at all. `first`: the first latency that differs from the
-         *     smallest one, empty where none does. `trend` along latency, and the `way` it goes or was
-         *     predicted to go.
+         *     smallest one, empty where none does. `trend` along latency, one-sided where one was
+         *     predicted, and the `way` that the measure goes.
          */
         readonly GlanceView: {
             /** Differ */
