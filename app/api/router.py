@@ -18,6 +18,9 @@ from app.features.avatar.endpoints import router as avatars
 from app.features.calibrations.endpoints import router as calibrations
 from app.features.captures.avatar_endpoints import router as on_avatars
 from app.features.captures.endpoints import router as captures
+from app.features.care.network.endpoints import router as network
+from app.features.care.rights.endpoints import router as rights
+from app.features.care.storage.endpoints import router as storage
 from app.features.context import AppContext
 from app.features.dependencies import API_PREFIX, Context
 from app.features.devices.endpoints import router as devices
@@ -28,18 +31,15 @@ from app.features.headset.socket import serve_headset
 from app.features.humanoids.endpoints import router as humanoids
 from app.features.imports.endpoints import router as imports
 from app.features.instruments.endpoints import router as instruments
-from app.features.network.endpoints import router as network
 from app.features.participants.endpoints import router as participants
 from app.features.poses.endpoints import router as poses
 from app.features.preflight.endpoints import router as preflight
 from app.features.preregistration.endpoints import router as preregistrations
 from app.features.receipts.endpoints import router as receipts
 from app.features.replay.endpoints import router as replays
-from app.features.rights.endpoints import router as rights
 from app.features.sessions.consent_endpoints import router as consents
 from app.features.sessions.endpoints import router as sessions
 from app.features.sessions.watching import router as watching
-from app.features.storage.endpoints import router as storage
 from app.features.studies.endpoints import router as studies
 from app.features.suggestions.endpoints import router as suggestions
 from app.features.tablet.call_endpoints import router as calls

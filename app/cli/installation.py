@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 from app.clock import Clock
 from app.database import Database, open_database
-from app.features.opening.service import prepare_database
+from app.features.care.opening.service import prepare_database
 from app.settings import Settings
 
 

@@ -8,15 +8,15 @@ from sqlalchemy.exc import DBAPIError
 from app.cli.backing_up import Counter, as_text, told_plainly
 from app.clock import Clock
 from app.errors import ReembodyError
-from app.features.backups.service import Restored, checked_backup, restore
-from app.features.context import AppContext
-from app.features.opening.service import backups_of, bring_up_to_date, put_away_if_damaged
-from app.features.rights.service import (
+from app.features.care.backups.service import Restored, checked_backup, restore
+from app.features.care.opening.service import backups_of, bring_up_to_date, put_away_if_damaged
+from app.features.care.rights.service import (
     ErasuresKept,
     expect_erasure,
     finish_erasures,
     forget_erasure,
 )
+from app.features.context import AppContext
 from app.features.sessions.recovery import stop_running_clocks
 from app.main import create_app
 from app.settings import Settings

@@ -12,7 +12,7 @@ from app.cli.opened import addresses
 from app.clock import Clock
 from app.collecting import settle
 from app.errors import ReembodyError
-from app.features.opening.service import prepare_database
+from app.features.care.opening.service import prepare_database
 from app.lan.help.site import HelpSite
 from app.lan.listening import Door, LabServer, allow_open_files, bind, tls_context
 from app.lan.network import Network

@@ -17,8 +17,8 @@ from app.features.avatar.service import (
     newest_version,
     typed,
 )
+from app.features.care.rights.service import COMMAND_LINE
 from app.features.humanoids.service import figure_by_hash
-from app.features.rights.service import COMMAND_LINE
 from app.models import AvatarVersion
 from app.protocol.avatar import file_of
 from app.science.avatar.configuration import Configuration

@@ -29,8 +29,8 @@ from app.features.analysis.dashboard import dashboard_of
 from app.features.analysis.figures import completions_drawing, embodiment_drawings
 from app.features.analysis.material import Material, read_material
 from app.features.analysis.tables import phases_table, scores_table
+from app.features.care.opening.service import bring_up_to_date
 from app.features.exports.cells import csv_pieces
-from app.features.opening.service import bring_up_to_date
 from app.features.studies.service import add_shipped
 from app.models import Participant, StudySession
 from app.settings import Settings

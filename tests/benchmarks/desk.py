@@ -14,7 +14,7 @@ import numpy as np
 
 from app.clock import Clock
 from app.database import open_database
-from app.features.opening.service import bring_up_to_date
+from app.features.care.opening.service import bring_up_to_date
 from app.features.policy import POLICY
 from app.features.studies.service import add_shipped
 from app.settings import Settings

@@ -1,7 +1,7 @@
 """A damaged database is put away, and a start without it is never taken for granted.
 
 Fault 6 of the matrix, with the real server. How each kind of damage is noticed is tested in
-tests/features/opening.
+tests/features/care/opening.
 """
 
 import hashlib
@@ -14,9 +14,9 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from app.features.opening.wal import inspect_log
+from app.features.care.opening.wal import inspect_log
 from tests.faults.commands import UNUSABLE, reembody
-from tests.features.opening.files import flip
+from tests.features.care.opening.files import flip
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 PAGE = 4096

@@ -21,9 +21,7 @@ from app.features.sessions.journal import events_of, verify_chain
 from app.features.sessions.service import session_by_id
 from tests.faults.commands import reembody
 from tests.faults.figures import note
-from tests.features.headset.site import Site
-from tests.features.lab import STUDY, ok
-from tests.features.rights.visit import (
+from tests.features.care.rights.visit import (
     Visit,
     erase,
     in_bytes,
@@ -32,6 +30,8 @@ from tests.features.rights.visit import (
     make_visit,
     participant_of,
 )
+from tests.features.headset.site import Site
+from tests.features.lab import STUDY, ok
 from tests.support.postgres import fresh_postgres
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 from tests.wire.samples import message, standing

@@ -15,8 +15,8 @@ from app.features.analysis.schemas import (
     StatisticsView,
 )
 from app.features.audit.service import record
+from app.features.care.rights.service import in_browser_of, record_copy, sessions_in
 from app.features.dependencies import Context, Reading, SignedIn
-from app.features.rights.service import in_browser_of, record_copy, sessions_in
 from app.features.studies.service import study_by_key
 
 router = APIRouter(tags=["analysis"])

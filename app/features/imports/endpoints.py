@@ -8,6 +8,13 @@ from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
 from app.features.audit.service import record
+from app.features.care.rights.service import (
+    expect_erasure,
+    forget_erasure,
+    in_browser_of,
+    overwrite,
+    record_copy,
+)
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.imports.looking import check, look
@@ -31,13 +38,6 @@ from app.features.imports.stored import (
     import_view,
     imports_of,
     instrument_of_import,
-)
-from app.features.rights.service import (
-    expect_erasure,
-    forget_erasure,
-    in_browser_of,
-    overwrite,
-    record_copy,
 )
 from app.features.studies.service import study_by_key
 

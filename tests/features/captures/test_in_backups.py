@@ -8,8 +8,8 @@ from app.database import open_database
 from app.features.captures import contents
 from app.features.captures.contents import plain_pieces
 from app.models import CapturePiece, CaptureRow, SavedJointMap
-from tests.features.backups.lab import make, put_back
 from tests.features.captures.files import uploaded, walk_bvh
+from tests.features.care.backups.lab import make, put_back
 from tests.features.lab import Lab, ok
 from tests.support.sqlite import fresh_sqlite
 

@@ -19,7 +19,7 @@ from app.science.avatar.parts import PART_NAMES
 from tests.api.people import sign_in
 from tests.features.avatar.test_avatars import PATH as AVATARS
 from tests.features.avatar.test_avatars import SHIPPED, as_json, new
-from tests.features.backups.lab import make, put_back
+from tests.features.care.backups.lab import make, put_back
 from tests.features.lab import Json, Lab, error, ok
 from tests.science.avatar.figures import figure
 from tests.support.humanoid_files import dog_file, humanoid_file

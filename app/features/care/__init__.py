@@ -1,0 +1,1 @@
+"""What keeps the record safe: backups, storage, opening the database, network, rights."""

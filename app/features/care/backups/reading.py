@@ -1,0 +1,110 @@
+"""Opening a backup without touching it, and checking that it is whole."""
+
+import sqlite3
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from sqlalchemy import Connection, StaticPool, create_engine
+from sqlalchemy.exc import SQLAlchemyError
+
+from app.errors import InvalidInput, NotFound
+from app.features.care.backups.digest import TableDigest, digest_of
+from app.features.care.backups.manifest import Manifest, ManifestError, read_manifest
+from app.features.care.backups.progress import Progress, silent
+from app.features.care.backups.shapes import TableShape, shapes_of
+
+
+@dataclass(frozen=True)
+class Backup:
+    """A backup that is open for reading, and whose rows are what was written.
+
+    `path` is the file that was given. `shapes` are its tables, those that are referred to first,
+    `tables` their checksums, `connection` the way to their rows.
+    """
+
+    path: Path
+    manifest: Manifest
+    shapes: tuple[TableShape, ...]
+    tables: Mapping[str, TableDigest]
+    connection: Connection
+
+
+@contextmanager
+def opened_backup(path: Path, progress: Progress = silent) -> Iterator[Backup]:
+    """Open a file and compute every checksum in it again, before anything is done with it.
+
+    Raises NotFound where there is no file, and InvalidInput for one that is damaged, cut off, or
+    not of ours. The file is neither changed nor locked.
+    """
+    if not path.is_file():
+        raise NotFound(f"there is no file {path}", value=str(path))
+    with closing(sqlite3.connect(_address(path), uri=True, check_same_thread=False)) as driver:
+        try:
+            manifest = read_manifest(driver)
+            _require_length(path)
+            with _through_sqlalchemy(driver) as connection:
+                shapes = shapes_of(connection)
+                tables = digests(connection, shapes, progress)
+                _compare(tables, manifest.tables)
+        except (ManifestError, SQLAlchemyError, sqlite3.Error, ValueError, KeyError) as error:
+            raise InvalidInput(
+                f"{path} is not a whole backup of ours: {_why(error)}. Nothing was changed",
+                value=str(path),
+                valid="a file that `reembody backup` wrote",
+                remedy="Take another copy of this backup, or another backup.",
+            ) from error
+        with _through_sqlalchemy(driver) as connection:
+            yield Backup(path, manifest, shapes, tables, connection)
+
+
+@contextmanager
+def opened_copy(path: Path) -> Iterator[Connection]:
+    """A SQLite file that nobody writes, to be read."""
+    with (
+        closing(sqlite3.connect(_address(path), uri=True, check_same_thread=False)) as driver,
+        _through_sqlalchemy(driver) as connection,
+    ):
+        yield connection
+
+
+def digests(
+    connection: Connection, shapes: tuple[TableShape, ...], progress: Progress = silent
+) -> dict[str, TableDigest]:
+    """The checksums of all tables, as they are."""
+    return {shape.name: digest_of(connection, shape, progress) for shape in shapes}
+
+
+def _address(path: Path) -> str:
+    # Immutable: SQLite makes no lock and no file beside it, so it may lie on a read-only medium.
+    return f"{path.absolute().as_uri()}?mode=ro&immutable=1"
+
+
+def _require_length(path: Path) -> None:
+    """SQLite itself does not miss a few last bytes."""
+    with path.open("rb") as file:
+        start = file.read(32)
+    page_size, pages = int.from_bytes(start[16:18], "big"), int.from_bytes(start[28:32], "big")
+    expected = (65536 if page_size == 1 else page_size) * pages
+    if path.stat().st_size != expected:
+        raise ManifestError(f"it has {path.stat().st_size} bytes instead of {expected}")
+
+
+@contextmanager
+def _through_sqlalchemy(driver: sqlite3.Connection) -> Iterator[Connection]:
+    engine = create_engine("sqlite://", creator=lambda: driver, poolclass=StaticPool)
+    with engine.connect() as connection:
+        yield connection
+
+
+def _compare(found: Mapping[str, TableDigest], listed: Mapping[str, TableDigest]) -> None:
+    wrong = sorted(
+        name for name in found.keys() | listed.keys() if found.get(name) != listed.get(name)
+    )
+    if wrong:
+        raise ManifestError(f"these tables are not what was written: {', '.join(wrong)}")
+
+
+def _why(error: Exception) -> str:
+    return str(getattr(error, "orig", None) or error)

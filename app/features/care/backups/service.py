@@ -1,0 +1,207 @@
+"""Backing up and restoring, as the rest of the product asks for it."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Protocol
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.clock import Clock
+from app.database import Database
+from app.errors import Conflict
+from app.features.care.backups.older import as_newest
+from app.features.care.backups.progress import Progress, silent
+from app.features.care.backups.reading import Backup, opened_backup
+from app.features.care.backups.restoring import hold_still, is_empty, replace_rows
+from app.features.care.backups.writing import write_backup
+from app.features.devices.service import devices_of_session, revoke
+from app.models import Participant, StudySession
+
+ENDING = ".reembody"
+_S_PER_NS = 1e-9
+
+
+@dataclass(frozen=True)
+class BackedUp:
+    """A backup that is on the disk. `sha256` is over its content: equal for equal content."""
+
+    path: Path
+    made_at: datetime
+    revision: str
+    rows: int
+    size_bytes: int
+    duration_s: float
+    sha256: str
+
+
+@dataclass(frozen=True)
+class Restored:
+    """A restore that is committed.
+
+    `made_at`: of the backup. `before`: where the rows that were replaced are kept, if there were
+    any. `unpaired`: headsets that have to be paired again. `erasures_reapplied`: participants in
+    the backup whose data had been erased since, and were erased again.
+    """
+
+    path: Path
+    made_at: datetime
+    rows: int
+    duration_s: float
+    sha256: str
+    before: Path | None
+    unpaired: int
+    erasures_reapplied: int
+
+
+class Outliving(Protocol):
+    """What a restore must not undo; called inside its transaction."""
+
+    def before(self, db: Session) -> None:
+        """The rows are still those that will be replaced."""
+
+    def behind(self, db: Session) -> int:
+        """The backup's rows are there; how many changes were made to them."""
+
+
+def back_up(database: Database, to: Path, *, clock: Clock, progress: Progress = silent) -> BackedUp:
+    """Copy everything, as it is at this moment, into the new file `to`; nobody waits for it.
+
+    On SQLite the log cannot be emptied before the copy is finished: it grows meanwhile. Raises
+    Conflict, NotFound or NotDurable; then nothing is left of the file.
+    """
+    began_ns = clock.monotonic_ns()
+    with database.reading() as db:
+        manifest = write_backup(db.connection(), to, now=clock.utc_now(), progress=progress)
+    return BackedUp(
+        path=to,
+        made_at=manifest.made_at,
+        revision=manifest.revision,
+        rows=manifest.rows,
+        size_bytes=to.stat().st_size,
+        duration_s=(clock.monotonic_ns() - began_ns) * _S_PER_NS,
+        sha256=manifest.sha256,
+    )
+
+
+@contextmanager
+def checked_backup(path: Path, workplace: Path, progress: Progress = silent) -> Iterator[Backup]:
+    """A backup whose checksums all fit, in the newest schema; nothing else is touched yet.
+
+    One of an earlier version is copied into the folder `workplace` and migrated there. Raises
+    NotFound or InvalidInput for a file that is missing, damaged, not ours, or a newer program's.
+    """
+    with opened_backup(path, progress) as given, as_newest(given, workplace) as backup:
+        yield backup
+
+
+def restore(
+    database: Database,
+    backup: Backup,
+    *,
+    keep_in: Path,
+    clock: Clock,
+    replace: bool,
+    even_though_active: bool = False,
+    erasures: Outliving | None = None,
+    progress: Progress = silent,
+) -> Restored:
+    """Put the backup in the place of everything in `database`, whose schema must be the newest.
+
+    All in one transaction: others see what was there before, or the whole backup. Rows that are
+    replaced are backed up into the folder `keep_in` first, inside the same transaction, so that
+    nothing can be written in between.
+
+    A headset of a session that is not over has forgotten what was acknowledged to it after the
+    backup, so what it sends next would not follow on: it has to be paired again, which begins a new
+    run.
+
+    Raises Conflict where sessions are active or rows would be replaced and the caller did not
+    allow it, NotDurable where there is no room; then nothing has changed.
+
+    `erasures`, which every command that restores must give, makes erasures again that are newer
+    than the backup: nobody ever sees the data come back.
+    """
+    began_ns = clock.monotonic_ns()
+    with database.writing() as db:
+        target = db.connection()
+        hold_still(target, backup.shapes)
+        if not even_though_active:
+            _refuse_if_active(db)
+        if erasures is not None:
+            erasures.before(db)
+        before = None
+        if not is_empty(target, backup.shapes):
+            before = _place_before(backup.path, keep_in, clock.utc_now(), replace=replace)
+            write_backup(target, before, now=clock.utc_now(), progress=progress)
+        replace_rows(target, backup, progress)
+        reapplied = 0 if erasures is None else erasures.behind(db)
+        unpaired = _unpair_headsets(db, clock.utc_now())
+    return Restored(
+        path=backup.path,
+        made_at=backup.manifest.made_at,
+        rows=sum(table.rows for table in backup.tables.values()),
+        duration_s=(clock.monotonic_ns() - began_ns) * _S_PER_NS,
+        sha256=backup.manifest.sha256,
+        before=before,
+        unpaired=unpaired,
+        erasures_reapplied=reapplied,
+    )
+
+
+def stamped(folder: Path, name: str, now: datetime) -> Path:
+    """Where a backup made on our own account goes: its name says why and when."""
+    return folder / f"{name}-{now:%Y%m%dT%H%M%S.%fZ}{ENDING}"
+
+
+def _place_before(path: Path, keep_in: Path, now: datetime, *, replace: bool) -> Path:
+    if not replace:
+        raise Conflict(
+            "the database is not empty; nothing was changed",
+            valid="an empty database",
+            remedy=f"With --replace, {path} takes the place of everything in it; "
+            f"what is there is backed up to {keep_in} first.",
+        )
+    keep_in.mkdir(parents=True, exist_ok=True)
+    return stamped(keep_in, "before-restore", now)
+
+
+def _refuse_if_active(db: Session) -> None:
+    active = db.execute(
+        select(StudySession.id, Participant.code, StudySession.started_at)
+        .join(Participant, Participant.id == StudySession.participant_id)
+        .where(StudySession.status == "active")
+        .order_by(StudySession.started_at)
+    ).all()
+    if not active:
+        return
+    names = ", ".join(f"{code} ({session_id})" for session_id, code, _ in active)
+    raise Conflict(
+        f"{len(active)} session(s) are active: {names}; nothing was changed",
+        value=len(active),
+        valid=0,
+        remedy="Finish or abort them first: a connected headset has already forgotten what was "
+        "stored. If they cannot be finished any more, say --even-though-active.",
+        details=[
+            {"session_id": session_id, "participant_code": code, "started_at": str(started_at)}
+            for session_id, code, started_at in active
+        ],
+    )
+
+
+def _unpair_headsets(db: Session, now: datetime) -> int:
+    open_sessions = db.scalars(
+        select(StudySession.id).where(StudySession.status.in_(("planned", "active")))
+    )
+    headsets = [
+        device
+        for session_id in open_sessions.all()
+        for device in devices_of_session(db, session_id)
+        if device.kind == "headset"
+    ]
+    for device in headsets:
+        revoke(db, session_id=device.session_id, device_id=device.id, now=now)
+    return len(headsets)

@@ -1,0 +1,180 @@
+"""Making a backup: streamed beside its place, checked, then moved in whole.
+
+Whoever looks at the place sees no file or a whole one. Rows are read inside the transaction that
+the caller gives, which must see one moment only.
+"""
+
+import os
+import shutil
+import sqlite3
+import tempfile
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from datetime import datetime
+from pathlib import Path
+
+from alembic import command
+from sqlalchemy import Connection
+from sqlalchemy.exc import DBAPIError
+
+from app import __version__
+from app.errors import Conflict, InvalidInput, NotDurable, NotFound
+from app.features.care.backups.digest import Digester, TableDigest
+from app.features.care.backups.manifest import Manifest, write_manifest
+from app.features.care.backups.progress import Progress, silent
+from app.features.care.backups.reading import opened_backup, opened_copy
+from app.features.care.backups.rows import read_rows, sqlite_insert
+from app.features.care.backups.shapes import TableShape, shapes_of
+from app.schema_revisions import alembic_config, known_revisions, revision_of
+
+SPARE_BYTES = 64 * 1024 * 1024
+"""What a backup leaves free on its disk, which may be the one that the server writes to."""
+_FOR_ONE_WRITER = ("journal_mode=DELETE", "journal_mode=OFF", "synchronous=OFF")
+
+
+def write_backup(
+    source: Connection, to: Path, *, now: datetime, progress: Progress = silent
+) -> Manifest:
+    """Copy everything that `source` sees into the file `to`; nobody else can read the file.
+
+    Raises Conflict where there is a file already, NotFound where the folder or a database of ours
+    is missing, NotDurable where it cannot be written. Then nothing is left of it.
+    """
+    check_place(to)
+    revision = _known(revision_of(source))
+    _require_space(source, to)
+    with _beside(to) as partial, _told_as_not_durable(to):
+        _make_tables(partial, revision)
+        _fill(source, partial, revision, now, progress)
+        with opened_backup(partial) as made:
+            _move(partial, to)
+            return made.manifest
+
+
+def check_place(to: Path) -> None:
+    """Refuse to write over anything, and into a folder that is not there."""
+    if to.exists() or to.is_symlink():
+        raise Conflict(
+            f"there is a file {to} already; nothing was written",
+            value=str(to),
+            valid="the name of a new file",
+            remedy="Name another file: a backup never replaces an earlier one.",
+        )
+    if not to.absolute().parent.is_dir():
+        raise NotFound(
+            f"there is no folder {to.absolute().parent}; nothing was written",
+            value=str(to),
+            remedy="Make the folder, or plug in the disk that it is on.",
+        )
+
+
+def _known(revision: str | None) -> str:
+    if revision is None:
+        raise NotFound(
+            "there is no database of ours here",
+            remedy="Set REEMBODY_DATA_DIR or REEMBODY_DATABASE_URL as for the server.",
+        )
+    if revision not in known_revisions():
+        raise Conflict(
+            f"the database has the schema {revision}, which this program does not know",
+            value=revision,
+            valid=list(known_revisions()),
+            remedy="Back it up with the newer program that last used it.",
+        )
+    return revision
+
+
+def _require_space(source: Connection, to: Path) -> None:
+    if source.dialect.name == "sqlite":
+        needed = _pragma(source, "page_size") * (
+            _pragma(source, "page_count") - _pragma(source, "freelist_count")
+        )
+    else:
+        size = source.exec_driver_sql("SELECT pg_database_size(current_database())")
+        needed = int(size.scalar_one())
+    free = shutil.disk_usage(to.absolute().parent).free
+    if free < needed + SPARE_BYTES:
+        raise NotDurable(
+            f"{to} may need {_mb(needed)}, and its disk has {_mb(free)} left; nothing was written",
+            value=free,
+            valid=needed + SPARE_BYTES,
+            remedy="Free some space there, or name a file on another disk.",
+        )
+
+
+def _pragma(source: Connection, name: str) -> int:
+    return int(source.exec_driver_sql(f"PRAGMA {name}").scalar_one())
+
+
+def _mb(size: int) -> str:
+    return f"{size / 1e6:.0f} MB"
+
+
+@contextmanager
+def _beside(to: Path) -> Iterator[Path]:
+    """A folder beside the place, that only we can look into and that is gone afterwards."""
+    folder = Path(
+        tempfile.mkdtemp(prefix=f".{to.name}.", suffix=".partial", dir=to.absolute().parent)
+    )
+    try:
+        yield folder / to.name
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def _told_as_not_durable(to: Path) -> Iterator[None]:
+    try:
+        yield
+    except (sqlite3.Error, OSError, InvalidInput) as error:
+        raise NotDurable(
+            f"{to} could not be written: {error}; nothing is left of it",
+            value=str(to),
+            remedy="Free some space there, or name a file on another disk.",
+        ) from error
+
+
+def _make_tables(file: Path, revision: str) -> None:
+    """The product's own schema, as the database that is copied has it."""
+    try:
+        command.upgrade(alembic_config(f"sqlite:///{file}"), revision)
+    except DBAPIError as error:
+        raise OSError(str(error.orig)) from error
+
+
+def _fill(source: Connection, file: Path, revision: str, now: datetime, progress: Progress) -> None:
+    with opened_copy(file) as empty:
+        shapes = shapes_of(empty)
+    with closing(sqlite3.connect(file, isolation_level=None)) as target:
+        for pragma in _FOR_ONE_WRITER:
+            target.execute(f"PRAGMA {pragma}")
+        target.execute("BEGIN")
+        tables = {shape.name: _copy(source, shape, target, progress) for shape in shapes}
+        manifest = Manifest(now, __version__, revision, source.dialect.name, tables)
+        write_manifest(target, manifest)
+        target.execute("COMMIT")
+
+
+def _copy(
+    source: Connection, shape: TableShape, target: sqlite3.Connection, progress: Progress
+) -> TableDigest:
+    statement, digester = sqlite_insert(shape), Digester(shape)
+    for rows in read_rows(source, shape):
+        target.executemany(statement, rows)
+        digester.add(rows)
+        progress(shape.name, len(rows))
+    return digester.digest
+
+
+def _move(partial: Path, to: Path) -> None:
+    """Onto the disk first, then under its name; the name too must be on the disk."""
+    with partial.open("rb+") as file:
+        os.fsync(file.fileno())
+    partial.chmod(0o600)
+    check_place(to)
+    partial.rename(to)
+    folder = os.open(to.absolute().parent, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)

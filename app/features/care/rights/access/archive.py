@@ -1,0 +1,69 @@
+"""Everything about one participant as one ZIP: a page to read first, then words and tables."""
+
+import json
+from collections.abc import Generator, Iterator
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.database import Database
+from app.features.care.rights.access.page import page_of
+from app.features.care.rights.access.summary import visits_of
+from app.features.exports.service import Member, person_archive, safe_name
+from app.features.imports.service import told_of
+from app.features.sessions.contents import content_body, contents_of
+from app.models import Participant, StudySession
+
+PAGE, WORDS, IMPORTED = "your-data.html", "words.json", "imported.json"
+
+
+def access_name(code: str) -> str:
+    """The file name of a participant's own copy."""
+    return f"reembody_access_{safe_name(code)}.zip"
+
+
+def access_archive(
+    database: Database, study_key: str, participant_id: str, *, now: datetime
+) -> Generator[bytes]:
+    """The ZIP file in pieces, from one look at the database; close the iterator to stop early."""
+    with database.reading() as db:
+        participant = db.get_one(Participant, participant_id)
+        own = select(StudySession.id).where(StudySession.participant_id == participant_id)
+        sessions = frozenset(db.scalars(own.order_by(StudySession.created_at)))
+        more = _members(db, participant, now)
+        # `all`: whatever kind of session it was, it is theirs.
+        yield from person_archive(db, study_key, "all", sessions, more, now=now)
+
+
+def _members(db: Session, participant: Participant, now: datetime) -> Iterator[Member]:
+    page = page_of(participant.code, visits_of(db, participant), now)
+    yield Member(PAGE, iter([page.encode()]))
+    yield Member(WORDS, iter([_words(db, participant).encode()]))
+    imported = told_of(db, participant.study_id, participant.code)
+    if imported and participant.kind == "people":
+        # Answers from another tool under the same code.
+        text = json.dumps(imported, ensure_ascii=False, indent=2) + "\n"
+        yield Member(IMPORTED, iter([text.encode()]))
+
+
+def _words(db: Session, participant: Participant) -> str:
+    """Notes, reasons, heights and corrections as they are stored beside the log."""
+    sessions = db.scalars(
+        select(StudySession.id)
+        .where(StudySession.participant_id == participant.id)
+        .order_by(StudySession.created_at, StudySession.id)
+    )
+    words: list[dict[str, Any]] = [
+        {
+            "session_id": row.session_id,
+            "kind": row.kind,
+            "at_utc": row.created_at.astimezone(UTC).isoformat(),
+            "by": row.created_by,
+            "body": content_body(row),
+        }
+        for session_id in sessions.all()
+        for row in contents_of(db, session_id)
+    ]
+    return json.dumps(words, ensure_ascii=False, indent=2) + "\n"

@@ -1,0 +1,132 @@
+"""What a participant's page holds, gathered from the record."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.features.care.rights.access.words import in_language
+from app.features.questionnaires.schemas import StoredAnswers
+from app.features.questionnaires.service import stored_answers
+from app.features.sessions.contents import content_body, contents_of
+from app.features.sessions.journal import events_of
+from app.features.sessions.service import plan_of, protocol_of_session
+from app.features.studies.service import instrument_of
+from app.models import (
+    Completion,
+    Contact,
+    InstrumentVersion,
+    Participant,
+    StudySession,
+    Submission,
+    TelemetryStream,
+)
+from app.science.instruments import Instrument
+
+WORDS_KEPT = ("note", "reason", "refused_form")
+
+
+@dataclass(frozen=True)
+class Consent:
+    """That somebody agreed, to which text, and when; `at` is None where it was not recorded."""
+
+    text: str
+    at: datetime | None
+
+
+@dataclass(frozen=True)
+class Written:
+    """Words that the lab wrote down, or that came too late. `kind`: note, reason, refused_form."""
+
+    kind: str
+    text: str
+    at: datetime
+
+
+@dataclass(frozen=True)
+class Visit:
+    """One session as its participant may read it. `heights` in m: stated and matched."""
+
+    session: StudySession
+    study_title: str
+    forms: Sequence[tuple[Instrument, StoredAnswers]]
+    consents: Sequence[Consent]
+    heights: Sequence[dict[str, Any]]
+    written: Sequence[Written]
+    frames: int
+    contacts: int
+    completions: int
+
+
+def visits_of(db: Session, participant: Participant) -> list[Visit]:
+    """Every visit of a participant, oldest first."""
+    sessions = db.scalars(
+        select(StudySession)
+        .where(StudySession.participant_id == participant.id)
+        .order_by(StudySession.created_at, StudySession.id)
+    )
+    return [_visit(db, session) for session in sessions]
+
+
+def _visit(db: Session, session: StudySession) -> Visit:
+    protocol = protocol_of_session(db, session)
+    bodies = [content_body(row) for row in contents_of(db, session.id, "height")]
+    return Visit(
+        session=session,
+        study_title=in_language(protocol.title, session.language),
+        forms=[(_instrument(db, form), form) for form in stored_answers(db, session)],
+        consents=_consents(db, session),
+        heights=[body for body in bodies if isinstance(body, dict)],
+        written=_written(db, session),
+        frames=_sum_of_frames(db, session),
+        contacts=_count(db, Contact, session),
+        completions=_count(db, Completion, session),
+    )
+
+
+def _instrument(db: Session, form: StoredAnswers) -> Instrument:
+    submission = db.get_one(Submission, form.submission_id)
+    return instrument_of(db.get_one(InstrumentVersion, submission.instrument_version_id))
+
+
+def _consents(db: Session, session: StudySession) -> list[Consent]:
+    """The text of each step of consent, with when it was completed."""
+    texts = protocol_of_session(db, session).texts
+    done = {
+        json.loads(event.payload)["step"]: event.recorded_at
+        for event in events_of(db, session.id)
+        if event.type == "step_completed"
+    }
+    return [
+        Consent(in_language(texts[step.text], session.language), done.get(step.index))
+        for step in plan_of(db, session)
+        if step.kind == "consent" and step.text is not None
+    ]
+
+
+def _written(db: Session, session: StudySession) -> list[Written]:
+    written = []
+    for row in contents_of(db, session.id):
+        body = content_body(row)
+        if row.kind in WORDS_KEPT and body is not None:
+            text = (
+                json.dumps(body["answers"], ensure_ascii=False) if isinstance(body, dict) else body
+            )
+            written.append(Written(row.kind, str(text), row.created_at))
+    return written
+
+
+def _sum_of_frames(db: Session, session: StudySession) -> int:
+    total = select(func.sum(TelemetryStream.frames_stored)).where(
+        TelemetryStream.session_id == session.id, TelemetryStream.stream.in_(("target", "actual"))
+    )
+    return int(db.scalar(total) or 0)
+
+
+def _count(db: Session, model: type[Contact | Completion], session: StudySession) -> int:
+    rows = select(func.count()).select_from(model).where(model.session_id == session.id)
+    return db.scalar(rows) or 0

@@ -1,0 +1,162 @@
+"""Copies of data that left the database: an erasure cannot reach them, so it lists them."""
+
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from pathlib import Path
+
+from sqlalchemy import ColumnElement, and_, func, or_, select
+from sqlalchemy.orm import Session
+
+from app.errors import NotFound
+from app.features.audit.service import record
+from app.features.care.backups.service import ENDING
+from app.features.care.opening.service import backups_of
+from app.models import CopyMade, Participant, Study, StudySession
+from app.settings import Settings
+
+LONGEST_PLACE = 400
+FOUND_BY = "system"
+COMMAND_LINE = "command line"
+"""Who makes a copy with a command: nobody is signed in there."""
+
+
+def record_copy(
+    db: Session,
+    *,
+    kind: str,
+    place: str,
+    by: str,
+    now: datetime,
+    study_id: str | None = None,
+    session_kind: str | None = None,
+    participant_id: str | None = None,
+    sessions: int | None = None,
+    size_bytes: int | None = None,
+) -> CopyMade:
+    """Put on record that a copy is made: `kind` is export, access or backup.
+
+    `session_kind`: of an export; people, simulated, test, expert or all.
+    """
+    row = CopyMade(
+        kind=kind,
+        study_id=study_id,
+        session_kind=session_kind,
+        participant_id=participant_id,
+        place=place[-LONGEST_PLACE:],
+        sessions=sessions,
+        bytes=size_bytes,
+        by=by,
+        at=now,
+    )
+    db.add(row)
+    db.flush()
+    return row
+
+
+def sessions_in(db: Session, study: Study, kind: str) -> int:
+    """How many sessions an export of this kind holds."""
+    query = select(func.count()).select_from(StudySession).where(StudySession.study_id == study.id)
+    return db.scalar(query if kind == "all" else query.where(StudySession.kind == kind)) or 0
+
+
+def in_browser_of(actor: str) -> str:
+    """The place of a copy that somebody downloaded: nobody knows where they put it."""
+    return f"downloaded by {actor.removeprefix('account:')}"
+
+
+def copies_of_study(db: Session, study_id: str) -> list[CopyMade]:
+    """Exports and access copies of a study, and backups, which hold every study; newest first."""
+    of_study = or_(CopyMade.study_id == study_id, CopyMade.study_id.is_(None))
+    return list(db.scalars(select(CopyMade).where(of_study).order_by(CopyMade.at.desc())))
+
+
+def copies_by_participant(
+    db: Session, study: Study, people: Sequence[Participant], began: Mapping[str, datetime]
+) -> dict[str, list[CopyMade]]:
+    """For each of a study's participants, whose first session `began`: copies that may hold them.
+
+    The same as `copies_holding` for each, with one look at the table.
+    """
+    of_study = (CopyMade.study_id == study.id) | (CopyMade.kind == "backup")
+    query = select(CopyMade).where(CopyMade.destroyed_at.is_(None), of_study)
+    copies = db.scalars(query.order_by(CopyMade.at)).all()
+    return {
+        one.id: [copy for copy in copies if copy.at >= began[one.id] and _holds(copy, one)]
+        for one in people
+        if one.id in began
+    }
+
+
+def _holds(copy: CopyMade, participant: Participant) -> bool:
+    """The rule of `_may_hold` for a copy of the participant's study, or a backup."""
+    if copy.kind == "export":
+        return copy.session_kind in (participant.kind, "all")
+    return copy.kind == "backup" or copy.participant_id == participant.id
+
+
+def copies_holding(db: Session, participant: Participant) -> list[CopyMade]:
+    """Copies not destroyed yet that were made since the participant's first session began."""
+    began = db.scalar(
+        select(StudySession.created_at)
+        .where(StudySession.participant_id == participant.id)
+        .order_by(StudySession.created_at)
+        .limit(1)
+    )
+    if began is None:
+        return []
+    query = select(CopyMade).where(
+        CopyMade.destroyed_at.is_(None), CopyMade.at >= began, _may_hold(participant)
+    )
+    return list(db.scalars(query.order_by(CopyMade.at)))
+
+
+def _may_hold(participant: Participant) -> ColumnElement[bool]:
+    export = and_(
+        CopyMade.kind == "export",
+        CopyMade.study_id == participant.study_id,
+        CopyMade.session_kind.in_((participant.kind, "all")),
+    )
+    access = and_(CopyMade.kind == "access", CopyMade.participant_id == participant.id)
+    return or_(export, access, CopyMade.kind == "backup")
+
+
+def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[CopyMade]:
+    """Put copies of the database on record that the product made without being asked.
+
+    Backups before a migration or a restore, and databases in quarantine, in the data folder.
+    """
+    known = set(db.scalars(select(CopyMade.place).where(CopyMade.kind == "backup")))
+    found = []
+    for path in _files(backups_of(settings)):
+        place = str(path)[-LONGEST_PLACE:]
+        if place not in known:
+            size = path.stat().st_size
+            found.append(
+                record_copy(db, kind="backup", place=place, by=FOUND_BY, now=now, size_bytes=size)
+            )
+    return found
+
+
+def _files(backups: Path) -> list[Path]:
+    home = backups.parent
+    patterns = (f"backups/*{ENDING}", "quarantine/*/*.sqlite*", "quarantine/*/*-wal", "*.bak")
+    return sorted({path for pattern in patterns for path in home.glob(pattern) if path.is_file()})
+
+
+def mark_destroyed(db: Session, copy_id: str, *, actor: str, now: datetime) -> CopyMade:
+    """Somebody says that a copy is gone; saying it twice changes nothing. Raises NotFound."""
+    row = db.get(CopyMade, copy_id)
+    if row is None:
+        raise NotFound("there is no such copy", value=copy_id)
+    if row.destroyed_at is None:
+        row.destroyed_at, row.destroyed_by = now, actor
+        db.flush()
+        record(
+            db,
+            actor=actor,
+            action="copy.destroyed",
+            subject=f"copy:{row.id}",
+            details={"kind": row.kind},
+            now=now,
+        )
+    return row

@@ -1,0 +1,177 @@
+"""Participants' rights over HTTP: who took part, their copy, corrections, erasure, copies made."""
+
+from collections.abc import AsyncIterator, Generator
+from typing import Any
+
+from fastapi import APIRouter
+from fastapi.responses import StreamingResponse
+from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
+
+from app.features.audit.service import record
+from app.features.care.rights.copies import copies_of_study, mark_destroyed
+from app.features.care.rights.corrections import correct
+from app.features.care.rights.erasing import erasure_of
+from app.features.care.rights.participants import copy_view, erasure_view, participants_of
+from app.features.care.rights.schemas import (
+    CopyView,
+    ErasureRequest,
+    ErasureView,
+    NewCorrection,
+    ParticipantView,
+)
+from app.features.care.rights.service import (
+    erase,
+    expect_erasure,
+    in_browser_of,
+    keep_tombstones,
+    overwrite,
+    participant_of,
+    record_copy,
+    require_erasable,
+)
+from app.features.context import AppContext
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.questionnaires.schemas import StoredAnswers
+from app.features.questionnaires.service import stored_answers
+from app.features.sessions.service import session_by_id
+from app.features.studies.service import study_by_key
+
+router = APIRouter(tags=["rights"])
+
+
+@router.get("/studies/{key}/participants")
+def get_participants(key: str, db: Reading, context: Context, _: SignedIn) -> list[ParticipantView]:
+    """Who took part, newest first, with their sessions; erased ones as tombstones."""
+    return participants_of(db, context.settings, study_by_key(db, key))
+
+
+@router.post("/studies/{key}/participants/{participant_id}/erasure", status_code=201)
+async def post_erasure(
+    key: str, participant_id: str, request: ErasureRequest, context: Context, caller: SignedIn
+) -> ErasureView:
+    """Erase everything about a participant; what stays is that there were sessions."""
+    await run_in_threadpool(_expect, context, key, participant_id, request.confirm)
+    async with context.database.writing_async() as db:
+
+        def in_transaction() -> None:
+            participant = participant_of(db, study_by_key(db, key), participant_id)
+            erase(
+                db,
+                context,
+                participant,
+                confirm=request.confirm,
+                reason_code=request.reason_code,
+                actor=caller.actor,
+            )
+
+        await run_in_threadpool(in_transaction)
+    # Files that wait to be fetched may hold what was erased.
+    await run_in_threadpool(context.exports.forget_study, key)
+    return await run_in_threadpool(_finished, context, participant_id)
+
+
+def _expect(context: AppContext, key: str, participant_id: str, confirm: str) -> None:
+    """Refuse before anything is done, then remember that bytes will have to be overwritten."""
+    with context.database.reading() as db:
+        participant = participant_of(db, study_by_key(db, key), participant_id)
+        require_erasable(db, participant, confirm)
+    expect_erasure(context.settings)
+
+
+def _finished(context: AppContext, participant_id: str) -> ErasureView:
+    """What follows once the rows are gone: the list beside the database, and the bytes."""
+    try:
+        keep_tombstones(context)
+    finally:
+        overwrite(context.database, context.settings)
+    with context.database.reading() as db:
+        erasure = erasure_of(db, participant_id)
+        assert erasure is not None  # noqa: S101 - committed above
+        return erasure_view(db, context.settings, erasure)
+
+
+@router.get(
+    "/studies/{key}/participants/{participant_id}/access",
+    response_class=StreamingResponse,
+    responses={200: {"content": {"application/zip": {}}, "description": "A ZIP."}},
+)
+def get_access(
+    key: str, participant_id: str, db: Writing, context: Context, caller: SignedIn
+) -> StreamingResponse:
+    """Everything about one participant as a ZIP: a page to read, and the data."""
+    # Loads pandas, which the start of the server need not wait for.
+    from app.features.care.rights.access.archive import access_archive, access_name
+
+    study = study_by_key(db, key)
+    participant = participant_of(db, study, participant_id)
+    now = context.clock.utc_now()
+    copy = record_copy(
+        db,
+        kind="access",
+        study_id=study.id,
+        session_kind=participant.kind,
+        participant_id=participant.id,
+        place=in_browser_of(caller.actor),
+        by=caller.actor,
+        now=now,
+    )
+    record(
+        db,
+        actor=caller.actor,
+        action="participant.copied",
+        subject=f"participant:{participant.id}",
+        details={"copy": copy.id, "study": study.key},
+        now=now,
+    )
+    pieces = access_archive(context.database, study.key, participant.id, now=now)
+    name = access_name(participant.code)
+    return StreamingResponse(
+        _sent(pieces),
+        media_type="application/zip",
+        headers={"content-disposition": f'attachment; filename="{name}"'},
+    )
+
+
+async def _sent(pieces: Generator[bytes, Any, None]) -> AsyncIterator[bytes]:
+    try:
+        async for piece in iterate_in_threadpool(pieces):
+            yield piece
+    finally:
+        await run_in_threadpool(pieces.close)
+
+
+@router.post("/sessions/{session_id}/submissions/{submission_id}/corrections", status_code=201)
+def post_correction(
+    session_id: str,
+    submission_id: str,
+    request: NewCorrection,
+    db: Writing,
+    context: Context,
+    caller: SignedIn,
+) -> StoredAnswers:
+    """Correct an answer: the first one is kept, the scores are computed anew."""
+    session = session_by_id(db, session_id, lock=True)
+    correct(
+        db,
+        context,
+        session,
+        submission_id,
+        item=request.item,
+        value=request.value,
+        reason=request.reason,
+        actor=caller.actor,
+    )
+    return next(form for form in stored_answers(db, session) if form.submission_id == submission_id)
+
+
+@router.get("/studies/{key}/copies")
+def get_copies(key: str, db: Reading, _: SignedIn) -> list[CopyView]:
+    """Copies of the study's data that left the database, newest first, and all backups."""
+    return [copy_view(db, row) for row in copies_of_study(db, study_by_key(db, key).id)]
+
+
+@router.post("/copies/{copy_id}/destroyed")
+def post_destroyed(copy_id: str, db: Writing, context: Context, caller: SignedIn) -> CopyView:
+    """Put on record that a copy was destroyed; saying it again changes nothing."""
+    now = context.clock.utc_now()
+    return copy_view(db, mark_destroyed(db, copy_id, actor=caller.actor, now=now))

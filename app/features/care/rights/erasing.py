@@ -1,0 +1,157 @@
+"""Erasing a participant: one transaction, after which only the skeleton of the record is left."""
+
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import Conflict, InvalidInput, NotFound, NotNow
+from app.features.audit.service import record
+from app.features.care.rights.copies import copies_holding, register_found
+from app.features.care.rights.traces import remove_traces
+from app.features.context import AppContext
+from app.features.imports.service import forget_participant
+from app.features.sessions.engine.commands import EraseData
+from app.features.sessions.service import apply_command
+from app.models import CopyMade, Erasure, ImportedForm, Participant, Study, StudySession
+from app.models.types import new_id
+
+
+def participant_of(db: Session, study: Study, participant_id: str) -> Participant:
+    """A participant of a study; raises NotFound."""
+    row = db.get(Participant, participant_id)
+    if row is None or row.study_id != study.id:
+        raise NotFound("there is no such participant", value=participant_id)
+    return row
+
+
+def erasure_of(db: Session, participant_id: str) -> Erasure | None:
+    """The tombstone of a participant whose data were erased."""
+    return db.scalar(select(Erasure).where(Erasure.participant_id == participant_id))
+
+
+def erase(
+    db: Session,
+    context: AppContext,
+    participant: Participant,
+    *,
+    confirm: str,
+    reason_code: str,
+    actor: str,
+) -> Erasure:
+    """Erase everything about a participant; `confirm` is their code, typed again.
+
+    Raises InvalidInput where the code is another one, Conflict where it was done before, and NotNow
+    while a session of theirs is active.
+    """
+    sessions = locked_sessions(db, participant)
+    require_erasable(db, participant, confirm)
+    now = context.clock.utc_now()
+    erasure = erase_now(
+        db, context, participant, sessions, erasure_id=new_id(), by=actor, at=now, why=reason_code
+    )
+    record(
+        db,
+        actor=actor,
+        action="participant.erased",
+        subject=f"participant:{participant.code}",
+        details={
+            "erasure": erasure.id,
+            "reason": reason_code,
+            "sessions": list(erasure.sessions),
+            "removed": erasure.removed,
+            "copies_left": len(erasure.remaining),
+        },
+        now=now,
+    )
+    return erasure
+
+
+def require_erasable(db: Session, participant: Participant, confirm: str) -> None:
+    """Raise Conflict, InvalidInput or NotNow where `erase` would."""
+    if erasure_of(db, participant.id) is not None:
+        raise Conflict(
+            "the data of this participant were erased before",
+            value=participant.code,
+            remedy="There is nothing left to erase; the list shows what was done.",
+        )
+    if confirm != participant.code:
+        raise InvalidInput(
+            "the code that was typed is not this participant's",
+            value=confirm,
+            valid=participant.code,
+            remedy="Type the code as it stands in the list, to be sure whom you mean.",
+        )
+    active = db.scalars(
+        select(StudySession.id).where(
+            StudySession.participant_id == participant.id, StudySession.status == "active"
+        )
+    ).all()
+    if active:
+        raise NotNow(
+            "a session of this participant is active",
+            value=list(active),
+            valid=[],
+            remedy="Withdraw it first: that stops the recording at once. Then erase.",
+        )
+
+
+def erase_now(
+    db: Session,
+    context: AppContext,
+    participant: Participant,
+    sessions: Sequence[StudySession],
+    *,
+    erasure_id: str,
+    by: str,
+    at: datetime,
+    why: str,
+) -> Erasure:
+    """The erasure itself: rows, events, the code, the tombstone.
+
+    `sessions`: all of the participant's, from `locked_sessions`; those still running are ended.
+    """
+    now = context.clock.utc_now()
+    removed = remove_traces(db, [session.id for session in sessions])
+    for session in sessions:
+        command = EraseData(erasure_id=erasure_id, reason_code=why, even_though_active=True)
+        apply_command(db, context, session, command, actor=by)
+    if participant.kind == "people":
+        # What a file said of the same person, known by the same code.
+        imported = forget_participant(db, participant.study_id, participant.code)
+        removed |= {ImportedForm.__tablename__: imported} if imported else {}
+    # Nothing of the old code is in the new one.
+    participant.code = f"erased-{erasure_id[:8].upper()}"
+    register_found(db, context.settings, now)
+    erasure = Erasure(
+        id=erasure_id,
+        study_id=participant.study_id,
+        participant_id=participant.id,
+        sessions=[session.id for session in sessions],
+        removed=removed,
+        remaining=[copy_left(row) for row in copies_holding(db, participant)],
+        by=by,
+        at=at,
+    )
+    db.add(erasure)
+    db.flush()
+    return erasure
+
+
+def locked_sessions(db: Session, participant: Participant) -> list[StudySession]:
+    """Every session of a participant, oldest first; what is being stored of them is waited for."""
+    query = (
+        select(StudySession)
+        .where(StudySession.participant_id == participant.id)
+        .order_by(StudySession.created_at, StudySession.id)
+        .with_for_update()
+        .execution_options(populate_existing=True)
+    )
+    return list(db.scalars(query))
+
+
+def copy_left(row: CopyMade) -> dict[str, Any]:
+    """A copy outside the database, as a tombstone lists it."""
+    return {"id": row.id, "kind": row.kind, "place": row.place, "at": row.at.isoformat()}

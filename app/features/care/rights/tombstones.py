@@ -1,0 +1,110 @@
+"""The erasures of an installation, one JSON line each, beside the database.
+
+A backup that is older than an erasure still holds the data. Whoever restores it takes the table of
+erasures back to that moment, too; this file stays as it is, and says what has to be erased again.
+It holds ids only. It is completed from the table at every start.
+"""
+
+import json
+import os
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import NotDurable
+from app.features.care.opening.service import backups_of
+from app.models import Erasure
+from app.settings import Settings
+
+NAME = "erasures.jsonl"
+
+
+@dataclass(frozen=True)
+class Tombstone:
+    """An erasure by the ids of what was erased. `at`: ISO 8601, UTC."""
+
+    erasure_id: str
+    study_id: str
+    participant_id: str
+    sessions: tuple[str, ...]
+    by: str
+    at: str
+
+
+@dataclass(frozen=True)
+class TombstoneFile:
+    """The list in the folder of this installation's data."""
+
+    folder: Path
+
+    @property
+    def path(self) -> Path:
+        """Where it is."""
+        return self.folder / NAME
+
+    def read(self) -> list[Tombstone]:
+        """Every erasure that it knows; a line that a crash cut off is left out."""
+        if not self.path.exists():
+            return []
+        found = []
+        for line in self.path.read_text(encoding="utf-8").splitlines():
+            try:
+                values = json.loads(line)
+                found.append(Tombstone(**{**values, "sessions": tuple(values["sessions"])}))
+            except (ValueError, TypeError, KeyError):
+                continue
+        return found
+
+    def add(self, tombstones: Iterable[Tombstone]) -> None:
+        """Append those that it does not know yet, onto the disk; raises NotDurable."""
+        known = {one.erasure_id for one in self.read()}
+        new = [one for one in tombstones if one.erasure_id not in known]
+        if not new:
+            return
+        # A line that was cut off must not swallow the next one.
+        lines = "\n" + "".join(json.dumps(asdict(one)) + "\n" for one in new)
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            with self.path.open("a", encoding="utf-8") as file:
+                file.write(lines.removeprefix("\n") if self._ends_well() else lines)
+                file.flush()
+                os.fsync(file.fileno())
+        except OSError as error:
+            raise NotDurable(
+                f"the data were erased, but {self.path} could not be written: {error}",
+                remedy="Free some space there, then start the server again: it completes the list.",
+            ) from error
+
+    def _ends_well(self) -> bool:
+        return not self.path.exists() or self.path.read_bytes()[-1:] in (b"", b"\n")
+
+
+def tombstone_file(settings: Settings) -> TombstoneFile:
+    """The list of this installation, where its own backups are made, too."""
+    return TombstoneFile(backups_of(settings).parent)
+
+
+def tombstones_of(db: Session) -> list[Tombstone]:
+    """Every erasure in the table, oldest first."""
+    return [tombstone(row) for row in db.scalars(select(Erasure).order_by(Erasure.at, Erasure.id))]
+
+
+def tombstone(row: Erasure) -> Tombstone:
+    """An erasure as the list has it."""
+    return Tombstone(
+        erasure_id=row.id,
+        study_id=row.study_id,
+        participant_id=row.participant_id,
+        sessions=tuple(str(one) for one in row.sessions),
+        by=row.by,
+        at=row.at.astimezone(UTC).isoformat(),
+    )
+
+
+def moment(one: Tombstone) -> datetime:
+    """When it was erased first."""
+    return datetime.fromisoformat(one.at)

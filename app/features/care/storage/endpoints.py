@@ -1,0 +1,17 @@
+"""What takes how much room, over HTTP."""
+
+from fastapi import APIRouter
+
+from app.features.care.storage.schemas import StorageView
+from app.features.care.storage.service import storage_view
+from app.features.dependencies import Context, Reading, SignedIn
+
+router = APIRouter(tags=["storage"])
+
+
+@router.get("/storage")
+def get_storage(
+    db: Reading, context: Context, caller: SignedIn, *, anew: bool = False
+) -> StorageView:
+    """Tables, folders, disk, studies and the largest sessions; `anew` measures once more."""
+    return storage_view(db, context, caller, anew=anew)

@@ -1,0 +1,133 @@
+"""Looking at database and disk, which may take seconds: once for everybody who asks, then kept."""
+
+import shutil
+import threading
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+
+from sqlalchemy import select
+
+from app.clock import Clock
+from app.database import Database
+from app.features.care.opening.service import backups_of
+from app.features.care.storage.families import FAMILY_OF
+from app.features.care.storage.schemas import PartView, Place, SessionRoom
+from app.features.care.storage.shares import bytes_by_session
+from app.features.care.storage.tables import TableSizes, table_sizes
+from app.models import Participant, Study, StudySession
+from app.settings import Settings
+
+KEPT_NS = 60 * 1_000_000_000
+OPTIONAL: tuple[Place, ...] = ("unused", "log", "database", "backups", "scratch")
+
+
+@dataclass(frozen=True)
+class MeasuredSession:
+    """A session with its size, and what the forecast asks of it."""
+
+    room: SessionRoom
+    is_completed: bool
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was seen at one moment; `total_bytes`: of the disk of the data folder."""
+
+    at: datetime
+    sizes: TableSizes
+    parts: tuple[PartView, ...]
+    sessions: tuple[MeasuredSession, ...]
+    total_bytes: int
+
+
+@dataclass(eq=False)
+class StorageDesk:
+    """Safe from any thread: one measures, the others wait for what it finds."""
+
+    database: Database
+    settings: Settings
+    clock: Clock
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _measured: Measured | None = None
+    _measured_ns: int = 0
+
+    def measured(self, *, anew: bool = False) -> Measured:
+        """What takes how much room; `anew` does not take what was seen a moment ago."""
+        with self._lock:
+            now_ns = self.clock.monotonic_ns()
+            known = self._measured
+            if known is None or anew or now_ns - self._measured_ns > KEPT_NS:
+                known = self._measured = self._measure()
+                self._measured_ns = self.clock.monotonic_ns()
+            return known
+
+    def _measure(self) -> Measured:
+        with self.database.reading() as db:
+            sizes = table_sizes(db)
+            shares = bytes_by_session(db, sizes.bytes)
+            rows = db.execute(
+                select(StudySession, Study.key, Participant.code)
+                .join(Study, Study.id == StudySession.study_id)
+                .join(Participant, Participant.id == StudySession.participant_id)
+            )
+            sessions = tuple(
+                MeasuredSession(
+                    SessionRoom(
+                        id=session.id,
+                        study_key=key,
+                        participant_code=code,
+                        kind=session.kind,
+                        created_at=session.created_at,
+                        bytes=round(shares.get(session.id, 0)),
+                    ),
+                    session.status == "completed",
+                )
+                for session, key, code in rows
+            )
+        return Measured(
+            at=self.clock.utc_now(),
+            sizes=sizes,
+            parts=tuple(_parts(sizes, self.settings)),
+            sessions=sessions,
+            total_bytes=shutil.disk_usage(_there(self.settings.data_dir)).total,
+        )
+
+
+def _parts(sizes: TableSizes, settings: Settings) -> Iterator[PartView]:
+    families: Counter[Place] = Counter()
+    for table, size in sizes.bytes.items():
+        families[FAMILY_OF.get(table, "setup")] += size
+    if not sizes.bytes:
+        families["database"] = sizes.whole_bytes
+    families["unused"], families["log"] = sizes.unused_bytes, sizes.log_bytes
+    for place, size in families.items():
+        if size or place not in OPTIONAL:
+            yield PartView(place=place, bytes=size)
+    folders: tuple[tuple[Place, Path], ...] = (
+        ("backups", backups_of(settings)),
+        ("scratch", settings.scratch_dir),
+    )
+    for place, folder in folders:
+        found = list(_file_sizes(folder))
+        if found:
+            yield PartView(place=place, bytes=sum(found), files=len(found))
+
+
+def _file_sizes(folder: Path) -> Iterator[int]:
+    if folder.is_dir():
+        for path in folder.rglob("*"):
+            try:
+                if path.is_file():
+                    yield path.stat().st_size
+            except OSError:
+                # It went away while it was looked at.
+                continue
+
+
+def _there(folder: Path) -> Path:
+    """The folder, or the nearest above it that exists: with PostgreSQL there may be none."""
+    folder = folder.resolve()
+    return folder if folder.exists() else _there(folder.parent)

@@ -1,0 +1,97 @@
+"""What a person sees of the room that is taken, and for how many more sessions there is some."""
+
+from collections.abc import Sequence
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.access import Caller, is_theirs
+from app.features.care.storage.measuring import Measured, MeasuredSession
+from app.features.care.storage.schemas import (
+    DiskView,
+    SessionKind,
+    SessionRoom,
+    StorageView,
+    StudyRoom,
+)
+from app.features.context import AppContext
+from app.features.studies.service import newest_version, protocol_of
+from app.models import Study
+
+LARGEST = 12
+"""How many sessions are listed."""
+MEASURED_BY: tuple[SessionKind, ...] = ("people", "test", "simulated")
+"""Whose completed sessions tell how large the next will be: the first kind that has any."""
+
+
+def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool) -> StorageView:
+    """Everything, with the studies and sessions that are the caller's to see."""
+    measured = context.room.measured(anew=anew)
+    disk = _disk(context, measured)
+    studies = db.scalars(select(Study).where(is_theirs(caller)).order_by(Study.key)).all()
+    own = {study.key for study in studies}
+    seen = [one for one in measured.sessions if one.room.study_key in own]
+    largest = sorted(seen, key=lambda one: one.room.bytes, reverse=True)[:LARGEST]
+    return StorageView(
+        measured_at=measured.at,
+        engine="sqlite" if context.database.is_sqlite else "postgresql",
+        method=measured.sizes.method,
+        place=str(context.settings.data_dir.resolve()),
+        disk=disk,
+        parts=sorted(measured.parts, key=lambda part: part.bytes, reverse=True),
+        studies=sorted(
+            (
+                _study(db, study, [one for one in seen if one.room.study_key == study.key], disk)
+                for study in studies
+            ),
+            key=lambda study: study.bytes,
+            reverse=True,
+        ),
+        sessions=[one.room for one in largest],
+        sessions_total=len(seen),
+    )
+
+
+def _disk(context: AppContext, measured: Measured) -> DiskView:
+    storage = context.storage
+    try:
+        free = storage.free_bytes(storage.folder)
+    except OSError:
+        # No such folder: nothing was ever stored on this machine.
+        free = measured.total_bytes
+    return DiskView(
+        free_bytes=free,
+        total_bytes=measured.total_bytes,
+        warn_below_bytes=storage.low_disk_bytes,
+        is_low=free < storage.low_disk_bytes,
+        holds_database=context.database.is_sqlite,
+    )
+
+
+def _study(
+    db: Session, study: Study, sessions: Sequence[MeasuredSession], disk: DiskView
+) -> StudyRoom:
+    rooms = [one.room for one in sessions]
+    kind, measured = _typical([one.room for one in sessions if one.is_completed])
+    mean = sum(room.bytes for room in measured) / len(measured) if measured else 0.0
+    titles = protocol_of(newest_version(db, study)).title
+    left = max(0, disk.free_bytes - disk.warn_below_bytes)
+    return StudyRoom(
+        key=study.key,
+        title=titles.get("en") or next(iter(titles.values())),
+        bytes=sum(room.bytes for room in rooms),
+        sessions=len(rooms),
+        mean_bytes=round(mean) if measured else None,
+        measured=len(measured),
+        measured_kind=kind,
+        room_for=int(left // mean) if mean >= 1 and disk.holds_database else None,
+    )
+
+
+def _typical(completed: Sequence[SessionRoom]) -> tuple[SessionKind | None, list[SessionRoom]]:
+    """The completed sessions that tell how large the next will be."""
+    for kind in MEASURED_BY:
+        found = [room for room in completed if room.kind == kind]
+        if found:
+            return kind, found
+    return None, []

@@ -1,0 +1,182 @@
+"""A restore gives back exactly what was backed up, or changes nothing."""
+
+import hashlib
+from pathlib import Path
+
+import pytest
+from sqlalchemy import Connection, func, select, text, update
+
+from app.database import Database, open_database
+from app.errors import Conflict, InvalidInput, NotFound
+from app.features.care.backups.rows import Row, write_rows
+from app.features.care.backups.shapes import TableShape
+from app.models import Account, Device, StudySession
+from tests.faults.interrupted import found, steps, upgrade
+from tests.features.care.backups.lab import make, put_back
+from tests.features.lab import Lab
+from tests.support.filled import contents, fill
+
+
+def test_around_both_engines_and_back(sqlite: Database, postgres_url: str, tmp_path: Path) -> None:
+    """SQLite to PostgreSQL to SQLite: every row and every checksum is the same."""
+    before = contents(sqlite.engine)
+    first = make(sqlite, tmp_path / "1.reembody")
+    postgres = open_database(postgres_url)
+    into_postgres = put_back(postgres, tmp_path / "1.reembody")
+    second = make(postgres, tmp_path / "2.reembody")
+    postgres.close()
+    back = put_back(sqlite, tmp_path / "2.reembody", replace=True)
+    third = make(sqlite, tmp_path / "3.reembody")
+    checksums = {one.sha256 for one in (first, into_postgres, second, back, third)}
+    assert len(checksums) == 1
+    assert contents(sqlite.engine) == before
+
+
+def test_what_is_replaced_is_kept(database: Database, tmp_path: Path) -> None:
+    """The backup that is made before is the database as it was."""
+    make(database, tmp_path / "old.reembody")
+    with database.writing() as db:
+        db.execute(update(Account).values(role="new role"))
+    new = make(database, tmp_path / "new.reembody")
+    done = put_back(database, tmp_path / "old.reembody", replace=True)
+    assert done.before is not None
+    assert done.before.name == "before-restore-20261121T061108.123456Z.reembody"
+    assert put_back(database, done.before, replace=True).sha256 == new.sha256
+
+
+def test_nothing_is_replaced_unasked(database: Database, tmp_path: Path) -> None:
+    """A database that is not empty stays as it is, and no backup of it is made."""
+    make(database, tmp_path / "all.reembody")
+    before = contents(database.engine)
+    with pytest.raises(Conflict, match="not empty") as refused:
+        put_back(database, tmp_path / "all.reembody")
+    assert "--replace" in refused.value.remedy
+    assert contents(database.engine) == before
+    assert not (tmp_path / "kept").exists()
+
+
+def test_a_restore_that_fails_changes_nothing(
+    database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also behind the last row: it is one transaction."""
+    make(database, tmp_path / "all.reembody")
+    with database.writing() as db:
+        db.execute(update(Account).values(role="new role"))
+    before = contents(database.engine)
+
+    def fail(*_: object) -> int:
+        raise RuntimeError("the lights went out")
+
+    monkeypatch.setattr("app.features.care.backups.service._unpair_headsets", fail)
+    with pytest.raises(RuntimeError):
+        put_back(database, tmp_path / "all.reembody", replace=True)
+    assert contents(database.engine) == before
+
+
+def test_rows_that_do_not_come_out_alike_are_refused(
+    database: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is in the database afterwards is read again, not believed."""
+    make(database, tmp_path / "all.reembody")
+    before = contents(database.engine)
+
+    def forgetful(connection: Connection, shape: TableShape, rows: list[Row]) -> None:
+        write_rows(connection, shape, rows[1:] if shape.name == "scores" else rows)
+
+    monkeypatch.setattr("app.features.care.backups.restoring.write_rows", forgetful)
+    with pytest.raises(InvalidInput, match="scores did not come out"):
+        put_back(database, tmp_path / "all.reembody", replace=True)
+    assert contents(database.engine) == before
+
+
+@pytest.mark.parametrize("revision", [after for _, after in steps()][:-1])
+def test_an_older_backup_is_migrated_in_a_copy(
+    database_url: str, tmp_path: Path, revision: str
+) -> None:
+    """The database gets what migrating gives; the file stays as it is, byte for byte."""
+    url = f"sqlite:///{tmp_path / 'old.sqlite'}"
+    upgrade(url, revision)
+    old = open_database(url)
+    fill(old.engine)
+    make(old, tmp_path / "old.reembody")
+    old.close()
+    bytes_before = hashlib.sha256((tmp_path / "old.reembody").read_bytes()).hexdigest()
+    target = open_database(database_url)
+    put_back(target, tmp_path / "old.reembody")
+    make(target, tmp_path / "restored.reembody")
+    target.close()
+    assert hashlib.sha256((tmp_path / "old.reembody").read_bytes()).hexdigest() == bytes_before
+    assert not list((tmp_path / "kept").iterdir())
+    upgrade(url, steps()[-1][1])
+    restored = found(f"sqlite:///{tmp_path / 'restored.reembody'}").contents
+    del restored["backup_manifest"]
+    assert restored == found(url).contents
+
+
+def test_a_missing_file_is_said_to_be_missing(sqlite: Database, tmp_path: Path) -> None:
+    """And nothing is made in its place."""
+    with pytest.raises(NotFound, match="no file"):
+        put_back(sqlite, tmp_path / "nothing.reembody")
+    assert not (tmp_path / "nothing.reembody").exists()
+
+
+def test_active_sessions_hold_it_up(fresh_lab: Lab, tmp_path: Path) -> None:
+    """They are listed; only who insists goes on, and their headsets must be paired again."""
+    session = fresh_lab.join(participant_code="P-014")
+    fresh_lab.command(session, "start")
+    headset = fresh_lab.operator.post(
+        f"/api/sessions/{session['id']}/pairings", json={"device": "headset"}
+    ).json()
+    fresh_lab.stranger().post(
+        "/api/devices/pair", json={"code": headset["code"], "name": "headset"}
+    ).raise_for_status()
+    make(fresh_lab.database, tmp_path / "all.reembody")
+    with pytest.raises(Conflict, match=r"1 session\(s\) are active: P-014") as refused:
+        put_back(fresh_lab.database, tmp_path / "all.reembody", replace=True)
+    assert refused.value.details[0]["session_id"] == session["id"]
+    done = put_back(
+        fresh_lab.database, tmp_path / "all.reembody", replace=True, even_though_active=True
+    )
+    assert done.unpaired == 1
+    with fresh_lab.database.reading() as db:
+        assert db.scalar(select(func.count(Device.revoked_at))) == 1
+        assert db.scalar(select(StudySession.status)) == "active"
+
+
+def test_a_running_application_goes_on_with_what_was_restored(
+    fresh_lab: Lab, tmp_path: Path
+) -> None:
+    """Logins, sessions and balance are those of the backup; what came later is gone."""
+    kept = fresh_lab.join(participant_code="before")
+    make(fresh_lab.database, tmp_path / "all.reembody")
+    later = fresh_lab.join(participant_code="later")
+    put_back(fresh_lab.database, tmp_path / "all.reembody", replace=True)
+    assert fresh_lab.view(kept["id"])["participant_code"] == "before"
+    assert fresh_lab.operator.get(f"/api/sessions/{later['id']}").status_code == 404
+    again = fresh_lab.join(participant_code="later")
+    assert again["slot"] == later["slot"]
+    started = fresh_lab.command(kept, "start")
+    assert started["status"] == "active"
+
+
+def test_no_table_numbers_its_rows_by_itself(database: Database) -> None:
+    """Neither engine keeps a counter that a restore would have to set."""
+    counters = (
+        "SELECT name FROM sqlite_master WHERE name = 'sqlite_sequence'"
+        if database.is_sqlite
+        else "SELECT sequence_name FROM information_schema.sequences"
+    )
+    with database.reading() as db:
+        assert db.execute(text(counters)).all() == []
+
+
+def test_a_newer_programs_backup_is_refused(
+    sqlite: Database, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It says which version reads it."""
+    make(sqlite, tmp_path / "all.reembody")
+    monkeypatch.setattr("app.features.care.backups.older.known_revisions", lambda: ("0001",))
+    monkeypatch.setattr("app.features.care.backups.older.newest_revision", lambda: "0001")
+    with pytest.raises(InvalidInput, match="does not know") as refused:
+        put_back(sqlite, tmp_path / "all.reembody", replace=True)
+    assert "Install version" in refused.value.remedy

@@ -1,0 +1,171 @@
+"""What is wrong with a database file is noticed without changing it."""
+
+import sqlite3
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.features.care.opening import inspection
+from app.features.care.opening.inspection import damage_of, foreign_tables, is_open_elsewhere
+from tests.faults.figures import note
+from tests.features.care.opening.files import filled, flip, killed, log
+
+PAGE = 4096
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    """A database of ours that is whole."""
+    return filled(tmp_path / "reembody.sqlite")
+
+
+def overwritten(file: Path, noise: bool) -> Iterator[tuple[int, str | None]]:  # noqa: FBT001 - by name
+    """What is said of the file with one page after the other overwritten."""
+    rng = np.random.default_rng(6)
+    data = file.read_bytes()
+    for page in range(len(data) // PAGE):
+        other = rng.bytes(PAGE) if noise else bytes(PAGE)
+        file.write_bytes(data[: page * PAGE] + other + data[(page + 1) * PAGE :])
+        yield page, damage_of(file)
+    file.write_bytes(data)
+
+
+def ends_of_blobs(file: Path) -> set[int]:
+    """Pages that hold the last part of a long value: they begin with no number of a next page."""
+    data = file.read_bytes()
+    pages = range(len(data) // PAGE)
+    return {page for page in pages if data[page * PAGE : page * PAGE + 4] == bytes(4)}
+
+
+def test_a_whole_database_is_taken(file: Path, tmp_path: Path) -> None:
+    """Closed as it should be, and left by a crash with everything in its log."""
+    assert damage_of(file) is None
+    assert damage_of(killed(tmp_path / "killed.sqlite")) is None
+
+
+def test_looking_changes_nothing(tmp_path: Path) -> None:
+    """Neither the file nor its log, whole or damaged."""
+    file = killed(filled(tmp_path / "reembody.sqlite"))
+    for place in (None, 200, 3 * PAGE + 1):
+        if place is not None:
+            flip(file, place)
+        before = file.read_bytes(), log(file).read_bytes()
+        damage_of(file)
+        foreign_tables(file) if place is None else None
+        assert (file.read_bytes(), log(file).read_bytes()) == before
+
+
+def test_a_page_of_noise_is_noticed(file: Path) -> None:
+    """Every page, in its turn."""
+    found = dict(overwritten(file, noise=True))
+    note(6, "a page of noise", "noticed", count(found))
+    assert [page for page, damage in found.items() if damage is None] == []
+
+
+def test_a_page_of_zeros_is_noticed(file: Path) -> None:
+    """Every page but those that hold only the end of a long value: see the next test."""
+    ends = ends_of_blobs(file)
+    found = dict(overwritten(file, noise=False))
+    unnoticed = {page for page, damage in found.items() if damage is None}
+    note(6, "a page of zeros", "noticed", count(found))
+    note(6, "a page of zeros", "of the others: ends of long values", len(unnoticed & ends))
+    assert unnoticed <= ends
+
+
+def test_a_changed_value_is_not_noticed_here(file: Path) -> None:
+    """Honestly: the structure is checked, not what is in the rows.
+
+    Events have their hash chain, movement the checksum of its chunk, backups one for each table.
+    """
+    data = file.read_bytes()
+    place = data.index(bytes(range(256)) * 3)
+    flip(file, place + 300)
+    assert damage_of(file) is None
+
+
+@pytest.mark.parametrize("length", [0, 1, 15, 16, 99, 100, PAGE - 1, PAGE, 9 * PAGE, -PAGE, -1])
+def test_a_file_that_was_cut_off_is_noticed(file: Path, length: int) -> None:
+    """Wherever it ends; SQLite itself takes an empty file for a new database."""
+    file.write_bytes(file.read_bytes()[:length])
+    assert damage_of(file) is not None
+
+
+@pytest.mark.parametrize("start", [b"\0" * 16, b"PK\x03\x04" + b"x" * 12, b"SQLite format 4\0"])
+def test_a_garbled_beginning_is_noticed(file: Path, start: bytes) -> None:
+    """Whatever it looks like instead."""
+    file.write_bytes(start + file.read_bytes()[16:])
+    assert damage_of(file) == "it is not a SQLite database"
+
+
+def test_a_damaged_log_is_noticed(file: Path) -> None:
+    """Also if SQLite would work with what is left."""
+    killed(file)
+    assert damage_of(file) is None
+    flip(log(file), 5 * PAGE)
+    assert "transactions cannot be read" in (damage_of(file) or "")
+    flip(log(file), 5 * PAGE)
+    flip(log(file), 17)
+    assert damage_of(file) == "the beginning of its log is damaged"
+
+
+def test_a_torn_log_is_what_a_power_failure_leaves(file: Path) -> None:
+    """It is taken."""
+    killed(file)
+    log(file).write_bytes(log(file).read_bytes()[:-5000])
+    assert damage_of(file) is None
+
+
+def test_a_large_file_is_checked_only_after_an_unclean_end(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What costs too much at every start is done when there is a reason."""
+    monkeypatch.setattr(inspection, "ALWAYS_CHECKED_BYTES", 10 * PAGE)
+    data = file.read_bytes()
+    page = 30 * PAGE
+    file.write_bytes(data[:page] + b"\xff" * PAGE + data[page + PAGE :])
+    assert damage_of(file) is None
+    killed(file)
+    assert damage_of(file) is not None
+
+
+def test_another_programs_database_is_known_by_its_tables(file: Path, tmp_path: Path) -> None:
+    """Ours is not foreign, nor is one without tables."""
+    other, new = tmp_path / "other.sqlite", tmp_path / "new.sqlite"
+    with closing(sqlite3.connect(other)) as connection:
+        connection.execute("CREATE TABLE bookmarks (x)")
+    with closing(sqlite3.connect(new)) as connection:
+        connection.execute("PRAGMA journal_mode=WAL")
+    assert foreign_tables(other) == ["bookmarks"]
+    assert foreign_tables(file) == []
+    assert foreign_tables(new) == []
+
+
+def test_whoever_has_it_open_is_noticed(file: Path) -> None:
+    """A server that runs, even while it does nothing."""
+    assert not is_open_elsewhere(file)
+    program = (
+        "import sqlite3, sys\n"
+        "connection = sqlite3.connect(sys.argv[1])\n"
+        "connection.execute('SELECT count(*) FROM accounts').fetchone()\n"
+        "print('open', flush=True)\n"
+        "sys.stdin.read()\n"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", program, str(file)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == b"open\n"
+        assert is_open_elsewhere(file)
+        other.communicate()
+    assert not is_open_elsewhere(file)
+
+
+def count(found: dict[int, str | None]) -> str:
+    """How many of how many were noticed."""
+    noticed = sum(damage is not None for damage in found.values())
+    return f"{noticed} of {len(found)}"

@@ -1,0 +1,91 @@
+"""Copies that leave the database are on record, and an erasure lists them."""
+
+import io
+import json
+import zipfile
+from pathlib import Path
+
+from tests.faults.commands import reembody
+from tests.features.care.rights.visit import erase, in_bytes, make_visit, participant_of
+from tests.features.headset.site import Site
+from tests.features.lab import STUDY, Json, error, ok
+
+
+def copies(site: Site) -> list[Json]:
+    """The copies of the study, newest first."""
+    listed: list[Json] = ok(site.operator.get(f"/api/studies/{STUDY}/copies"))
+    return listed
+
+
+def test_every_way_out_is_on_record(site: Site, tmp_path: Path) -> None:
+    """An export in the browser and by command, a backup, a participant's own copy."""
+    visit = make_visit(site, "copied-1")
+    before = len(copies(site))
+    ok_bytes(site, f"/api/studies/{STUDY}/export?kind=people")
+    ok_bytes(site, f"/api/studies/{STUDY}/participants/{visit.participant_id}/access")
+    export = ("export", "--study", STUDY, "--to", tmp_path / "export", "--kind", "people")
+    assert reembody(site.server, *export).code == 0
+    assert reembody(site.server, "backup", tmp_path / "all.reembody").code == 0
+    made = copies(site)[: len(copies(site)) - before]
+    assert [(one["kind"], one["session_kind"]) for one in reversed(made)] == [
+        ("export", "people"),
+        ("access", "people"),
+        ("export", "people"),
+        ("backup", None),
+    ]
+    assert made[0]["place"] == str(tmp_path / "all.reembody")
+    assert made[0]["bytes"] == (tmp_path / "all.reembody").stat().st_size
+    assert made[3]["place"] == "downloaded by admin"
+    held = participant_of(site, visit.session_id)["copies"]
+    assert {one["id"] for one in made} <= {one["id"] for one in held}
+
+
+def test_an_erasure_lists_the_copies_that_may_hold_the_data(site: Site) -> None:
+    """Not those of other kinds of sessions, nor of other people; each is marked once."""
+    visit, other = make_visit(site, "copied-2"), make_visit(site, "copied-3")
+    ok_bytes(site, f"/api/studies/{STUDY}/export?kind=simulated")
+    ok_bytes(site, f"/api/studies/{STUDY}/export?kind=all")
+    ok_bytes(site, f"/api/studies/{STUDY}/participants/{other.participant_id}/access")
+    ok_bytes(site, f"/api/studies/{STUDY}/participants/{visit.participant_id}/access")
+    own, theirs, everything, simulated = copies(site)[:4]
+    site.command(visit.session_id, "withdraw", reason="enough")
+    left = {one["id"] for one in erase(site, visit)["remaining"]}
+    assert {own["id"], everything["id"]} <= left
+    assert not {theirs["id"], simulated["id"]} & left
+    for _ in range(2):
+        marked = ok(site.operator.post(f"/api/copies/{own['id']}/destroyed"))
+        assert marked["destroyed_by"] == "account:admin"
+    remaining = participant_of(site, visit.session_id)["erasure"]["remaining"]
+    assert [one["id"] for one in remaining if one["destroyed_at"]] == [own["id"]]
+    error(site.operator.post("/api/copies/nothing/destroyed"), 404, "not_found")
+
+
+def test_a_participants_own_copy_holds_everything_in_their_words(site: Site) -> None:
+    """A page with wordings, answers, scores, notes and consent, and the data with every sample."""
+    visit, other = make_visit(site, "copied-4"), make_visit(site, "copied-5")
+    site.command(visit.session_id, "note", text="<script>alert(1)</script>")
+    content = ok_bytes(site, f"/api/studies/{STUDY}/participants/{visit.participant_id}/access")
+    with zipfile.ZipFile(io.BytesIO(content)) as files:
+        names = files.namelist()
+        page = files.read("your-data.html").decode()
+        words = json.loads(files.read("words.json"))
+        sessions = files.read("sessions.csv").decode()
+        samples = files.read(next(name for name in names if name.startswith("samples/")))
+    assert names[0] == "your-data.html"
+    assert "What is your profession or field of study?" in page
+    assert f"<dd>{visit.code}</dd>" in page
+    assert "&lt;script&gt;" in page
+    assert "<script" not in page
+    assert visit.session_id in sessions
+    assert samples.count(b"\n") > 180
+    assert {"note", "reason", "refused_form"} <= {row["kind"] for row in words}
+    assert in_bytes(visit, content) > 180
+    assert in_bytes(other, content) == 0
+    assert other.session_id.encode() not in content
+
+
+def ok_bytes(site: Site, path: str) -> bytes:
+    """The body of a download that went well."""
+    answer = site.operator.get(path)
+    assert answer.is_success, answer.text
+    return answer.content

@@ -1,0 +1,210 @@
+"""Erasing a participant: what goes, what stays, and when it is refused."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.audit.service import verify_trail
+from app.features.sessions.journal import canonical, events_of, verify_chain
+from app.models import (
+    AuditEntry,
+    Erasure,
+    Participant,
+    SessionContent,
+    SessionEvent,
+    SlotAttempt,
+    StudySession,
+    Submission,
+)
+from tests.features.care.rights.visit import (
+    CANARY,
+    Visit,
+    erase,
+    in_tables,
+    make_visit,
+    participant_of,
+    submit,
+)
+from tests.features.headset.site import Site
+from tests.features.lab import STUDY, Json, error, ok
+
+
+def mine(code: str) -> str:
+    """A code that holds the canary and is not taken yet."""
+    return f"{CANARY}-{code}"
+
+
+def withdrawn(site: Site, code: str) -> Visit:
+    """A visit that its participant broke off."""
+    visit = make_visit(site, mine(code))
+    site.command(visit.session_id, "withdraw", reason=f"{visit.code} hurts")
+    return visit
+
+
+def test_nothing_of_the_person_is_left_in_any_table(site: Site) -> None:
+    """Every text, JSON and byte column of every table is searched; the skeleton stays."""
+    visit = withdrawn(site, "tables")
+    assert len(in_tables(visit, site.database.engine)) >= 5
+    erased = erase(site, visit, "withdrawn")
+    assert in_tables(visit, site.database.engine) == {}
+    assert {"answers", "scores", "submissions", "session_contents"} <= erased["removed"].keys()
+    assert erased["overwritten"]
+    with site.database.reading() as db:
+        session = db.get_one(StudySession, visit.session_id)
+        attempt = db.scalars(select(SlotAttempt).where(SlotAttempt.session_id == session.id)).one()
+        assert (session.status, attempt.outcome) == ("withdrawn", "withdrawn")
+        code = db.get_one(Participant, visit.participant_id).code
+        assert code.startswith("erased-")
+        check = verify_chain(events_of(db, session.id), version=session.version)
+        assert check.ok
+        assert verify_trail(db).ok
+        acts = db.scalars(select(AuditEntry.action).order_by(AuditEntry.seq)).all()
+    assert acts[-1] == "participant.erased"
+    events = ok(site.operator.get(f"/api/sessions/{visit.session_id}/events"))
+    assert events[-1]["type"] == "data_erased"
+    assert events[-1]["data"]["reason_code"] == "withdrawn"
+
+
+def test_no_hash_can_be_tried_out(site: Site) -> None:
+    """A few answers on a scale of seven could be guessed from a bare hash; salts are gone."""
+    visit = make_visit(site, mine("salt"))
+    with site.database.reading() as db:
+        forms = db.scalars(
+            select(Submission).where(Submission.session_id == visit.session_id)
+        ).all()
+        secrets = [form.salt for form in forms] + [form.request_hash for form in forms]
+        secrets += [row.salt for row in _contents(db, visit.session_id)]
+        answers = ok(site.operator.get(f"/api/sessions/{visit.session_id}/answers"))
+        karas = next(form for form in answers if form["instrument"] == "karas2020")
+        stored = next(form for form in forms if form.id == karas["submission_id"])
+        event = _event_of(site, visit, stored.id)
+        # With the salt the hash tells the answers: that is why it must go.
+        guesses = list(_guesses(karas["answers"]))
+        assert event["content_hash"] in {_hash(stored.salt or "", one) for one in guesses}
+    site.command(visit.session_id, "withdraw", reason="enough")
+    erase(site, visit)
+    with site.database.reading() as db:
+        kept = json.dumps(
+            [
+                [dict(row) for row in db.execute(select(table)).mappings()]
+                for table in (
+                    Submission.__table__,
+                    SessionContent.__table__,
+                    SessionEvent.__table__,
+                    Erasure.__table__,
+                    AuditEntry.__table__,
+                )
+            ],
+            default=str,
+        )
+        salts = [row.salt for row in _contents(db, visit.session_id)]
+        forms = db.scalars(
+            select(Submission).where(Submission.session_id == visit.session_id)
+        ).all()
+    assert len(secrets) > 6
+    assert [one for one in secrets if one is None or one in kept] == []
+    assert {*salts, *(form.salt for form in forms)} == {None}
+    assert event["content_hash"] not in {_hash("", one) for one in guesses}
+
+
+def _contents(db: Session, session_id: str) -> list[SessionContent]:
+    own = select(SessionContent).where(SessionContent.session_id == session_id)
+    return list(db.scalars(own))
+
+
+def _event_of(site: Site, visit: Visit, submission_id: str) -> Json:
+    events = ok(site.operator.get(f"/api/sessions/{visit.session_id}/events"))
+    data: Json = next(
+        event["data"]
+        for event in events
+        if event["type"] == "form_submitted" and event["data"]["submission_id"] == submission_id
+    )
+    return data
+
+
+def _guesses(answers: Json) -> Iterator[Json]:
+    """What somebody would try who knows all but the first answer."""
+    first = next(item for item, value in answers.items() if isinstance(value, float))
+    whole = {
+        item: int(value) if isinstance(value, float) else value for item, value in answers.items()
+    }
+    for value in range(1, 8):
+        yield {**whole, first: value}
+
+
+def _hash(salt: str, answers: Json) -> str:
+    return hashlib.sha256(f"{salt}{canonical(answers)}".encode()).hexdigest()
+
+
+def test_it_is_refused_while_a_session_runs_and_for_another_code(site: Site) -> None:
+    """Nothing has changed then; afterwards it can be done once."""
+    visit = make_visit(site, mine("rules"))
+    path = f"/api/studies/{STUDY}/participants/{visit.participant_id}/erasure"
+    body = {"confirm": visit.code, "reason_code": "requested"}
+    refusal = error(site.operator.post(path, json=body), 409, "not_now")
+    assert refusal["value"] == [visit.session_id]
+    site.command(visit.session_id, "withdraw", reason="enough")
+    other = {**body, "confirm": "P-0001"}
+    error(site.operator.post(path, json=other), 422, "invalid_input")
+    error(site.operator.post(path, json={**body, "reason_code": "bored"}), 422, "invalid_input")
+    assert participant_of(site, visit.session_id)["erasure"] is None
+    erase(site, visit)
+    again = {**body, "confirm": participant_of(site, visit.session_id)["code"]}
+    error(site.operator.post(path, json=again), 409, "conflict")
+
+
+def test_nothing_comes_back_afterwards(site: Site) -> None:
+    """No note, no correction, no reconnecting headset, no new session under the old tombstone."""
+    visit = withdrawn(site, "after")
+    forms = ok(site.operator.get(f"/api/sessions/{visit.session_id}/answers"))
+    erase(site, visit)
+    view = site.view(visit.session_id)
+    assert view["allowed"] == []
+    note = {
+        "command_id": "5" * 32,
+        "expected_version": view["version"],
+        "type": "note",
+        "text": "it was",
+    }
+    path = f"/api/sessions/{visit.session_id}"
+    error(site.operator.post(f"{path}/commands", json=note), 409, "not_now")
+    body = {"item": "age", "value": 30, "reason": "typed wrongly"}
+    path = f"{path}/submissions/{forms[0]['submission_id']}/corrections"
+    assert site.operator.post(path, json=body).status_code in (404, 409, 422)
+    join = {"kind": "people", "participant_code": view["participant_code"]}
+    error(site.operator.post(f"/api/studies/{STUDY}/sessions", json=join), 409, "conflict")
+    with site.socket(visit.headset_token) as socket:
+        assert json.loads(socket.recv(timeout=10.0))["code"] == "not_signed_in"
+    assert in_tables(visit, site.database.engine) == {}
+
+
+def test_a_session_that_was_only_planned_is_over_with_it(site: Site) -> None:
+    """Its slot is free again, and nobody can start it under a tombstone."""
+    session_id = site.join(kind="people", participant_code=mine("planned"))
+    visit = Visit(session_id, participant_of(site, session_id)["id"], mine("planned"))
+    erase(site, visit, "mistake")
+    view = site.view(session_id)
+    assert view["status"] == "withdrawn"
+    types = [one["type"] for one in ok(site.operator.get(f"/api/sessions/{session_id}/events"))]
+    assert types == ["session_ended", "data_erased"]
+
+
+def test_a_completed_session_takes_nothing_more_either(site: Site) -> None:
+    """Not from a headset that brings what it kept, although a finished session usually does."""
+    session_id = site.join(kind="people", participant_code=mine("done"))
+    view = site.command(session_id, "start")
+    site.command(session_id, "complete_step")
+    submit(site, session_id, occupation=mine("done"))
+    token = site.token(session_id)
+    while view["status"] == "active":
+        view = site.command(session_id, "skip", reason="not in this test")
+    assert view["status"] == "completed"
+    visit = Visit(session_id, participant_of(site, session_id)["id"], mine("done"), token)
+    with site.headset(token) as headset:
+        erase(site, visit, "retention")
+        assert headset.hear("error")["code"] in ("not_signed_in", "withdrawn")
+    assert site.view(session_id)["status"] == "completed"
+    assert in_tables(visit, site.database.engine) == {}

@@ -1,0 +1,88 @@
+"""Withdrawing stops the recording at once."""
+
+import json
+
+from sqlalchemy import func, select
+
+from app.models import TelemetryBatch, TelemetryChunk, TelemetryStream
+from tests.features.care.rights.visit import FRAMES, make_visit
+from tests.features.headset.site import HELLO, Site
+from tests.features.lab import error, key, ok
+from tests.wire.samples import message, standing
+
+
+def frames_of(site: Site, session_id: str) -> tuple[int, int]:
+    """How many frames of a session are stored, and how far its streams are said to be."""
+    with site.database.reading() as db:
+        stored = sum(
+            db.scalar(
+                select(func.coalesce(func.sum(table.frame_count), 0)).where(
+                    table.session_id == session_id
+                )
+            )
+            or 0
+            for table in (TelemetryBatch, TelemetryChunk)
+        )
+        told = db.scalar(
+            select(func.sum(TelemetryStream.frames_stored)).where(
+                TelemetryStream.session_id == session_id,
+                TelemetryStream.stream.in_(("target", "actual")),
+            )
+        )
+    return stored, told or 0
+
+
+def test_movement_that_comes_after_it_is_refused_and_not_stored(site: Site) -> None:
+    """The headset hears that it is over, then why nothing more is taken; others go on."""
+    visit, other = make_visit(site, "gone-1"), make_visit(site, "stays-1")
+    with site.headset(visit.headset_token) as headset, site.headset(other.headset_token) as beside:
+        site.command(visit.session_id, "withdraw", reason="enough")
+        state = headset.hear("state", lambda told: told["status"] == "withdrawn")
+        assert state["recording"] is False
+        for one in (headset, beside):
+            one.say(message(standing(9), epoch=one.epoch, seq_first=0))
+        refusal = headset.hear("error")
+        assert refusal["code"] == "withdrawn"
+        assert "withdrawn" in refusal["message"]
+        assert "discard" in refusal["remedy"]
+        beside.acknowledged("target", 9)
+    assert frames_of(site, visit.session_id) == (2 * FRAMES, 2 * FRAMES)
+    assert frames_of(site, other.session_id) == (2 * FRAMES + 9, 2 * FRAMES + 9)
+
+
+def test_a_headset_that_comes_back_is_told_at_its_hello(site: Site) -> None:
+    """What it kept in its journal is not taken either."""
+    visit = make_visit(site, "gone-2")
+    site.command(visit.session_id, "withdraw", reason="enough")
+    with site.socket(visit.headset_token) as socket:
+        socket.send(json.dumps(HELLO))
+        assert json.loads(socket.recv(timeout=10.0))["code"] == "withdrawn"
+
+
+def test_an_aborted_session_still_takes_what_its_headset_kept(site: Site) -> None:
+    """The lab broke it off, not the participant: nothing is lost."""
+    visit = make_visit(site, "aborted-1")
+    site.command(visit.session_id, "abort", reason="the headset failed")
+    with site.headset(visit.headset_token) as headset:
+        headset.say(message(standing(9), epoch=headset.epoch, seq_first=0))
+        headset.acknowledged("target", 9)
+
+
+def test_the_tablet_shows_the_last_screen_and_is_asked_nothing_more(site: Site) -> None:
+    """A form that was under way is not taken any more."""
+    visit = make_visit(site, "gone-3")
+    path = f"/api/sessions/{visit.session_id}"
+    code = ok(site.operator.post(f"{path}/pairings", json={"device": "tablet"}))["code"]
+    with site.server.client() as tablet:
+        ok(tablet.post("/api/devices/pair", json={"code": code}))
+        site.command(visit.session_id, "withdraw", reason="enough")
+        assert ok(tablet.get("/api/tablet/state"))["screen"] == "finished"
+        body = {
+            "idempotency_key": key(),
+            "administration": "form.demographics#1",
+            "answers": {"age": 30},
+            "shown_order": [],
+            "seed": 1,
+            "language": "en",
+        }
+        error(tablet.post("/api/tablet/submissions", json=body), 410, "withdrawn")
