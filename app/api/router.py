@@ -12,7 +12,6 @@ from app import __version__
 from app.features.accounts.endpoints import router as accounts
 from app.features.accounts.people_endpoints import router as people
 from app.features.alarms.endpoints import router as alarms
-from app.features.analysis.endpoints import router as analysis
 from app.features.audit.endpoints import router as audit
 from app.features.avatar.endpoints import router as avatars
 from app.features.calibrations.endpoints import router as calibrations
@@ -24,19 +23,20 @@ from app.features.care.storage.endpoints import router as storage
 from app.features.context import AppContext
 from app.features.dependencies import API_PREFIX, Context
 from app.features.devices.endpoints import router as devices
-from app.features.exports.endpoints import router as exports
-from app.features.exports.file_endpoints import router as export_files
 from app.features.headset.avatar_endpoints import router as avatar_of_session
 from app.features.headset.socket import serve_headset
 from app.features.humanoids.endpoints import router as humanoids
-from app.features.imports.endpoints import router as imports
 from app.features.instruments.endpoints import router as instruments
 from app.features.participants.endpoints import router as participants
 from app.features.poses.endpoints import router as poses
 from app.features.preflight.endpoints import router as preflight
-from app.features.preregistration.endpoints import router as preregistrations
 from app.features.receipts.endpoints import router as receipts
-from app.features.replay.endpoints import router as replays
+from app.features.results.analysis.endpoints import router as analysis
+from app.features.results.exports.endpoints import router as exports
+from app.features.results.exports.file_endpoints import router as export_files
+from app.features.results.imports.endpoints import router as imports
+from app.features.results.preregistration.endpoints import router as preregistrations
+from app.features.results.replay.endpoints import router as replays
 from app.features.sessions.consent_endpoints import router as consents
 from app.features.sessions.endpoints import router as sessions
 from app.features.sessions.watching import router as watching

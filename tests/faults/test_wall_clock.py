@@ -12,7 +12,7 @@ import pytest
 from starlette.testclient import WebSocketTestSession
 
 from app.clock import Clock
-from app.features.analysis.tables import completions_table, contacts_table, phases_table
+from app.features.results.analysis.tables import completions_table, contacts_table, phases_table
 from app.models import SessionEvent
 from tests.faults.figures import note
 from tests.features.lab import STUDY, Json, Lab, running_lab

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from app.features.analysis.tables import calibrations_table
-from app.features.exports.service import export_study
+from app.features.results.analysis.tables import calibrations_table
+from app.features.results.exports.service import export_study
 from app.models import Calibration
 from tests.features.lab import STUDY, Json, Lab, error, ok
 

@@ -7,8 +7,8 @@ import pytest
 from fastapi.testclient import TestClient
 from pandas import isna
 
-from app.features.analysis.tables.questionnaires import answers_table
 from app.features.questionnaires.hints import hints_of
+from app.features.results.analysis.tables.questionnaires import answers_table
 from app.features.studies.service import instrument_of, newest_instruments
 from app.models import Submission
 from app.science.instruments import Instrument

@@ -6,7 +6,7 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
-from app.features.exports.service import export_study
+from app.features.results.exports.service import export_study
 from app.features.sessions.contents import salted_hash
 from app.models import SessionContent
 from tests.features.lab import Json, Lab, error, ok

@@ -3,8 +3,8 @@
 import pytest
 from sqlalchemy import select
 
-from app.features.analysis.dashboard import build_dashboard
-from app.features.analysis.tables import phases_table
+from app.features.results.analysis.dashboard import build_dashboard
+from app.features.results.analysis.tables import phases_table
 from app.features.sessions.engine import Refused, decide, evolve, initial_state
 from app.features.sessions.engine import commands as c
 from app.features.sessions.engine.state import SessionState

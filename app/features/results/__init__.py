@@ -1,0 +1,1 @@
+"""What comes of the record: analyses, exports, replay, declared tests, imported answers."""

@@ -1,0 +1,7 @@
+"""Writes docs/data-dictionary.md: `python -m app.features.results.analysis.codebook > FILE`."""
+
+import sys
+
+from app.features.results.analysis.codebook import data_dictionary
+
+sys.stdout.write(data_dictionary())

@@ -1,0 +1,130 @@
+"""The whole codebook, as a table and as a page."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, replace
+
+import pandas as pd
+
+from app.features.results.analysis.codebook.calibrations import CALIBRATIONS
+from app.features.results.analysis.codebook.clocks import CLOCK_MAPPING, CLOCK_PROBES
+from app.features.results.analysis.codebook.column import Column, Describe
+from app.features.results.analysis.codebook.movement import (
+    COMPLETIONS,
+    CONTACTS,
+    JOINT_ERROR_COURSE,
+    JOINT_ERRORS,
+    SAMPLES,
+    STREAMS,
+)
+from app.features.results.analysis.codebook.quality import ALARMS, QUALITY
+from app.features.results.analysis.codebook.questionnaires import ANSWERS, CORRECTIONS, SCORES
+from app.features.results.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
+from app.science.skeleton import JOINT_NAMES
+
+_B = Describe("codebook")
+TABLES: dict[str, str] = {
+    "sessions": "One row per session: who, which order, when.",
+    "phases": "One row per run of a timed phase, with what it came to.",
+    "answers": "One row per item of a filled-in form.",
+    "scores": "One row per score of a filled-in form.",
+    "corrections": "One row per answer that was corrected later, with what it was before.",
+    "contacts": "One row per contact of a body part with a surface.",
+    "completions": "One row per completed task.",
+    "joint_errors": "One row per phase, reference, joint and axis.",
+    "joint_error_course": "One row per phase, reference and bin of active time.",
+    "quality": "One row per phase and stream: what is wrong with its frames.",
+    "alarms": "One row per alarm that was raised, and one per alarm that was cleared.",
+    "clock_probes": "One row per exchange of clock readings between a headset and the server.",
+    "clock_mapping": "One row per segment of a headset's clock, brought to the server's.",
+    "events": "One row per event of a session's log: the audit trail.",
+    "calibrations": "One row per measurement of the equipment's own delay; of no one session.",
+    "codebook": "One row per column of the other files.",
+    "samples": "One file per session, one row per frame: target and actual body side by side.",
+}
+"""Each table with what its rows are, in the order of the export."""
+
+CODEBOOK: tuple[Column, ...] = (
+    *SESSIONS,
+    *PHASES,
+    *ANSWERS,
+    *SCORES,
+    *CORRECTIONS,
+    *CONTACTS,
+    *COMPLETIONS,
+    *JOINT_ERRORS,
+    *JOINT_ERROR_COURSE,
+    *QUALITY,
+    *ALARMS,
+    *CLOCK_PROBES,
+    *CLOCK_MAPPING,
+    *EVENTS,
+    *CALIBRATIONS,
+    _B.text("table", "The file the column is in; samples stands for all files in samples/."),
+    _B.text("column", "Name of the column."),
+    _B.text("meaning", "What it holds."),
+    _B.text("unit", "Its unit, if it has one."),
+    _B.text("type", "How to read it.", "text, integer, number, boolean, time"),
+    _B.text("levels", "Its range, or the words it can hold."),
+    *SAMPLES,
+)
+PREFACE = """\
+# Data dictionary
+
+Every column of an export (`reembody export`, `codebook.csv`). Generated from the codebook in
+`app/features/results/analysis/codebook`; a test holds it to that.
+
+Missing values are empty cells. Booleans are `true` and `false`, times are UTC in ISO 8601, angles
+in degrees, lengths in metres, durations in seconds. People's, simulated and test data never share a
+summary: `simulated` stands in every table of data."""
+_BY_TABLE = {
+    table: tuple(column for column in CODEBOOK if column.table == table) for table in TABLES
+}
+
+
+def columns_of(table: str) -> tuple[Column, ...]:
+    """The columns of a table in order."""
+    return _BY_TABLE[table]
+
+
+def codebook_frame() -> pd.DataFrame:
+    """The codebook as a table: table, column, meaning, unit, type, levels."""
+    frame = pd.DataFrame([asdict(column) for column in CODEBOOK])
+    frame = frame.rename(columns={"name": "column"})
+    return frame[[column.name for column in columns_of("codebook")]]
+
+
+def data_dictionary() -> str:
+    """The codebook as a Markdown page; the columns of the joints are folded into one line each."""
+    parts = [PREFACE]
+    for table, rows in TABLES.items():
+        parts += [f"## {table}", rows, _markdown(_folded(columns_of(table)))]
+    return "\n\n".join(parts) + "\n"
+
+
+def _folded(columns: Sequence[Column]) -> list[Column]:
+    """One line for all joints of a stream and all parts of a quaternion."""
+    folded: dict[str, Column] = {}
+    for column in columns:
+        short = _folded_column(column)
+        folded.setdefault(short.name, short)
+    return list(folded.values())
+
+
+def _folded_column(column: Column) -> Column:
+    if column.table != "samples":
+        return column
+    for stream in STREAMS:
+        for joint in JOINT_NAMES:
+            if column.name.startswith(f"{stream}_{joint}_q"):
+                meaning = column.meaning.replace(f"{joint} of", "Each of the 22 joints of", 1)
+                meaning = meaning.replace(f"part {column.name[-1]} ", "part w, x, y or z ", 1)
+                return replace(column, name=f"{stream}_<Joint>_q<w|x|y|z>", meaning=meaning)
+    return column
+
+
+def _markdown(columns: Sequence[Column]) -> str:
+    lines = ["| Column | Type | Unit | Range | Meaning |", "|---|---|---|---|---|"]
+    for column in columns:
+        cells = (f"`{column.name}`", column.type, column.unit, column.levels, column.meaning)
+        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(lines)

@@ -1,0 +1,93 @@
+"""The columns of clock_probes.csv and clock_mapping.csv, and of times that were mapped."""
+
+from app.features.results.analysis.codebook.column import Column, Describe
+from app.features.results.analysis.codebook.common import session_columns
+
+_P = Describe("clock_probes")
+_M = Describe("clock_mapping")
+
+
+def epoch_column(table: str) -> Column:
+    """Whose monotonic clock a row's times are of."""
+    return Describe(table).integer(
+        "epoch",
+        "Run of the client: a restart takes a new one, with a new clock.",
+        levels="1 and up",
+    )
+
+
+def mapped_columns(table: str, name: str, what: str) -> tuple[Column, ...]:
+    """A moment of the client's clock in UTC, with its uncertainty."""
+    of = Describe(table)
+    return (
+        of.time(
+            name,
+            f"{what}, brought to the server's clock by the probes; take lengths from the client's "
+            "seconds. Empty without a probe in that run.",
+        ),
+        of.number(
+            "clock_uncertainty_ms",
+            f"How far {name} can be off either way, whatever the network's two ways took, as long "
+            "as the clocks drift evenly for minutes. UTC itself is as right as the server's clock.",
+            "ms",
+            "0 and up",
+        ),
+    )
+
+
+CLOCK_PROBES: tuple[Column, ...] = (
+    *session_columns("clock_probes"),
+    epoch_column("clock_probes"),
+    _P.number("client_sent_s", "When the client asked, on its monotonic clock.", "s"),
+    _P.number("server_received_s", "When the server read it, on its monotonic clock.", "s"),
+    _P.number("server_sent_s", "When the server answered, on its monotonic clock.", "s"),
+    _P.number("client_received_s", "When the answer came, on the client's clock.", "s"),
+    _P.time("server_utc", "The server's wall clock when it stored the reading."),
+    _P.number(
+        "round_trip_ms",
+        "Time under way: the client's waiting less the server's handling. Below 0 it cannot be "
+        "true, and the probe is left out.",
+        "ms",
+    ),
+    _P.number(
+        "offset_s", "Server's clock minus client's, had both ways taken as long as the other.", "s"
+    ),
+    _P.boolean("timed_out", "Whether no answer came within 2 s; the times behind are empty."),
+)
+
+CLOCK_MAPPING: tuple[Column, ...] = (
+    *session_columns("clock_mapping"),
+    epoch_column("clock_mapping"),
+    _M.integer("segment", "Place among the run's segments of a few minutes.", levels="1 and up"),
+    _M.number("from_s", "Begin on the client's clock.", "s"),
+    _M.number("to_s", "End on the client's clock.", "s"),
+    _M.time(
+        "from_utc",
+        "The same moment as from_s. Any of the client's times between, as of samples, lies between "
+        "from_utc and to_utc in proportion.",
+    ),
+    _M.time("to_utc", "The same moment as to_s."),
+    _M.number("offset_s", "Server's monotonic clock minus the client's, at from_s.", "s"),
+    _M.number("drift_ppm", "How much faster the server's clock runs.", "ppm", "from -500 to 500"),
+    _M.number("min_round_trip_ms", "Shortest round trip.", "ms", "0 and up"),
+    _M.number("uncertainty_ms", "Largest uncertainty of a time in it.", "ms", "0 and up"),
+    _M.integer("probes", "Probes that it rests on.", levels="1 and up"),
+    _M.integer("left_out", "Probes left out because they cannot be true.", levels="0 and up"),
+    _M.number(
+        "step_ms",
+        "Jump of the offset as it was read, between the segment before and this; 0 if none.",
+        "ms",
+    ),
+    _M.text(
+        "stepped",
+        "Whose clock jumped: the client's (or it stood still, as when a headset sleeps), or the "
+        "server's, which is then undone.",
+        "client, server",
+    ),
+    _M.number(
+        "server_utc_step_ms",
+        "How far the server's wall clock was from the UTC of this record, which is fixed by the "
+        "session's first probes. Some tens of milliseconds are the delay of storing.",
+        "ms",
+    ),
+)

@@ -1,0 +1,119 @@
+"""Dashboards, the rows of their figures, the study's tests, and the codebook over HTTP."""
+
+import json
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query, Response
+
+from app.features.audit.service import record
+from app.features.care.rights.service import in_browser_of, record_copy, sessions_in
+from app.features.dependencies import Context, Reading, SignedIn
+from app.features.results.analysis.drawing import Drawn
+from app.features.results.analysis.schemas import (
+    ColumnView,
+    DashboardAsked,
+    DashboardKind,
+    DashboardView,
+    GroupAsked,
+    StatisticsView,
+)
+from app.features.studies.service import study_by_key
+
+router = APIRouter(tags=["analysis"])
+FigureKey = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,79}$")]
+
+
+@router.get("/studies/{key}/dashboard", response_model=DashboardView)
+def get_dashboard(
+    key: str, db: Reading, context: Context, _: SignedIn, asked: Annotated[GroupAsked, Query()]
+) -> Response:
+    """The figures of a study's sessions of one kind, as drawn last; ask again while not current.
+
+    The filter chooses sessions and rows before anything is drawn. One group of the figures is there
+    sooner than all of them.
+    """
+    return _answer(*context.drawings.dashboard(db, key, asked.kind, asked.filter, asked.group))
+
+
+@router.get(
+    "/studies/{key}/dashboard/{figure}/rows",
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {}}, "description": "The rows of a figure."}},
+)
+def get_figure_rows(
+    key: str,
+    figure: FigureKey,
+    db: Reading,
+    context: Context,
+    caller: SignedIn,
+    asked: Annotated[DashboardAsked, Query()],
+) -> Response:
+    """The rows that a figure is drawn from, as CSV; comment lines above them say what they are."""
+    study_by_key(db, key)
+    body = context.drawings.sheet(key, asked.kind, asked.filter, figure)
+    now = context.clock.utc_now()
+    # People's data leave the database: whoever must erase them has to know.
+    with context.database.writing() as writing:
+        study = study_by_key(writing, key)
+        record_copy(
+            writing,
+            kind="export",
+            study_id=study.id,
+            session_kind=asked.kind,
+            place=f"{in_browser_of(caller.actor)}: rows of the figure {figure}",
+            by=caller.actor,
+            now=now,
+            sessions=sessions_in(writing, study, asked.kind),
+            size_bytes=len(body),
+        )
+        record(
+            writing,
+            actor=caller.actor,
+            action="study.exported",
+            subject=f"study:{study.key}",
+            details={"kind": asked.kind, "figure": figure},
+            now=now,
+        )
+    name = f"{key}_{figure}_{asked.kind}_{now.date().isoformat()}.csv"
+    return Response(
+        body,
+        media_type="text/csv; charset=utf-8",
+        headers={"content-disposition": f'attachment; filename="{name}"'},
+    )
+
+
+@router.get("/studies/{key}/statistics", response_model=StatisticsView)
+def get_statistics(
+    key: str, db: Reading, context: Context, _: SignedIn, kind: DashboardKind = "people"
+) -> Response:
+    """The study's questions, answered from the sessions that count; ask again while not current.
+
+    It takes no filter: what is tested is not chosen after looking.
+    """
+    return _answer(*context.drawings.statistics(db, key, kind))
+
+
+@router.get("/studies/{key}/codebook")
+def get_codebook(key: str, db: Reading, _: SignedIn) -> list[ColumnView]:
+    """What every column of the study's export holds."""
+    # Loads pandas, which the start of the server need not wait for.
+    from app.features.results.analysis.codebook import CODEBOOK
+
+    study_by_key(db, key)
+    return [
+        ColumnView(
+            table=column.table,
+            column=column.name,
+            meaning=column.meaning,
+            unit=column.unit,
+            type=column.type,
+            levels=column.levels,
+        )
+        for column in CODEBOOK
+    ]
+
+
+def _answer(drawn: Drawn, current: bool) -> Response:  # noqa: FBT001 - as `Drawings` gives it
+    when = json.dumps({"drawn_at": drawn.at.isoformat(), "current": current})
+    # Not read and written once more: figures of a thousand participants are large.
+    return Response(f"{when[:-1]},".encode() + drawn.body[1:], media_type="application/json")

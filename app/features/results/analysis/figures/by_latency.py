@@ -1,0 +1,196 @@
+"""A measure at each latency, one panel a limb: every participant's line, and the mean over them."""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pandas as pd
+import plotly.graph_objects as go
+
+from app.features.results.analysis.figures.intervals import MeanInterval, mean_interval
+from app.features.results.analysis.figures.theme import (
+    BLUE,
+    CALM,
+    VERMILLION,
+    latency_axis,
+    new_figure,
+    quiet,
+)
+
+LIMBS = ("hand", "foot")
+_LOOKS = {"hand": (BLUE, "circle", "solid"), "foot": (VERMILLION, "square", "dash")}
+MEANS = (
+    "Thin lines are participants; the thick line is their mean with its 95 % confidence interval "
+    "(t distribution). The shape beside it is the distribution of participants, from 5 on; n "
+    "stands below each latency."
+)
+FEWEST_FOR_A_SHAPE = 5
+MANY = 60
+"""Participants from which on points are left away and lines are fainter."""
+SHAPE_SHARE = 0.16
+"""Width of a shape, of the distance between two neighbours on the x axis."""
+
+
+@dataclass(frozen=True)
+class Across:
+    """What stands on the x axis: a column of numbers, how it is called, and its unit."""
+
+    column: str
+    title: str
+    unit: str
+
+
+LATENCY = Across("latency_ms", "added latency (ms)", "ms")
+
+
+def per_participant(frame: pd.DataFrame, value: str, across: str = LATENCY.column) -> pd.DataFrame:
+    """One row per participant, limb and latency: the mean of `value`, as column `value`."""
+    keys = ["participant_code", "limb", across]
+    known = frame.dropna(subset=[*keys, value])
+    return known.groupby(keys)[value].mean().rename("value").reset_index()
+
+
+def latency_figure(
+    values: pd.DataFrame,
+    *,
+    axis: str,
+    unit: str,
+    limits: tuple[float, float] | None = None,
+    across: Across = LATENCY,
+) -> go.Figure:
+    """Draw `values` (participant_code, limb, latency_ms, value), one row a participant and cell.
+
+    `axis` is the title of the y axis with its unit, `limits` the lowest and highest possible value.
+    """
+    limbs = [limb for limb in LIMBS if (values["limb"] == limb).any()]
+    places = sorted(float(place) for place in values[across.column].unique())
+    figure = new_figure(
+        titles=tuple(f"{limb.capitalize()} task" for limb in limbs), shared_yaxes=True
+    )
+    latency_axis(figure, places)
+    for column, limb in enumerate(limbs, start=1):
+        own = values[values["limb"] == limb].rename(columns={across.column: "x"})
+        for trace in (*_shapes(own, limb, places, unit), _people(own, unit, across, column == 1)):
+            figure.add_trace(trace, row=1, col=column)
+        figure.add_trace(_means(own, limb, unit, across), row=1, col=column)
+        counts = own.groupby("x")["value"].count()
+        figure.update_xaxes(
+            title_text=across.title,
+            ticktext=[f"{place:g}<br>n = {int(counts.get(place, 0))}" for place in places],
+            row=1,
+            col=column,
+        )
+    figure.update_yaxes(title_text=axis, row=1, col=1)
+    if limits is not None:
+        room = 0.05 * (limits[1] - limits[0])
+        figure.update_yaxes(range=[limits[0] - room, limits[1] + room])
+    return figure
+
+
+def drawn_rows(values: pd.DataFrame, unit: str, across: Across = LATENCY) -> pd.DataFrame:
+    """What `latency_figure` draws, as rows: participants' values, then means with intervals."""
+    rows = [values.assign(row="participant")]
+    for limb in LIMBS:
+        own = values[values["limb"] == limb].rename(columns={across.column: "x"})
+        means = [
+            {
+                "row": "mean",
+                "limb": limb,
+                across.column: at,
+                "value": cell.mean,
+                "ci95_low": None if cell.half_width is None else cell.mean - cell.half_width,
+                "ci95_high": None if cell.half_width is None else cell.mean + cell.half_width,
+                "n": cell.n,
+            }
+            for at, cell in cells(own, "x").items()
+        ]
+        rows += [pd.DataFrame(means)] if means else []
+    frame = pd.concat(rows, ignore_index=True).assign(unit=unit)
+    names = ("row", "participant_code", "limb", across.column, "value", "ci95_low", "ci95_high")
+    return frame.reindex(columns=[*names, "n", "unit"])
+
+
+def cells(values: pd.DataFrame, across: str = LATENCY.column) -> dict[float, MeanInterval]:
+    """Mean and interval at each latency, in order."""
+    by_place = values.sort_values(across).groupby(across)["value"]
+    return {float(str(at)): mean_interval(group.tolist()) for at, group in by_place}
+
+
+def _shapes(own: pd.DataFrame, limb: str, places: Sequence[float], unit: str) -> list[go.Violin]:
+    """The distribution at each place, on its right; none of a few participants."""
+    gap = min((b - a for a, b in itertools.pairwise(places)), default=10.0)
+    traces = []
+    for place, group in own.groupby("x")["value"]:
+        if len(group) < FEWEST_FOR_A_SHAPE or group.nunique() < 2:
+            continue
+        traces.append(
+            go.Violin(
+                # Objects: arrays of numbers would travel packed, lists be looked through.
+                x=np.full(len(group), float(str(place)) + 0.06 * gap, dtype=object),
+                y=group.to_numpy(dtype=object),
+                name=f"distribution, {limb}",
+                side="positive",
+                width=2 * SHAPE_SHARE * gap,
+                points=False,
+                spanmode="hard",
+                line={"color": _LOOKS[limb][0], "width": 1},
+                fillcolor=CALM,
+                showlegend=False,
+                hovertemplate=f"%{{y:.3g}} {unit}<extra>distribution</extra>",
+            )
+        )
+    return traces
+
+
+def _people(own: pd.DataFrame, unit: str, across: Across, legend: bool) -> go.Scatter:  # noqa: FBT001 - one of two panels
+    """All participants as one trace, with a gap between their lines."""
+    lines = own.sort_values(["participant_code", "x"])
+    codes = lines["participant_code"].to_numpy(dtype=object)
+    # Behind the last point of each line.
+    gaps = np.append(np.flatnonzero(codes[1:] != codes[:-1]) + 1, len(codes))
+    nothing = np.array([None], dtype=object)
+
+    def parted(values: npt.NDArray[np.object_]) -> npt.NDArray[np.object_]:
+        return np.insert(values, gaps, nothing)
+
+    n = own["participant_code"].nunique()
+    colour = quiet(n)
+    return go.Scatter(
+        x=parted(lines["x"].to_numpy(dtype=object)),
+        y=parted(lines["value"].to_numpy(dtype=object)),
+        text=parted(codes),
+        mode="lines" if n > MANY else "lines+markers",
+        name="participants",
+        legendgroup="participants",
+        showlegend=legend,
+        line={"color": colour, "width": 1},
+        marker={"color": colour, "size": 5, "symbol": "circle-open"},
+        hovertemplate=f"%{{text}}<br>%{{y:.3g}} {unit} at %{{x:g}} {across.unit}<extra></extra>",
+    )
+
+
+def _means(own: pd.DataFrame, limb: str, unit: str, across: Across) -> go.Scatter:
+    colour, symbol, dash = _LOOKS[limb]
+    means = cells(own, "x")
+    return go.Scatter(
+        x=list(means),
+        y=[cell.mean for cell in means.values()],
+        error_y={
+            "type": "data",
+            "array": [cell.half_width for cell in means.values()],
+            "color": colour,
+            "thickness": 2,
+            "width": 6,
+        },
+        customdata=[[cell.n, cell.words(unit)] for cell in means.values()],
+        mode="lines+markers",
+        name=f"mean, {limb}",
+        line={"color": colour, "width": 3, "dash": dash},
+        marker={"color": colour, "size": 10, "symbol": symbol},
+        hovertemplate=(
+            f"mean %{{y:.3g}} %{{customdata[1]}} at %{{x:g}} {across.unit}"
+            "<br>n = %{customdata[0]}<extra></extra>"
+        ),
+    )

@@ -1,0 +1,55 @@
+"""How many tasks were completed: at each latency, and as a session went on."""
+
+import pandas as pd
+
+from app.features.results.analysis.figures.by_latency import (
+    LATENCY,
+    MEANS,
+    Across,
+    drawn_rows,
+    latency_figure,
+    per_participant,
+)
+from app.features.results.analysis.figures.drawing import (
+    FEWEST_PARTICIPANTS,
+    Drawing,
+    count_note,
+    drawn,
+    limb_note,
+    participants,
+    too_few,
+)
+
+KEY, TITLE = "completions", "Completed tasks by added latency"
+LEARNING_KEY, LEARNING_TITLE = "learning", "Completed tasks over the blocks of a session"
+BLOCK = Across("block", "block (1 = first)", "")
+_ORDERS = (
+    "Every order of latencies is in it where the study is balanced, so that a rise over blocks is "
+    "practice and a fall fatigue; with unbalanced orders latency is mixed in."
+)
+_UNIT = "tasks"
+
+
+def completions_drawing(phases: pd.DataFrame) -> Drawing:
+    """From valid rows of the table of phases; a phase without a completion counts as 0."""
+    return _drawing(KEY, TITLE, MEANS, phases)
+
+
+def learning_drawing(phases: pd.DataFrame) -> Drawing:
+    """The same rows by the block in which they were done."""
+    words = MEANS.replace("each latency", "each block")
+    return _drawing(LEARNING_KEY, LEARNING_TITLE, f"{words} {_ORDERS}", phases, BLOCK)
+
+
+def _drawing(
+    key: str, title: str, words: str, phases: pd.DataFrame, across: Across = LATENCY
+) -> Drawing:
+    tasks = phases[phases["phase_kind"] == "task"].astype({"completions": "float64"})
+    n = participants(tasks)
+    if n < FEWEST_PARTICIPANTS:
+        return too_few(key, title, words, n, "a finished hand or foot phase")
+    values = per_participant(tasks.astype({across.column: "float64"}), "completions", across.column)
+    figure = latency_figure(values, axis="completed tasks (per phase)", unit=_UNIT, across=across)
+    figure.update_yaxes(rangemode="tozero")
+    caption = f"{words} {count_note(n)} {limb_note(tasks)}"
+    return drawn(key, title, caption, n, figure, drawn_rows(values, _UNIT, across))

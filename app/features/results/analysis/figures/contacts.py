@@ -1,0 +1,138 @@
+"""How long sides of boxes were touched, and by which parts of the body."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import pandas as pd
+import plotly.graph_objects as go
+
+from app.features.results.analysis.figures.by_latency import LIMBS
+from app.features.results.analysis.figures.drawing import (
+    FEWEST_PARTICIPANTS,
+    Drawing,
+    count_note,
+    drawn,
+    limb_note,
+    participants,
+    too_few,
+)
+from app.features.results.analysis.figures.theme import COLOURS, PATTERNS, hatched, new_figure
+from app.features.results.analysis.red_time import red_spans, total_s
+
+Contact = tuple[str, float, float]
+KEY, TITLE = "contacts", "Time at the sides of the boxes by added latency"
+WHAT = (
+    "Left: how long sides were red, the union over the body parts that touched a side, summed over "
+    "boxes. Right: contact time of each body part, which overlaps with that of others and is never "
+    "summed into the red time. Mean active seconds per phase over participants; a phase without a "
+    "contact counts as 0."
+)
+
+
+def contacts_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
+    """From valid rows of the tables of phases and contacts."""
+    tasks = phases[phases["phase_kind"] == "task"]
+    sides = contacts[contacts["surface_kind"] == "side"]
+    n = participants(tasks)
+    if n < FEWEST_PARTICIPANTS:
+        return too_few(KEY, TITLE, WHAT, n, "a finished hand or foot phase")
+    if sides.empty:
+        empty = "No side of a box was touched in any phase that counts."
+        return Drawing(KEY, TITLE, WHAT, n, empty=empty)
+    panels = (("sides, red time", _side_times(sides)), ("body parts", _part_times(sides)))
+    limbs = [limb for limb in LIMBS if (tasks["limb"] == limb).any()]
+    figure = new_figure(
+        rows=len(limbs),
+        titles=tuple(f"{limb.capitalize()}: {name}" for limb in limbs for name, _ in panels),
+        shared_yaxes=True,
+    )
+    rows = []
+    for row, limb in enumerate(limbs, start=1):
+        for column, (name, times) in enumerate(panels, start=1):
+            means = mean_times(tasks[tasks["limb"] == limb], times)
+            rows.append(_as_rows(means, limb, name))
+            for bar in _bars(means, legend=row == 1 and column == 1):
+                figure.add_trace(bar, row=row, col=column)
+        figure.update_yaxes(title_text="time (s per phase)", row=row, col=1)
+        figure.update_xaxes(title_text="side", row=row, col=1)
+        figure.update_xaxes(title_text="body part", row=row, col=2)
+    figure.update_layout(barmode="group", height=330 * len(limbs))
+    caption = f"{WHAT} {count_note(n)} {limb_note(tasks)}"
+    return drawn(KEY, TITLE, caption, n, figure, pd.concat(rows, ignore_index=True))
+
+
+def _side_times(sides: pd.DataFrame) -> pd.DataFrame:
+    """Red time by phase and side, over all boxes: columns session_id, phase_id, what, time_s."""
+    rows = []
+    for key, contacts in _grouped(sides, "session_id", "phase_id").items():
+        for side, red in red_spans(contacts).items():
+            rows.append((*key, side.rpartition("/")[2], total_s(red)))
+    return _times(rows)
+
+
+def _part_times(sides: pd.DataFrame) -> pd.DataFrame:
+    """Contact time by phase and body part: the union over its contacts with each side."""
+    rows = []
+    for key, contacts in _grouped(sides, "session_id", "phase_id", "body_part").items():
+        rows.append((*key, sum(total_s(red) for red in red_spans(contacts).values())))
+    return _times(rows)
+
+
+def part_side_times(sides: pd.DataFrame) -> pd.DataFrame:
+    """Contact time by phase, body part and side, over all boxes, s."""
+    rows = []
+    for key, contacts in _grouped(sides, "session_id", "phase_id", "body_part").items():
+        for side, red in red_spans(contacts).items():
+            rows.append((*key, side.rpartition("/")[2], total_s(red)))
+    names = ["session_id", "phase_id", "body_part", "side"]
+    frame = pd.DataFrame(rows, columns=[*names, "time_s"])
+    return frame.groupby(names)["time_s"].sum().reset_index()
+
+
+def _grouped(sides: pd.DataFrame, *by: str) -> dict[tuple[Any, ...], list[Contact]]:
+    """The contacts of each group; plain lists, as a thousand sessions have many small groups."""
+    names = [*by, "surface", "begin_active_s", "end_active_s"]
+    found: dict[tuple[Any, ...], list[Contact]] = {}
+    for row in zip(*(sides[name].tolist() for name in names), strict=True):
+        found.setdefault(row[: len(by)], []).append(row[len(by) :])
+    return found
+
+
+def _times(rows: Sequence[tuple[Any, ...]]) -> pd.DataFrame:
+    frame = pd.DataFrame(rows, columns=["session_id", "phase_id", "what", "time_s"])
+    return frame.groupby(["session_id", "phase_id", "what"])["time_s"].sum().reset_index()
+
+
+def mean_times(tasks: pd.DataFrame, times: pd.DataFrame) -> pd.DataFrame:
+    """Mean over participants of their seconds per phase: rows latency_ms, columns `what`."""
+    keys = ["session_id", "phase_id"]
+    wide = times.pivot(index=keys, columns="what", values="time_s")
+    own = tasks[[*keys, "participant_code", "latency_ms"]].merge(wide, on=keys, how="left")
+    own = own.drop(columns=keys).fillna(0.0)
+    by_person = own.groupby(["latency_ms", "participant_code"]).mean()
+    means = by_person.groupby(level="latency_ms").mean()
+    return means.loc[:, means.sum() > 0]
+
+
+def _as_rows(means: pd.DataFrame, limb: str, what: str) -> pd.DataFrame:
+    rows = [
+        (limb, what, str(of), float(str(latency)), float(mean_s))
+        for latency, row in means.iterrows()
+        for of, mean_s in row.items()
+    ]
+    return pd.DataFrame(rows, columns=["limb", "what", "of", "latency_ms", "mean_s_per_phase"])
+
+
+def _bars(means: pd.DataFrame, *, legend: bool) -> list[go.Bar]:
+    return [
+        go.Bar(
+            x=[str(name).replace("_", " ") for name in means.columns],
+            y=means.loc[latency].tolist(),
+            name=f"{latency:g} ms",
+            legendgroup=f"{latency:g}",
+            showlegend=legend,
+            marker=hatched(COLOURS[place % len(COLOURS)], PATTERNS[place % len(PATTERNS)]),
+            hovertemplate=f"%{{x}} at {latency:g} ms: %{{y:.2f}} s per phase<extra></extra>",
+        )
+        for place, latency in enumerate(means.index)
+    ]

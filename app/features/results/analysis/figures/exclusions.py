@@ -1,0 +1,89 @@
+"""What does not count, and why: nothing is left out in silence."""
+
+import pandas as pd
+import plotly.graph_objects as go
+
+from app.features.results.analysis.figures.drawing import Drawing, drawn, participants
+from app.features.results.analysis.figures.theme import BLUE, ORANGE, hatched, new_figure
+
+KEY, TITLE = "exclusions", "What counts and what is left out"
+WHAT = (
+    "All that is stored of the sessions shown. A phase or form counts if it was finished, not "
+    "redone since, not skipped, and its session neither aborted nor withdrawn. A score is missing "
+    "where one of its items has no answer."
+)
+_LOOKS = {True: ("counts", BLUE, ""), False: ("left out", ORANGE, "/")}
+_ROW_PX = 34
+
+
+def exclusions_drawing(
+    sessions: pd.DataFrame, phases: pd.DataFrame, scores: pd.DataFrame
+) -> Drawing:
+    """From all rows, valid or not, of the three tables."""
+    n = participants(sessions)
+    if sessions.empty:
+        empty = "No session has joined the study yet."
+        return Drawing(KEY, TITLE, WHAT, 0, empty=empty, group="quality")
+    rows = _counts(sessions, phases[phases["phase_kind"] == "task"], scores)
+    figure = _figure(rows)
+    caption = f"{WHAT} n = {n} participant{'s' if n != 1 else ''}."
+    return drawn(KEY, TITLE, caption, n, figure, rows).of_group("quality")
+
+
+def _figure(rows: pd.DataFrame) -> go.Figure:
+    """A panel each for sessions, phases and scores: their numbers are of different size."""
+    kinds = list(dict.fromkeys(rows["what"]))
+    figure = new_figure(
+        rows=len(kinds), titles=tuple(kind.capitalize() for kind in kinds), vertical_spacing=0.16
+    )
+    for row, kind in enumerate(kinds, start=1):
+        own = rows[rows["what"] == kind]
+        for counts, (name, colour, pattern) in _LOOKS.items():
+            shown = own[own["counts"] == counts]
+            bar = go.Bar(
+                orientation="h",
+                y=shown["reason"].tolist(),
+                x=[int(count) for count in shown["count"]],
+                text=[str(int(count)) for count in shown["count"]],
+                textposition="outside",
+                cliponaxis=False,
+                name=name,
+                legendgroup=name,
+                showlegend=row == 1,
+                marker=hatched(colour, pattern),
+                hovertemplate=f"%{{y}}: %{{x}} ({name})<extra></extra>",
+            )
+            figure.add_trace(bar, row=row, col=1)
+        figure.update_yaxes(autorange="reversed", row=row, col=1)
+        # Room for the number behind the longest bar.
+        longest = max(float(own["count"].max()), 1.0)
+        figure.update_xaxes(range=[0.0, 1.15 * longest], row=row, col=1)
+    figure.update_xaxes(title_text="count (sessions, phases, scores)", row=len(kinds), col=1)
+    figure.update_layout(height=170 + _ROW_PX * len(rows))
+    return figure
+
+
+def _counts(sessions: pd.DataFrame, tasks: pd.DataFrame, scores: pd.DataFrame) -> pd.DataFrame:
+    found = [
+        ("sessions", status, status not in ("aborted", "withdrawn"), int(count))
+        for status, count in sessions["status"].value_counts().items()
+    ]
+    broken = ~tasks["valid"] & (tasks["status"] == "done")
+    found += [
+        ("phases", "count", True, int(tasks["valid"].sum())),
+        ("phases", "redone or skipped", False, int((tasks["status"] == "voided").sum())),
+        ("phases", "session broken off", False, int(broken.sum())),
+        ("phases", "not finished", False, int(_open(tasks))),
+    ]
+    of_phases = scores.dropna(subset=["limb"])
+    missing = of_phases["valid"] & of_phases["value"].isna()
+    found += [
+        ("scores", "count", True, int((of_phases["valid"] & ~missing).sum())),
+        ("scores", "an item has no answer", False, int(missing.sum())),
+        ("scores", "superseded, skipped or broken off", False, int((~of_phases["valid"]).sum())),
+    ]
+    return pd.DataFrame(found, columns=["what", "reason", "counts", "count"])
+
+
+def _open(tasks: pd.DataFrame) -> int:
+    return int((~tasks["status"].isin(("done", "voided"))).sum())

@@ -1,0 +1,88 @@
+"""How far the body was from the participant's pose as a session went on."""
+
+import pandas as pd
+import plotly.graph_objects as go
+
+from app.features.results.analysis.figures.by_latency import LIMBS, cells
+from app.features.results.analysis.figures.drawing import (
+    FEWEST_PARTICIPANTS,
+    Drawing,
+    count_note,
+    drawn,
+    participants,
+    too_few,
+)
+from app.features.results.analysis.figures.joint_errors import INTERVAL, task_angles, what_of
+from app.features.results.analysis.figures.theme import COLOURS, latency_line, new_figure
+
+KEY, TITLE = "joint_error_blocks", "Joint error over the blocks of a session"
+HOW = (
+    "Each value is a participant's mean over joints and the active time of one phase. Where "
+    "everybody has a latency in one block only, a line joins different participants."
+)
+_APART = 0.05
+_NAMES = ("limb", "latency_ms", "block", "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
+
+
+def joint_error_blocks_drawing(errors: pd.DataFrame) -> Drawing:
+    """Mean angle by block, a line a latency and a panel a limb, from valid rows of the table."""
+    rows = task_angles(errors).dropna(subset=["block", "limb", "latency_ms"])
+    n = participants(rows)
+    if n < FEWEST_PARTICIPANTS:
+        return too_few(KEY, TITLE, HOW, n, "joint errors").of_group("movement")
+    keys = ["limb", "latency_ms", "block", "participant_code"]
+    values = rows.astype({"block": "float64"}).groupby(keys)["mean_deg"].mean()
+    data = _means(values.rename("value").reset_index())
+    caption = f"{HOW} {what_of(rows)} {INTERVAL} {count_note(n)}"
+    return drawn(KEY, TITLE, caption, n, _figure(data), data).of_group("movement")
+
+
+def _means(values: pd.DataFrame) -> pd.DataFrame:
+    """Mean and interval over participants of every limb, latency and block that occurs."""
+    found = []
+    for (limb, latency), own in values.groupby(["limb", "latency_ms"]):
+        for block, cell in cells(own, "block").items():
+            half = cell.half_width
+            ends = (None, None) if half is None else (cell.mean - half, cell.mean + half)
+            found.append((limb, latency, block, cell.mean, *ends, cell.n))
+    return pd.DataFrame(found, columns=list(_NAMES))
+
+
+def _figure(data: pd.DataFrame) -> go.Figure:
+    limbs = [limb for limb in LIMBS if (data["limb"] == limb).any()]
+    latencies = sorted(data["latency_ms"].unique().tolist())
+    figure = new_figure(
+        titles=tuple(f"{limb.capitalize()} task" for limb in limbs), shared_yaxes=True
+    )
+    for column, limb in enumerate(limbs, start=1):
+        for place, latency in enumerate(latencies):
+            own = data[(data["limb"] == limb) & (data["latency_ms"] == latency)]
+            # A little apart, so that no interval hides another.
+            shift = _APART * (place - 0.5 * (len(latencies) - 1))
+            trace = _trace(own, latency, place, shift)
+            figure.add_trace(trace.update(showlegend=column == 1), row=1, col=column)
+    figure.update_xaxes(
+        title_text="block (1 = first)", tickvals=sorted(data["block"].unique().tolist())
+    )
+    figure.update_yaxes(rangemode="tozero")
+    figure.update_yaxes(title_text="mean joint error (deg)", row=1, col=1)
+    return figure
+
+
+def _trace(own: pd.DataFrame, latency: float, place: int, shift: float) -> go.Scatter:
+    half = (own["ci95_high_deg"] - own["mean_deg"]).astype("float64")
+    return go.Scatter(
+        x=[block + shift for block in own["block"]],
+        y=own["mean_deg"].tolist(),
+        error_y={
+            "type": "data",
+            "array": [None if pd.isna(one) else float(one) for one in half],
+            "color": COLOURS[place % len(COLOURS)],
+        },
+        customdata=own[["block", "n"]].to_numpy().tolist(),
+        hovertemplate=(
+            f"{latency:g} ms: mean %{{y:.2f}} deg in block %{{customdata[0]:g}}"
+            "<br>n = %{customdata[1]:g}<extra></extra>"
+        ),
+        **latency_line(latency, place, size_px=9),
+    )

@@ -1,0 +1,139 @@
+"""How far the body was from the participant's pose as a phase went on."""
+
+import pandas as pd
+import plotly.graph_objects as go
+
+from app.features.results.analysis.figures.by_latency import LIMBS, cells
+from app.features.results.analysis.figures.drawing import (
+    FEWEST_PARTICIPANTS,
+    Drawing,
+    count_note,
+    drawn,
+    participants,
+    too_few,
+)
+from app.features.results.analysis.figures.joint_errors import HINGES
+from app.features.results.analysis.figures.theme import (
+    COLOURS,
+    latency_line,
+    new_figure,
+    see_through,
+)
+
+KEY, TITLE = "joint_error_course", "Joint error over the active time of a phase"
+HOW = (
+    "Whether people learn a latency, or tire of it, while a phase goes on. Joint error is the "
+    "angle between the participant's pose at the moment and the body they saw; it also grows with "
+    "how fast they move. Each value is a participant's mean over joints and frames in a step of "
+    "active time, which stands in pauses and on walks back. The hips carry no latency and are left "
+    "out."
+)
+BANDS = (
+    "Lines are means over participants, bands their 95 % confidence intervals (t distribution), "
+    "for each step by itself."
+)
+_KEYS = ["limb", "latency_ms", "begin_active_s", "end_active_s"]
+_NAMES = (*_KEYS, "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
+
+
+def joint_error_course_drawing(courses: pd.DataFrame) -> Drawing:
+    """Mean angle by active time, a line a latency and a panel a limb, from rows that count."""
+    chosen = courses["reference"].eq("present") & courses["phase_kind"].eq("task")
+    rows = courses[chosen].dropna(subset=[*_KEYS, "mean_deg"])
+    n = participants(rows)
+    if n < FEWEST_PARTICIPANTS:
+        return too_few(KEY, TITLE, HOW, n, "joint errors").of_group("movement")
+    values = rows.groupby([*_KEYS, "participant_code"])["mean_deg"].mean()
+    data = _means(values.rename("value").reset_index())
+    hinges = HINGES if rows["avatar"].eq("physics").any() else ""
+    caption = f"{HOW} {hinges} {_steps_note(data)} {BANDS} {count_note(n)}"
+    return drawn(KEY, TITLE, caption, n, _figure(data), data).of_group("movement")
+
+
+def _steps_note(data: pd.DataFrame) -> str:
+    longest_s = float((data["end_active_s"] - data["begin_active_s"]).max())
+    return f"A step is {longest_s:g} s long, and its point stands in its middle."
+
+
+def _means(values: pd.DataFrame) -> pd.DataFrame:
+    """Mean and interval over participants of every limb, latency and step that occurs."""
+    found = []
+    for place, own in values.groupby(_KEYS[:2]):
+        ends_s = own.groupby("begin_active_s")["end_active_s"].max()
+        for begin_s, cell in cells(own, "begin_active_s").items():
+            half = cell.half_width
+            ends = (None, None) if half is None else (cell.mean - half, cell.mean + half)
+            found.append((*place, begin_s, float(ends_s[begin_s]), cell.mean, *ends, cell.n))
+    return pd.DataFrame(found, columns=list(_NAMES)).astype({"ci95_low_deg": "float64"})
+
+
+def _figure(data: pd.DataFrame) -> go.Figure:
+    limbs = [limb for limb in LIMBS if (data["limb"] == limb).any()]
+    latencies = sorted(data["latency_ms"].unique().tolist())
+    figure = new_figure(
+        titles=tuple(f"{limb.capitalize()} task" for limb in limbs), shared_yaxes=True
+    )
+    for column, limb in enumerate(limbs, start=1):
+        owns = [
+            data[(data["limb"] == limb) & (data["latency_ms"] == latency)] for latency in latencies
+        ]
+        # All bands first, so that none lies over a line.
+        for place, (latency, own) in enumerate(zip(latencies, owns, strict=True)):
+            figure.add_trace(_band(own, latency, place), row=1, col=column)
+        for place, (latency, own) in enumerate(zip(latencies, owns, strict=True)):
+            line = _line(own, latency, place).update(showlegend=column == 1)
+            figure.add_trace(line, row=1, col=column)
+    figure.update_xaxes(
+        title_text="active time (s)", range=[0.0, float(data["end_active_s"].max())]
+    )
+    figure.update_yaxes(rangemode="tozero")
+    figure.update_yaxes(title_text="mean joint error (deg)", row=1, col=1)
+    return figure
+
+
+def _band(own: pd.DataFrame, latency: float, place: int) -> go.Scatter:
+    """The intervals, from the begin of the first step to the end of the last; gaps stay open."""
+    known = own.dropna(subset=["ci95_low_deg", "ci95_high_deg"])
+    x: list[float | None] = []
+    y: list[float | None] = []
+    unbroken = known["begin_active_s"].ne(known["end_active_s"].shift()).cumsum()
+    for _, part in known.groupby(unbroken):
+        edge = [part["begin_active_s"].iloc[0], *_middles(part), part["end_active_s"].iloc[-1]]
+        low, high = (
+            [values[0], *values, values[-1]]
+            for values in (part["ci95_low_deg"].tolist(), part["ci95_high_deg"].tolist())
+        )
+        x += [*edge, *reversed(edge), None]
+        y += [*high, *reversed(low), None]
+    return go.Scatter(
+        x=x,
+        y=y,
+        mode="lines",
+        fill="toself",
+        fillcolor=see_through(COLOURS[place % len(COLOURS)]),
+        line={"width": 0},
+        hoverinfo="skip",
+        name=f"95 % interval, {latency:g} ms",
+        legendgroup=f"{latency:g}",
+        showlegend=False,
+    )
+
+
+def _line(own: pd.DataFrame, latency: float, place: int) -> go.Scatter:
+    half = (own["ci95_high_deg"] - own["mean_deg"]).astype("float64")
+    words = ["no interval" if pd.isna(one) else f"± {one:.2g} deg" for one in half]
+    steps = zip(own["begin_active_s"], own["end_active_s"], words, own["n"], strict=True)
+    return go.Scatter(
+        x=_middles(own),
+        y=own["mean_deg"].tolist(),
+        customdata=[list(step) for step in steps],
+        hovertemplate=(
+            f"{latency:g} ms: mean %{{y:.2f}} deg (%{{customdata[2]}}) from %{{customdata[0]:g}} "
+            "to %{customdata[1]:g} s<br>n = %{customdata[3]:g}<extra></extra>"
+        ),
+        **latency_line(latency, place, size_px=7),
+    )
+
+
+def _middles(own: pd.DataFrame) -> list[float]:
+    return ((own["begin_active_s"] + own["end_active_s"]) / 2.0).tolist()

@@ -1,0 +1,193 @@
+"""How far the body was from the participant's pose, at each latency."""
+
+import pandas as pd
+import plotly.graph_objects as go
+
+from app.features.results.analysis.figures.body_parts import (
+    BODY_PARTS,
+    JOINTS_BY_PART,
+    PART_OF_JOINT,
+)
+from app.features.results.analysis.figures.by_latency import cells
+from app.features.results.analysis.figures.drawing import (
+    FEWEST_PARTICIPANTS,
+    Drawing,
+    count_note,
+    drawn,
+    participants,
+    too_few,
+)
+from app.features.results.analysis.figures.theme import (
+    BLUE,
+    GREEN,
+    ORANGE,
+    SYMBOLS,
+    VERMILLION,
+    latency_axis,
+    new_figure,
+)
+
+WHAT = (
+    "Joint error is the angle between the participant's pose at the moment and the body they saw, "
+    "averaged over the active time of hand and foot phases. The hips carry no latency and are left "
+    "out."
+)
+HINGES = (
+    "A physics avatar is compared with what its hinges are asked for, before their limits; joints "
+    "without a hinge are left out."
+)
+INTERVAL = "Points are means over participants with 95 % confidence intervals (t distribution)."
+_COLOURS = {"head": BLUE, "spine": GREEN, "arm": VERMILLION, "leg": ORANGE}
+
+
+def joint_error_drawing(errors: pd.DataFrame) -> Drawing:
+    """Mean angle by latency and part of the body, from valid rows of the table of joint errors."""
+    key, title = "joint_error_parts", "Joint error by added latency and body part"
+    rows = task_angles(errors)
+    n = participants(rows)
+    if n < FEWEST_PARTICIPANTS:
+        return too_few(key, title, f"{WHAT} {INTERVAL}", n, "joint errors")
+    latencies = sorted(rows["latency_ms"].unique().tolist())
+    step = 0.012 * (latencies[-1] - latencies[0])
+    figure = new_figure()
+    by_part = _by_part(rows)
+    for place, part in enumerate(BODY_PARTS):
+        if part in by_part:
+            # A little apart, so that no interval hides another.
+            figure.add_trace(_trace(by_part[part], part, place, step * (place - 2.5)))
+    latency_axis(figure, latencies)
+    figure.update_yaxes(title_text="mean joint error (deg)", rangemode="tozero")
+    caption = f"{what_of(rows)} {INTERVAL} {count_note(n)} Points stand a little apart to be seen."
+    return drawn(key, title, caption, n, figure, _part_rows(by_part))
+
+
+def joint_error_map_drawing(errors: pd.DataFrame) -> Drawing:
+    """Mean angle of every joint at every latency, from the same rows."""
+    key, title = "joint_error_joints", "Joint error by added latency and joint"
+    rows = task_angles(errors)
+    n = participants(rows)
+    if n < FEWEST_PARTICIPANTS:
+        return too_few(key, title, WHAT, n, "joint errors")
+    each = rows.groupby(["joint", "latency_ms", "participant_code"])["mean_deg"].mean()
+    table = each.groupby(level=["joint", "latency_ms"]).mean().unstack("latency_ms")
+    joints = [joint for joint in JOINTS_BY_PART if joint in table.index]
+    table = table.loc[joints]
+    shares = _clipped(rows).reindex(index=table.index, columns=table.columns)
+    figure = new_figure()
+    figure.add_trace(_heat(table, shares))
+    figure.update_xaxes(title_text="joint", tickangle=-40)
+    figure.update_yaxes(title_text="added latency (ms)", type="category", autorange="reversed")
+    figure.update_layout(height=200 + 44 * len(table.columns))
+    caption = f"{what_of(rows)} {_clipped_note(shares)}{count_note(n)}"
+    return drawn(key, title, caption, n, figure, joint_rows(rows))
+
+
+def _heat(table: pd.DataFrame, shares: pd.DataFrame) -> go.Heatmap:
+    """Latencies downwards, joints to the right; the number stands in each cell."""
+    numbers = table.T.to_numpy()
+    return go.Heatmap(
+        x=[str(joint) for joint in table.index],
+        y=[f"{latency:g}" for latency in table.columns],
+        z=[[None if pd.isna(value) else float(value) for value in row] for row in numbers],
+        customdata=[[_clipped_words(share) for share in row] for row in shares.T.to_numpy()],
+        texttemplate="%{z:.1f}",
+        colorscale="Cividis",
+        zmin=0.0,
+        xgap=1,
+        ygap=1,
+        colorbar={"title": {"text": "deg"}},
+        hovertemplate="%{x} at %{y} ms: %{z:.2f} deg%{customdata}<extra></extra>",
+    )
+
+
+def joint_rows(rows: pd.DataFrame) -> pd.DataFrame:
+    """Mean over participants by joint and latency, with how many they are of."""
+    keys = ["joint", "latency_ms"]
+    each = rows.groupby([*keys, "participant_code"])[["mean_deg", "clipped_share"]].mean()
+    found = each.groupby(level=keys).agg(
+        mean_deg=("mean_deg", "mean"),
+        clipped_share=("clipped_share", "mean"),
+        n=("mean_deg", "count"),
+    )
+    return found.reset_index()
+
+
+def _part_rows(by_part: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Mean and interval over participants by part of the body and latency."""
+    found = []
+    for part, own in by_part.items():
+        for latency, cell in cells(own).items():
+            half = cell.half_width
+            ends = (None, None) if half is None else (cell.mean - half, cell.mean + half)
+            found.append((part, latency, cell.mean, *ends, cell.n))
+    names = ("body_part", "latency_ms", "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
+    return pd.DataFrame(found, columns=list(names))
+
+
+def what_of(rows: pd.DataFrame) -> str:
+    """What joint error is, for the avatars of these rows."""
+    return f"{WHAT} {HINGES}" if rows["clipped_share"].notna().any() else WHAT
+
+
+def _clipped(rows: pd.DataFrame) -> pd.DataFrame:
+    """Share of clipped samples by joint and latency, a mean over participants; NaN for none."""
+    each = rows.groupby(["joint", "latency_ms", "participant_code"])["clipped_share"].mean()
+    return each.groupby(level=["joint", "latency_ms"]).mean().unstack("latency_ms")
+
+
+def _clipped_words(share: float) -> str:
+    return "" if pd.isna(share) else f"<br>clipped in {100.0 * share:.1f} % of samples"
+
+
+def _clipped_note(shares: pd.DataFrame) -> str:
+    """Which joint was asked for too much most often; nothing for bodies without limits."""
+    by_joint = shares.mean(axis=1).dropna()
+    if by_joint.empty:
+        return ""
+    most = str(by_joint.idxmax())
+    return (
+        "On average a joint was asked for more than its limits allow (clipped) in "
+        f"{100.0 * by_joint.mean():.1f} % of the samples, {most} most often "
+        f"({100.0 * by_joint[most]:.1f} %). "
+    )
+
+
+def task_angles(errors: pd.DataFrame) -> pd.DataFrame:
+    """Whole angles against the present pose, of the tasks."""
+    chosen = errors["axis"].eq("angle") & errors["reference"].eq("present")
+    return errors[chosen & errors["phase_kind"].eq("task")].dropna(subset=["mean_deg"])
+
+
+def _by_part(rows: pd.DataFrame) -> dict[str, pd.DataFrame]:
+    """The means of every part of the body that has joints in these rows, in the body's order."""
+    groups = dict(iter(rows.groupby(rows["joint"].map(PART_OF_JOINT))))
+    return {part: _means(groups[part]) for part in BODY_PARTS if part in groups}
+
+
+def _means(rows: pd.DataFrame) -> pd.DataFrame:
+    """One value per participant and latency: the mean over joints and phases."""
+    means = rows.groupby(["participant_code", "latency_ms"])["mean_deg"].mean()
+    return means.rename("value").reset_index()
+
+
+def _trace(own: pd.DataFrame, part: str, place: int, shift_ms: float) -> go.Scatter:
+    means = cells(own)
+    colour = next(colour for word, colour in _COLOURS.items() if word in part)
+    return go.Scatter(
+        x=[latency + shift_ms for latency in means],
+        y=[cell.mean for cell in means.values()],
+        error_y={
+            "type": "data",
+            "array": [cell.half_width for cell in means.values()],
+            "color": colour,
+        },
+        customdata=[[at, cell.n, cell.words("deg")] for at, cell in means.items()],
+        mode="lines+markers",
+        name=part,
+        line={"color": colour, "width": 2, "dash": "dash" if part.startswith("right") else "solid"},
+        marker={"color": colour, "size": 9, "symbol": SYMBOLS[place]},
+        hovertemplate=(
+            f"{part}: mean %{{y:.2f}} %{{customdata[2]}} at %{{customdata[0]:g}} ms"
+            "<br>n = %{customdata[1]}<extra></extra>"
+        ),
+    )

@@ -1,0 +1,107 @@
+"""How far the study has come, order by order."""
+
+from collections.abc import Sequence
+
+import pandas as pd
+import plotly.graph_objects as go
+
+from app.features.results.analysis.figures.drawing import Drawing, drawn, participants
+from app.features.results.analysis.figures.theme import (
+    BLUE,
+    ORANGE,
+    VERMILLION,
+    hatched,
+    new_figure,
+)
+
+FEW = 10
+KEY, TITLE = "progress", "Sessions by order of latencies"
+TIME_KEY, TIME_TITLE = "progress_time", "Completed sessions over time"
+_STATES = {
+    "completed": (("completed",), BLUE, ""),
+    "open": (("planned", "active"), ORANGE, "/"),
+    "withdrawn or aborted": (("withdrawn", "aborted"), VERMILLION, "x"),
+}
+
+
+def progress_drawing(
+    sessions: pd.DataFrame, orders: Sequence[str], *, blinded: bool = False
+) -> Drawing:
+    """From all rows of the table of sessions; `orders` are those of the design ("0 125 350").
+
+    `blinded` puts all orders together: the order of an open session is not the reader's to know.
+    """
+    n = participants(sessions)
+    if sessions.empty:
+        return Drawing(KEY, TITLE, "", 0, empty="No session has joined the study yet.")
+    own = pd.Series("all orders", sessions.index) if blinded else sessions["order"]
+    names = ["all orders"] if blinded else sorted({*orders, *own}, key=_as_numbers)
+    figure = new_figure()
+    for state, (statuses, colour, pattern) in _STATES.items():
+        counts = own[sessions["status"].isin(statuses)].value_counts()
+        figure.add_trace(
+            go.Bar(
+                x=[name.replace(" ", " → ") if not blinded else name for name in names],
+                # Bars of nothing would still draw their edges.
+                y=[int(counts.get(name, 0)) or None for name in names],
+                name=state,
+                marker=hatched(colour, pattern),
+                hovertemplate=f"%{{x}} ms: %{{y}} {state}<extra></extra>",
+            )
+        )
+    figure.update_layout(barmode="stack")
+    figure.update_xaxes(title_text="order of added latencies (ms)", type="category")
+    figure.update_yaxes(title_text="sessions (count)", rangemode="tozero")
+    if own.value_counts().max() <= FEW:
+        # Left alone, plotly would label halves of sessions.
+        figure.update_yaxes(dtick=1)
+    caption = f"n = {n} participant{'s' if n != 1 else ''}. Balance counts completed sessions only."
+    if blinded:
+        caption += " The study is blinded, so orders are not told apart."
+    table = own.rename("order").to_frame().assign(status=sessions["status"])
+    keys = ["order", "status"]
+    rows = table.groupby(keys).size().rename("sessions").reset_index().sort_values(keys)
+    return drawn(KEY, TITLE, caption, n, figure, rows)
+
+
+def progress_time_drawing(sessions: pd.DataFrame, planned: int) -> Drawing:
+    """Completed sessions over the days, and how many the design asks for (`planned`)."""
+    done = sessions[sessions["status"] == "completed"].dropna(subset=["ended_at_utc"])
+    n = participants(done)
+    if done.empty:
+        return Drawing(TIME_KEY, TIME_TITLE, "", 0, empty="No session is completed yet.")
+    days = done["ended_at_utc"].dt.date.value_counts().sort_index()
+    rows = days.rename_axis("day_utc").rename("completed").reset_index()
+    rows["together"] = rows["completed"].cumsum()
+    x = [day.isoformat() for day in rows["day_utc"]]
+    figure = new_figure()
+    figure.add_trace(
+        go.Scatter(
+            x=x,
+            y=rows["together"].tolist(),
+            mode="lines+markers",
+            name="completed",
+            line={"color": BLUE, "width": 3, "shape": "hv"},
+            marker={"symbol": "circle", "size": 8},
+            hovertemplate="%{x}: %{y} completed<extra></extra>",
+        )
+    )
+    figure.add_trace(
+        go.Scatter(
+            x=[x[0], x[-1]],
+            y=[planned, planned],
+            mode="lines+markers",
+            name="planned",
+            line={"color": VERMILLION, "width": 2, "dash": "dash"},
+            marker={"symbol": "square-open", "size": 7},
+            hovertemplate=f"{planned} planned<extra></extra>",
+        )
+    )
+    figure.update_xaxes(title_text="day (UTC)", type="category" if len(x) <= FEW else "date")
+    figure.update_yaxes(title_text="sessions (count)", rangemode="tozero")
+    caption = f"Completed sessions together, of {planned} that the design plans. n = {n}."
+    return drawn(TIME_KEY, TIME_TITLE, caption, n, figure, rows)
+
+
+def _as_numbers(order: str) -> tuple[float, ...]:
+    return tuple(float(part) for part in order.split())

@@ -1,0 +1,135 @@
+"""All answers to a study's questions, from the sessions of one kind.
+
+Alpha and the primary test belong into the study beforehand. Where a study says nothing of them,
+alpha is the usual 5 %, and the answers say that nobody declared it.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from app.features.results.analysis.figures.drawing import limb_note
+from app.features.results.analysis.material import Material
+from app.features.results.analysis.questions.descriptives import descriptive
+from app.features.results.analysis.questions.limb_tests import limb_results
+from app.features.results.analysis.questions.measures import (
+    Measure,
+    completed,
+    left_out,
+    measures_of,
+)
+from app.features.results.analysis.questions.models import carry_over_result, model_results
+from app.features.results.analysis.questions.relations import (
+    contact_share_results,
+    demographics,
+    subjective_objective,
+)
+from app.features.results.analysis.questions.reliability import reliability
+from app.features.results.analysis.questions.words import Said
+from app.features.results.analysis.schemas import GlanceView, MeasureView, StatisticsResults
+
+USUAL_ALPHA = 0.05
+FEWEST = 2
+DECLARED = (
+    "The study's declared test stands under Preregistration, with whom its rules leave out. "
+    "What is here was not declared, and is exploratory."
+)
+OPEN = "Tests use completed sessions only; what is still open may change and is left out."
+SIMULATED = "These are simulated data: they test the analysis, and say nothing about people."
+TEST = "These are sessions for trying things out; their results mean nothing."
+
+
+def answers_of(material: Material) -> StatisticsResults:
+    """The answers to a study's questions; no measure with fewer than two participants."""
+    sessions = material.sessions
+    declared = material.protocol.preregistration
+    alpha = USUAL_ALPHA if declared is None else declared.alpha
+    return StatisticsResults(
+        kind=material.kind,
+        simulated=material.kind == "simulated",
+        n_sessions=len(sessions),
+        n_completed=int((sessions["status"] == "completed").sum()),
+        alpha=alpha,
+        declared=declared is not None,
+        notes=_notes(material),
+        measures=list(_measures(material, alpha)),
+    )
+
+
+def _notes(material: Material) -> list[str]:
+    own = {"simulated": SIMULATED, "test": TEST}.get(material.kind, "")
+    declared = "" if material.protocol.preregistration is None else DECLARED
+    done = completed(material)
+    return [one for one in (declared, own, OPEN, limb_note(done.counting(done.phases))) if one]
+
+
+def _measures(material: Material, alpha: float) -> Iterator[MeasureView]:
+    out = left_out(material)
+    found = [
+        one for one in measures_of(material) if one.values["participant_code"].nunique() >= FEWEST
+    ]
+    for measure in found:
+        if len(measure.levels) < FEWEST:
+            continue
+        n = int(measure.values["participant_code"].nunique())
+        results = list(_results(measure, alpha))
+        yield MeasureView(
+            key=measure.key,
+            title=measure.title,
+            unit=measure.unit,
+            about=measure.about,
+            n=n,
+            left_out=[*out, *measure.missing()],
+            glance=_glance(measure, results),
+            results=[one.view() for one in results],
+        )
+    yield from _explored(material, found, out)
+
+
+def _results(measure: Measure, alpha: float) -> Iterator[Said]:
+    yield descriptive(measure)
+    for limb in measure.limbs:
+        yield from limb_results(measure, limb, alpha)
+    if measure.continuous:
+        yield from model_results(measure, alpha)
+    yield from carry_over_result(measure)
+
+
+def _glance(measure: Measure, results: Sequence[Said]) -> list[GlanceView]:
+    brief = {one.key: one.brief for one in results if one.brief is not None}
+    text = {key: one.text for key, one in brief.items()}
+    return [
+        GlanceView(
+            limb=limb,
+            differ=text.get(f"friedman_{limb}"),
+            first=text.get(f"planned_{limb}"),
+            trend=text.get(f"trend_{limb}"),
+            way=brief[f"trend_{limb}"].way if f"trend_{limb}" in brief else None,
+        )
+        for limb in measure.limbs
+    ]
+
+
+def _explored(
+    material: Material, found: Sequence[Measure], out: list[str]
+) -> Iterator[MeasureView]:
+    if not found:
+        return
+    sections = (
+        ("contact_shares", "Contact by part of the body", contact_share_results(material)),
+        ("reliability", "Consistency of the questionnaires", reliability(material)),
+        ("relations", "Subjective against objective", subjective_objective(found)),
+        ("demographics", "Scores by demographics", demographics(material, found)),
+    )
+    n = max(int(one.values["participant_code"].nunique()) for one in found)
+    for key, title, results in sections:
+        views = [one.view() for one in results]
+        if views:
+            yield MeasureView(
+                key=key,
+                title=title,
+                unit="",
+                about="",
+                n=n,
+                left_out=out,
+                glance=[],
+                results=views,
+            )

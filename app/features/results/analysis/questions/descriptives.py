@@ -1,0 +1,64 @@
+"""What each condition gave: means, spreads, and the share of a score's maximum."""
+
+import numpy as np
+
+from app.features.results.analysis.questions.bootstrapped import interval_words
+from app.features.results.analysis.questions.measures import Measure
+from app.features.results.analysis.questions.words import Said, measured, number
+from app.science.statistics import share_of_maximum
+from app.science.statistics.arrays import FloatArray
+
+
+def descriptive(measure: Measure) -> Said:
+    """Mean, spread and median of every cell."""
+    rows = []
+    for limb in measure.limbs:
+        for latency, column in measure.table(limb).items():
+            values = column.dropna().to_numpy(dtype=np.float64)
+            rows.append((limb, f"{latency:g}", *_cell(values), *_share(measure, values)))
+    cells = [f"{row[0]} {row[1]} ms M = {row[3]}, SD = {row[5]}" for row in rows]
+    shares = () if measure.maximum is None else ("mean share of maximum",)
+    unit = measure.unit
+    return Said(
+        key="means",
+        title="Means",
+        sentence=f"Every cell of the design, in {unit}. {_maximum_words(measure)}",
+        apa=f"{measure.title}: {'; '.join(cells)}",
+        columns=(
+            *("task", "latency (ms)", "n", f"mean ({unit})", "95 % BCa CI", "SD", "median"),
+            *shares,
+        ),
+        rows=rows,
+        method=(
+            "Each value is a participant’s mean over the phases of the cell. Intervals by the "
+            "bias-corrected accelerated bootstrap of participants, 1,999 draws from a stored seed. "
+            f"{measured('bca_mean')}"
+        ),
+        source="Efron 1987, J. Am. Stat. Assoc. 82:171.",
+    )
+
+
+def _cell(values: FloatArray) -> tuple[str, ...]:
+    if not values.size:
+        return ("0", *[number(None)] * 4)
+    mean, median = number(float(values.mean())), number(float(np.median(values)))
+    spread = number(float(values.std(ddof=1)) if values.size > 1 else None)
+    return str(values.size), mean, interval_words(values), spread, median
+
+
+def _share(measure: Measure, values: FloatArray) -> tuple[str, ...]:
+    if measure.maximum is None:
+        return ()
+    if not values.size:
+        return (number(None),)
+    share = float(share_of_maximum(values, measure.maximum).mean())
+    return (f"{number(100.0 * share, 0)} %",)
+
+
+def _maximum_words(measure: Measure) -> str:
+    if measure.maximum is None:
+        return ""
+    return (
+        f"Shares are of the largest possible score, {measure.maximum:g}; 0 % is the middle of the "
+        "scale."
+    )

@@ -1,0 +1,205 @@
+"""What is tested: one value for each participant, limb and latency, and who is not in it.
+
+Only completed sessions are tested, and of those only rows that count. A value is the mean of a
+participant's rows in one cell of the design. Whoever lacks a cell is left out of the tests that
+need all of them, by name and with the reason.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from app.features.results.analysis.figures.by_latency import per_participant
+from app.features.results.analysis.figures.joint_errors import task_angles
+from app.features.results.analysis.material import Material
+from app.science.instruments import Instrument
+from app.science.instruments.formula import names_in
+from app.science.statistics.arrays import FloatArray
+from app.science.statistics.planned import Direction
+
+LIMBS = ("hand", "foot")
+FALLS: frozenset[str] = frozenset({"agency"})
+"""Scores of which a fall with latency was predicted: Waltemate et al. 2016, and since."""
+_SHOWN = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Measure:
+    """One measure of a study.
+
+    `values` has the columns participant_code, limb, latency_ms, value; `places` the same with the
+    block in which it was done. `maximum`: of a score whose range is as large to both sides of 0.
+    `continuous`: seconds, degrees and counts, for which means and their models are meant.
+    """
+
+    key: str
+    title: str
+    unit: str
+    about: str
+    values: pd.DataFrame
+    places: pd.DataFrame
+    continuous: bool
+    maximum: float | None = None
+    predicted: Direction | None = None
+
+    @property
+    def latencies_ms(self) -> tuple[float, ...]:
+        """The levels, in order."""
+        return tuple(sorted(float(one) for one in self.values["latency_ms"].unique()))
+
+    @property
+    def levels(self) -> tuple[str, ...]:
+        """The same as words."""
+        return tuple(f"{one:g}" for one in self.latencies_ms)
+
+    @property
+    def limbs(self) -> tuple[str, ...]:
+        """The limbs that there are values of."""
+        return tuple(limb for limb in LIMBS if (self.values["limb"] == limb).any())
+
+    def table(self, limb: str) -> pd.DataFrame:
+        """Participants x latencies, NaN where there is no value."""
+        own = self.values[self.values["limb"] == limb]
+        wide = own.pivot(index="participant_code", columns="latency_ms", values="value")
+        return wide.reindex(columns=list(self.latencies_ms)).sort_index()
+
+    def cells(self) -> FloatArray:
+        """(n, latencies, limbs) of participants with every cell."""
+        tables = [self.table(limb) for limb in self.limbs]
+        everybody = sorted(set().union(*(table.index for table in tables)))
+        stacked = np.stack(
+            [table.reindex(everybody).to_numpy(dtype=np.float64) for table in tables], axis=2
+        )
+        kept: FloatArray = stacked[np.isfinite(stacked).all(axis=(1, 2))]
+        return kept
+
+    def missing(self) -> list[str]:
+        """Who lacks which cells, in words."""
+        told: dict[str, list[str]] = {}
+        for limb in self.limbs:
+            for code, row in self.table(limb).iterrows():
+                lacking = [f"{at:g} ms" for at, value in row.items() if pd.isna(value)]
+                if lacking:
+                    told.setdefault(str(code), []).append(f"{limb} at {', '.join(lacking)}")
+        lines = [f"{code} has no value for {'; '.join(cells)}" for code, cells in told.items()]
+        return shortened(lines)
+
+
+def measures_of(material: Material) -> Iterator[Measure]:
+    """The study's measures: scores, contact time, completions, joint error; those with values."""
+    tested = completed(material)
+    yield from _scores(tested)
+    tasks = tested.counting(tested.phases)
+    tasks = tasks[tasks["phase_kind"] == "task"].astype({"completions": "float64"})
+    yield from _one(
+        "contact_time",
+        ("Contact time", "s"),
+        "Active seconds per phase in which sides of boxes were red: the union over body parts.",
+        tasks.rename(columns={"side_red_s": "value"}),
+    )
+    yield from _one(
+        "completions",
+        ("Completed tasks", "tasks"),
+        "Completed tasks per phase.",
+        tasks.rename(columns={"completions": "value"}),
+    )
+    errors = task_angles(tested.counting(tested.errors))
+    yield from _one(
+        "joint_error",
+        ("Joint error", "deg"),
+        "Angle between the participant's pose and the body they saw, a mean over joints and the "
+        "active time of a phase. It says what latency does to the body, not to the person.",
+        errors.rename(columns={"mean_deg": "value"}),
+    )
+
+
+def completed(material: Material) -> Material:
+    """Only what belongs to completed sessions: others may still change."""
+    codes = set(material.sessions[material.sessions["status"] == "completed"]["session_id"])
+    return material.of_sessions(codes)
+
+
+def left_out(material: Material) -> list[str]:
+    """Sessions that are in no test, each with the reason."""
+    sessions = material.sessions[material.sessions["status"] != "completed"]
+    reasons = {"planned": "not started", "active": "still open"}
+    pairs = zip(sessions["participant_code"], sessions["status"], strict=True)
+    return shortened([f"{code}: {reasons.get(status, status)}" for code, status in pairs])
+
+
+def shortened(lines: Sequence[str]) -> list[str]:
+    """The first of many lines, and how many more there are."""
+    more = len(lines) - _SHOWN
+    return [*lines[:_SHOWN], *([f"and {more} more"] if more > 0 else [])]
+
+
+def _scores(tested: Material) -> Iterator[Measure]:
+    scores = tested.counting(tested.scores).dropna(subset=["limb", "value"])
+    for key, own in scores.groupby("instrument"):
+        newest = tested.instruments[str(key), int(own["instrument_version"].max())]
+        for score in newest.scores:
+            rows = own[own["score"] == score.key]
+            if rows.empty or _is_rescaled(newest, score.key):
+                continue
+            title = score.label.get("en") or score.key
+            about = f"Score of the questionnaire “{_title(newest)}”."
+            limits = (score.minimum, score.maximum)
+            yield from _one(
+                f"{key}_{score.key}",
+                (title, "points"),
+                f"{about} {_range_words(limits)}".strip(),
+                rows,
+                continuous=False,
+                maximum=_symmetric(limits),
+                predicted="falls" if score.key in FALLS else None,
+            )
+
+
+def _title(instrument: Instrument) -> str:
+    title: Mapping[str, str] = instrument.title
+    return title.get("en") or instrument.key
+
+
+def _is_rescaled(instrument: Instrument, score: str) -> bool:
+    """Whether a score is made of one other score alone: every rank test of both is the same."""
+    names = names_in(instrument.formulas[score])
+    return len(names) == 1 and names <= instrument.formulas.keys()
+
+
+def _range_words(limits: tuple[float | None, float | None]) -> str:
+    low, high = limits
+    return "" if low is None or high is None else f"Possible values: {low:g} to {high:g}."
+
+
+def _symmetric(limits: tuple[float | None, float | None]) -> float | None:
+    low, high = limits
+    return high if low is not None and high is not None and low == -high else None
+
+
+def _one(
+    key: str,
+    called: tuple[str, str],
+    about: str,
+    rows: pd.DataFrame,
+    *,
+    continuous: bool = True,
+    maximum: float | None = None,
+    predicted: Direction | None = None,
+) -> Iterator[Measure]:
+    known = rows.dropna(subset=["value", "limb", "latency_ms", "block"])
+    if known.empty:
+        return
+    places = ["participant_code", "limb", "latency_ms", "block"]
+    yield Measure(
+        key=key,
+        title=called[0],
+        unit=called[1],
+        about=about,
+        values=per_participant(known, "value"),
+        places=known.groupby(places)["value"].mean().reset_index(),
+        continuous=continuous,
+        maximum=maximum,
+        predicted=predicted,
+    )

@@ -1,0 +1,193 @@
+"""Latency and limb together: means, analysis of variance, a mixed model, carry-over."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from app.features.results.analysis.questions.measures import Measure
+from app.features.results.analysis.questions.words import (
+    Said,
+    against,
+    bounded,
+    df_words,
+    measured,
+    number,
+    p_cell,
+    p_words,
+)
+from app.science.statistics import (
+    StatisticsError,
+    rm_anova,
+)
+from app.science.statistics.carry_over import carry_over
+from app.science.statistics.effects import Effect
+from app.science.statistics.mixed_design import build_design
+from app.science.statistics.mixed_model import fit_mixed_model
+from app.science.statistics.mixed_terms import factor
+from app.science.statistics.mixed_tests import TermTest, term_tests
+
+ANOVA_SOURCE = (
+    "Winer, Brown and Michels 1991, ch. 7; Greenhouse and Geisser 1959, Psychometrika 24:95; "
+    "Olejnik and Algina 2003, Psychol. Methods 8:434."
+)
+MIXED_SOURCE = (
+    "Laird and Ware 1982, Biometrics 38:963; Kuznetsova et al. 2017, J. Stat. Softw. 82(13)."
+)
+CARRY_SOURCE = "Jones and Kenward 2014, Design and Analysis of Cross-Over Trials."
+_FEWEST_LIMBS = 2
+MOST_FOR_MODELS = 200
+_UNTESTABLE = (StatisticsError, np.linalg.LinAlgError)
+_TOO_MANY = (
+    f"Not computed: with more than {MOST_FOR_MODELS} participants the fit takes minutes. Export "
+    "the data and fit the model there."
+)
+
+
+def model_results(measure: Measure, alpha: float) -> Iterator[Said]:
+    """Of measures with a unit: latency x limb by analysis of variance and by a mixed model."""
+    if len(measure.limbs) < _FEWEST_LIMBS:
+        return
+    for test, key, title in (
+        (_anova, "rm_anova", "Latency × limb, analysis of variance"),
+        (_mixed, "mixed_model", "Latency × limb, mixed model with period"),
+    ):
+        try:
+            yield test(measure, alpha, key, title)
+        except _UNTESTABLE as error:
+            yield Said(key, title, f"This cannot be tested. {_why(error)}", "", (), (), "", "")
+
+
+def carry_over_result(measure: Measure) -> Iterator[Said]:
+    """Whether what came before made a difference: a diagnostic, no test of a hypothesis."""
+    places, key = measure.places, "carry_over"
+    title = "Order, period and carry-over (diagnostic)"
+    if places["participant_code"].nunique() > MOST_FOR_MODELS:
+        yield Said(key, title, _TOO_MANY, "", (), (), "", CARRY_SOURCE, exploratory=True)
+        return
+    limbs = [factor("limb", places["limb"].tolist())] if len(measure.limbs) > 1 else []
+    try:
+        found = carry_over(
+            places["value"].to_numpy(dtype=np.float64),
+            places["participant_code"].tolist(),
+            [float(one) for one in places["latency_ms"]],
+            [int(one) for one in places["block"]],
+            further=limbs,
+        )
+    except _UNTESTABLE as error:
+        yield Said(key, title, f"This cannot be tested. {_why(error)}", "", (), (), "", "")
+        return
+    tests: Sequence[TermTest] = [
+        one
+        for one in (found.condition, found.period, found.carry_over, found.sequence)
+        if one is not None
+    ]
+    yield Said(
+        key=key,
+        title=title,
+        sentence=" ".join(one.text for one in found.conclusions),
+        apa="",
+        columns=("term", "F", "df", "p"),
+        rows=[_term_row(one) for one in tests],
+        method=(
+            "Linear mixed model with condition, period, limb and first-order carry-over, random "
+            f"intercepts; {found.left_out} observations without a known block before left out."
+        ),
+        source=CARRY_SOURCE,
+        warnings=[measured("carry_over"), "" if found.converged else "The fit did not converge."],
+        exploratory=True,
+    )
+
+
+def _why(error: Exception) -> str:
+    """Why there is no model; a fit that breaks down has nothing left that chance could explain."""
+    if isinstance(error, StatisticsError):
+        return str(error)
+    return "Participants, latencies and limbs explain the measure fully; nothing is left to chance."
+
+
+def _anova(measure: Measure, alpha: float, key: str, title: str) -> Said:
+    cells = measure.cells()
+    found = rm_anova(cells, ("latency", "limb"))
+    parts = [_effect_words(one) for one in found.effects]
+    told = [f"{one.name.replace(':', ' × ')}: {against(one.p_gg, alpha)}" for one in found.effects]
+    return Said(
+        key=key,
+        title=title,
+        sentence=f"With {found.n} complete participants, {'; '.join(told)}.",
+        apa=f"{measure.title}: {'; '.join(parts)}",
+        columns=("effect", "F", "df", "ε (GG)", "p (GG)", "generalised η²", "partial η²"),
+        rows=[
+            (
+                one.name.replace(":", " × "),
+                number(one.f),
+                f"{df_words(one.df)}, {df_words(one.df_error)}",
+                bounded(one.epsilon),
+                p_cell(one.p_gg),
+                bounded(one.generalised_eta_squared),
+                bounded(one.partial_eta_squared),
+            )
+            for one in found.effects
+        ],
+        method=(
+            "Analysis of variance with two within-subject factors, Greenhouse and Geisser’s "
+            "correction; participants without every cell are left out. Limb is confounded with "
+            "time where one limb always came first."
+        ),
+        source=ANOVA_SOURCE,
+        warnings=(measured("rm_anova_gg"), measured("rm_anova_gg_interaction")),
+    )
+
+
+def _effect_words(one: Effect) -> str:
+    df, error = one.df * one.epsilon, one.df_error * one.epsilon
+    return (
+        f"{one.name.replace(':', ' × ')} F({number(df)}, {number(error)}) = {number(one.f)}, "
+        f"{p_words(one.p_gg)}, η²G = {bounded(one.generalised_eta_squared)}"
+    )
+
+
+def _mixed(measure: Measure, alpha: float, key: str, title: str) -> Said:
+    places = measure.places
+    if places["participant_code"].nunique() > MOST_FOR_MODELS:
+        return Said(key, title, _TOO_MANY, "", (), (), "", MIXED_SOURCE)
+    latency = factor("latency", places["latency_ms"].tolist())
+    limb, period = (
+        factor(a, places[b].tolist()) for a, b in (("limb", "limb"), ("period", "block"))
+    )
+    design = build_design([latency, limb, period], interactions=[("latency", "limb")])
+    values = places["value"].to_numpy(dtype=np.float64)
+    model = fit_mixed_model(values, places["participant_code"].tolist(), design)
+    tests = term_tests(model)
+    told = [f"{_term(one)}: {against(one.p, alpha)}" for one in tests]
+    parts = [
+        f"{_term(one)} F({one.df_term}, {df_words(one.df_error)}) = {number(one.f)}, "
+        f"{p_words(one.p)}"
+        for one in tests
+    ]
+    return Said(
+        key=key,
+        title=title,
+        sentence=(
+            f"With {model.participants} participants and {model.observations} phases, "
+            f"{'; '.join(told)}."
+        ),
+        apa=f"{measure.title}, linear mixed model: {'; '.join(parts)}",
+        columns=("term", "F", "df", "p"),
+        rows=[_term_row(one) for one in tests],
+        method=(
+            "Linear mixed model (REML), random intercept of participants, F tests with "
+            "Satterthwaite’s degrees of freedom. Uses every phase that there is; nobody is left "
+            "out for a missing cell."
+        ),
+        source=MIXED_SOURCE,
+        warnings=[*model.messages, measured("mixed_model"), measured("mixed_model_interaction")],
+    )
+
+
+def _term_row(one: TermTest) -> tuple[str, ...]:
+    df = f"{one.df_term}, {df_words(one.df_error)}"
+    return _term(one), number(one.f), df, p_cell(one.p)
+
+
+def _term(one: TermTest) -> str:
+    return one.term.replace(":", " × ").replace("_", "-")

@@ -1,0 +1,219 @@
+"""What goes with what: looked at, not tested. Every table is labelled exploratory."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pandas as pd
+
+from app.features.results.analysis.figures.contacts import part_side_times
+from app.features.results.analysis.material import Material
+from app.features.results.analysis.questions.measures import Measure, completed
+from app.features.results.analysis.questions.words import Said, bounded, p_cell
+from app.science.statistics import (
+    Spearman,
+    StatisticsError,
+    contact_shares,
+    explore,
+    holm,
+    spearman,
+)
+
+OBJECTIVE = ("contact_time", "completions", "joint_error")
+_FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
+_GROUPS = {
+    "Hand": "hand",
+    "LowerArm": "arm",
+    "UpperArm": "arm",
+    "Shoulder": "arm",
+    "Toes": "toes",
+    "Foot": "foot",
+    "LowerLeg": "leg",
+    "UpperLeg": "leg",
+}
+_ORDER = ("finger", "hand", "arm", "toes", "foot", "leg", "trunk and head")
+_NUMBERS = ("integer", "number", "likert")
+_CATEGORIES = ("choice", "boolean")
+
+
+def group_of(part: str) -> str:
+    """Finger, hand, arm, toes, foot, leg, or trunk and head."""
+    if any(finger in part for finger in _FINGERS):
+        return "finger"
+    return next((group for word, group in _GROUPS.items() if part.endswith(word)), _ORDER[-1])
+
+
+def contact_share_results(material: Material) -> Iterator[Said]:
+    """The share of contact time by finger, hand and arm, at each latency; one result a limb."""
+    tested = completed(material)
+    phases, contacts = tested.counting(tested.phases), tested.counting(tested.contacts)
+    tasks = phases[phases["phase_kind"] == "task"]
+    sides = contacts[contacts["surface_kind"] == "side"]
+    if sides.empty:
+        return
+    times = part_side_times(sides).rename(columns={"body_part": "what"})
+    times = times.groupby(["session_id", "phase_id", "what"])["time_s"].sum().reset_index()
+    for limb, own in tasks.dropna(subset=["limb"]).groupby("limb", sort=False):
+        rows = []
+        for latency, cell in own.groupby("latency_ms"):
+            rows += _share_rows(f"{latency:g}", cell, times)
+        if rows:
+            yield _shares_said(str(limb), rows)
+
+
+def _share_rows(latency: str, cell: pd.DataFrame, times: pd.DataFrame) -> list[tuple[str, ...]]:
+    keys = ["session_id", "phase_id"]
+    wide = times.pivot(index=keys, columns="what", values="time_s")
+    own = cell[[*keys, "participant_code"]].merge(wide, on=keys, how="left").drop(columns=keys)
+    each = own.fillna(0.0).groupby("participant_code").mean()
+    each = each.loc[:, each.sum() > 0.0]
+    if each.empty or not each.shape[1]:
+        return []
+    parts = sorted(each.columns, key=lambda part: _ORDER.index(group_of(str(part))))
+    found = contact_shares(
+        {str(part): each[part].to_numpy(dtype=np.float64) for part in parts},
+        {str(part): group_of(str(part)) for part in parts},
+    )
+    means = np.nanmean(found.shares, axis=0)
+    n = len(each) - found.n_without_contact
+    return [
+        (latency, group, f"{100.0 * share:.1f} %", str(n), str(found.n_without_contact))
+        for group, share in zip(found.groups, means, strict=True)
+    ]
+
+
+def _shares_said(limb: str, rows: Sequence[tuple[str, ...]]) -> Said:
+    return Said(
+        key=f"contact_shares_{limb}",
+        title=f"{limb.capitalize()}: Which part of the body was in contact?",
+        sentence=(
+            "Mean over participants of each one’s share of contact time. Shares at one latency add "
+            "up to 100 %."
+        ),
+        apa="",
+        columns=("latency (ms)", "part", "mean share", "n", "without contact"),
+        rows=rows,
+        method=(
+            "Times of parts are summed and may overlap, so these are shares of part-seconds and "
+            "not of the time a side was red. Participants without a contact have no share."
+        ),
+        source="Karas 2020, chapter 7.",
+    )
+
+
+def subjective_objective(measures: Sequence[Measure]) -> Iterator[Said]:
+    """Every score against contact time, completions and joint error, at each latency."""
+    scores = [one for one in measures if not one.continuous]
+    others = [one for one in measures if one.key in OBJECTIVE]
+    known = [
+        (score.title, other.title, latency, found)
+        for score in scores
+        for other in others
+        for latency in score.latencies_ms
+        if (found := _pair(score, other, latency)) is not None
+    ]
+    if not known:
+        return
+    rows = _correlation_rows(known)
+    yield Said(
+        key="subjective_objective",
+        title="What people say against what was measured",
+        sentence=(
+            f"{len(rows)} rank correlations, adjusted together. Among so many some look striking "
+            "by chance: a reason for a new study, not a result of this one."
+        ),
+        apa="",
+        columns=(
+            *("score", "measure", "latency (ms)", "n", "Spearman ρ", "95 % CI", "p", "p (Holm)"),
+        ),
+        rows=rows,
+        method=(
+            "One pair of values a participant: both measures averaged over the limbs at one "
+            "latency. Correlations over repeated measures would count people several times."
+        ),
+        source="Spearman 1904; Bonett and Wright 2000, Psychometrika 65:23.",
+        exploratory=True,
+    )
+
+
+def _correlation_rows(
+    known: Sequence[tuple[str, str, float, Spearman]],
+) -> list[tuple[str, ...]]:
+    """Adjusted over all of them together."""
+    adjusted = holm([found.p for _, _, _, found in known])
+    return [
+        (
+            score,
+            other,
+            f"{latency:g}",
+            str(one.n),
+            bounded(one.rho, 2),
+            f"[{bounded(one.low, 2)}, {bounded(one.high, 2)}]",
+            p_cell(one.p),
+            p_cell(p),
+        )
+        for (score, other, latency, one), p in zip(known, adjusted, strict=True)
+    ]
+
+
+def _pair(score: Measure, other: Measure, latency: float) -> Spearman | None:
+    both = [
+        one.values[one.values["latency_ms"] == latency].groupby("participant_code")["value"].mean()
+        for one in (score, other)
+    ]
+    joined = pd.concat(both, axis=1).to_numpy(dtype=np.float64)
+    try:
+        return spearman(joined[:, 0], joined[:, 1])
+    except StatisticsError:
+        return None
+
+
+def demographics(material: Material, measures: Sequence[Measure]) -> Iterator[Said]:
+    """Each score, averaged over everything, by what people said of themselves beforehand."""
+    tested = completed(material)
+    answers = tested.counting(tested.answers)
+    about = answers[answers["limb"].isna() & answers["block"].isna()]
+    for score in (one for one in measures if not one.continuous):
+        means = score.values.groupby("participant_code")["value"].mean()
+        numbers, categories = _variables(about, list(means.index))
+        if not numbers and not categories:
+            return
+        found = explore(means.to_numpy(dtype=np.float64), numbers, categories)
+        rows = [
+            (
+                one.variable,
+                "Spearman ρ" if one.kind == "number" else "ε² (Kruskal-Wallis)",
+                str(one.n),
+                bounded(one.effect, 2),
+                p_cell(one.p) if not one.why_not else one.why_not,
+                p_cell(one.p_holm) if not one.why_not else "",
+            )
+            for one in found
+        ]
+        yield Said(
+            key=f"demographics_{score.key}",
+            title=f"{score.title} by demographics",
+            sentence=f"{len(rows)} variables, adjusted together; n is small for each.",
+            apa="",
+            columns=("variable", "effect size", "n", "value", "p", "p (Holm)"),
+            rows=rows,
+            method="Means over all latencies and limbs. Explored, never a hypothesis.",
+            source="Spearman 1904; Kruskal and Wallis 1952, J. Am. Stat. Assoc. 47:583.",
+            exploratory=True,
+        )
+
+
+def _variables(
+    about: pd.DataFrame, codes: Sequence[str]
+) -> tuple[dict[str, np.ndarray], dict[str, list[str | None]]]:
+    numbers: dict[str, np.ndarray] = {}
+    categories: dict[str, list[str | None]] = {}
+    for (form, item), own in about.groupby(["instrument", "item"], sort=False):
+        one = own.drop_duplicates("participant_code", keep="last").set_index("participant_code")
+        one, name = one.reindex(list(codes)), f"{form}: {item}"
+        kind = own["item_type"].iloc[0]
+        if kind in _NUMBERS:
+            numbers[name] = one["value_number"].to_numpy(dtype=np.float64)
+        elif kind in _CATEGORIES:
+            column = "value_text" if kind == "choice" else "value_number"
+            categories[name] = [None if pd.isna(v) else str(v) for v in one[column]]
+    return numbers, categories

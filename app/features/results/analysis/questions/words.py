@@ -1,0 +1,118 @@
+"""Numbers as papers print them, and results as they travel.
+
+p has three decimals and no zero before the point; so have other numbers that cannot exceed 1.
+Nothing is called significant: p is compared with alpha, and the comparison is told.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+
+from app.features.results.analysis.schemas import ResultView
+from app.science.statistics.error_rates_table import ErrorRates, error_rates_from_json
+from app.science.statistics.planned import Direction
+
+_SMALLEST_P = 0.001
+_BOUNDED_DIGITS = 3
+_RATES = "error_rates.json"
+NONE = "–"
+
+
+@dataclass(frozen=True)
+class Brief:
+    """A result in the few signs of a table cell; `way` of a trend: where the measure goes."""
+
+    text: str
+    way: Direction | None = None
+
+
+@dataclass(frozen=True)
+class Said:
+    """A result before it travels; see `ResultView`.
+
+    `brief`: None where it could not be tested.
+    """
+
+    key: str
+    title: str
+    sentence: str
+    apa: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    method: str
+    source: str
+    warnings: Sequence[str] = field(default_factory=tuple)
+    exploratory: bool = False
+    brief: Brief | None = None
+
+    def view(self) -> ResultView:
+        """As it travels; doubled warnings are told once."""
+        return ResultView(
+            key=self.key,
+            title=self.title,
+            sentence=" ".join(self.sentence.split()),
+            apa=" ".join(self.apa.split()),
+            columns=list(self.columns),
+            rows=[list(row) for row in self.rows],
+            method=self.method,
+            source=self.source,
+            warnings=list(dict.fromkeys(one for one in self.warnings if one)),
+            exploratory=self.exploratory,
+        )
+
+
+def p_words(p: float) -> str:
+    """ "p = .012", "p < .001"."""
+    if math.isnan(p):
+        return "p unknown"
+    return "p < .001" if p < _SMALLEST_P else f"p = {bounded(p)}"
+
+
+def p_cell(p: float) -> str:
+    """The same for a table: ".012", "< .001"."""
+    return p_words(p).removeprefix("p ").removeprefix("= ")
+
+
+def bounded(value: float, digits: int = _BOUNDED_DIGITS) -> str:
+    """A number within -1 and 1 without the zero before its point; others as they are."""
+    if math.isnan(value):
+        return NONE
+    text = f"{value:.{digits}f}".replace("-", "−")
+    return text.replace("0.", ".", 1) if abs(value) < 1.0 else text
+
+
+def number(value: float | None, digits: int = 2) -> str:
+    """A number with so many decimals; a dash for none."""
+    if value is None or math.isnan(value):
+        return NONE
+    return f"{value:.{digits}f}".replace("-", "−")
+
+
+def df_words(value: float) -> str:
+    """Degrees of freedom: whole numbers without decimals."""
+    return f"{value:.0f}" if abs(value - round(value)) < 0.05 else f"{value:.1f}"
+
+
+def against(p: float, alpha: float) -> str:
+    """How p compares with alpha, in words that claim nothing more."""
+    return f"{p_words(p)} {'is at most' if p <= alpha else 'exceeds'} α = {bounded(alpha, 2)}"
+
+
+def measured(test: str) -> str:
+    """What was measured of a test on data without an effect, where that must be told."""
+    rates = _rates()
+    row = None if rates is None else rates.of(test)
+    if row is None or row.warning not in ("rejects_too_often", "covers_too_seldom"):
+        return ""
+    share = f"{100.0 * row.rate:.1f} %"
+    if row.warning == "covers_too_seldom":
+        return f"Intervals of this kind held the truth in {share} of simulated studies, not 95 %."
+    return f"This test rejected in {share} of simulated studies without an effect, not in 5 %."
+
+
+@cache
+def _rates() -> ErrorRates | None:
+    stored = files("app.science.statistics") / _RATES
+    return error_rates_from_json(stored.read_text(encoding="utf-8")) if stored.is_file() else None

@@ -1,0 +1,63 @@
+"""A figure's rows as CSV, with what they are of in the comment above them.
+
+The file opens with lines that begin with `#`: the study, whose data, what was chosen, the caption.
+Readers skip them by their usual option (`comment="#"`). Whether a row is simulated also stands in
+its first columns, where no reader loses it.
+"""
+
+import csv
+import io
+import textwrap
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from app.features.results.analysis.figures import Drawing
+from app.features.results.analysis.material import Material
+
+_WIDTH = 100
+_RUN_AS_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+def sheet_of(drawing: Drawing, material: Material) -> bytes:
+    """UTF-8, LF; missing values are empty; texts that a spreadsheet would run are quoted off."""
+    lines = _head(drawing, material)
+    written = io.StringIO()
+    writer = csv.writer(written, lineterminator="\n")
+    data = drawing.data.reset_index(drop=True)
+    writer.writerow(["study_key", "kind", "simulated", *data.columns])
+    own = (material.protocol.key, material.kind, str(material.kind == "simulated").lower())
+    for row in data.itertuples(index=False):
+        writer.writerow([*own, *_cells(row)])
+    return ("\n".join(lines) + "\n" + written.getvalue()).encode()
+
+
+def _head(drawing: Drawing, material: Material) -> list[str]:
+    said = {
+        "people": "Data of people.",
+        "simulated": "SIMULATED DATA: made by a simulation, not by people.",
+        "test": "TEST DATA: made to try things out, not data of a study.",
+    }[material.kind]
+    words = [f"Reembody, study {material.protocol.key}. {said}", drawing.title]
+    words += textwrap.wrap(drawing.caption, _WIDTH)
+    if drawing.empty:
+        words.append(drawing.empty)
+    return [f"# {line}" for line in words]
+
+
+def _cells(row: Sequence[Any]) -> list[str]:
+    return [_cell(value) for value in row]
+
+
+def _cell(value: Any) -> str:
+    if pd.isna(value):
+        return ""
+    if isinstance(value, str):
+        return f"'{value}" if value.startswith(_RUN_AS_FORMULA) else value
+    if isinstance(value, bool | np.bool_):
+        return str(bool(value)).lower()
+    if isinstance(value, float) and value.is_integer():
+        return str(int(value))
+    return str(value)

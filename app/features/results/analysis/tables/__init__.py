@@ -1,0 +1,52 @@
+"""The record as tidy tables: SQL in, pandas out, one function each.
+
+Every function takes a study and a kind (people, simulated, test or all) and gives a DataFrame whose
+columns are those of the codebook, in their order. Nothing is left out: redone phases, superseded
+forms and broken-off sessions are there with `valid` false. Texts are `object`, whole numbers
+`Int64`, numbers `float64`, booleans `bool` (`boolean` where one is missing), times
+`datetime64[us, UTC]`; missing values are NA.
+"""
+
+from app.features.results.analysis.schemas import Kind
+from app.features.results.analysis.tables.calibrations import calibrations_table
+from app.features.results.analysis.tables.clocks import clock_mapping_table, clock_probes_table
+from app.features.results.analysis.tables.context import KINDS
+from app.features.results.analysis.tables.corrections import corrections_table
+from app.features.results.analysis.tables.events import events_table
+from app.features.results.analysis.tables.joint_error_course import (
+    joint_error_course_table,
+    present_course_table,
+)
+from app.features.results.analysis.tables.joint_errors import joint_angles_table, joint_errors_table
+from app.features.results.analysis.tables.phases import phases_table
+from app.features.results.analysis.tables.quality import alarms_table, quality_table
+from app.features.results.analysis.tables.questionnaires import answers_table, scores_table
+from app.features.results.analysis.tables.sessions import sessions_table
+from app.features.results.analysis.tables.tasks import (
+    completions_table,
+    contact_spans_table,
+    contacts_table,
+)
+
+__all__ = [
+    "KINDS",
+    "Kind",
+    "alarms_table",
+    "answers_table",
+    "calibrations_table",
+    "clock_mapping_table",
+    "clock_probes_table",
+    "completions_table",
+    "contact_spans_table",
+    "contacts_table",
+    "corrections_table",
+    "events_table",
+    "joint_angles_table",
+    "joint_error_course_table",
+    "joint_errors_table",
+    "phases_table",
+    "present_course_table",
+    "quality_table",
+    "scores_table",
+    "sessions_table",
+]

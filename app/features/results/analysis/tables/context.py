@@ -1,0 +1,222 @@
+"""What rows are joined with: whose they are, where in the design, and whether they count."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from functools import wraps
+from typing import Any, get_args
+
+import numpy as np
+import pandas as pd
+from sqlalchemy import ColumnElement, Select, and_, select
+from sqlalchemy.orm import Session
+
+from app.features.results.analysis.codebook import ColumnType, columns_of
+from app.features.results.analysis.schemas import Kind
+from app.features.sessions.service import plan_of, state_of
+from app.features.studies.service import study_by_key
+from app.models import Participant, Phase, Study, StudySession, StudyVersion
+from app.protocol.plan import Step
+
+KINDS: tuple[Kind, ...] = get_args(Kind)
+BROKEN_OFF = ("aborted", "withdrawn")
+Context = Callable[[Session, str, Kind], pd.DataFrame]
+Contexts = dict[tuple[str, str, Kind], pd.DataFrame]
+_shared: ContextVar[Contexts | None] = ContextVar("shared_contexts", default=None)
+
+
+@contextmanager
+def shared_contexts(kept: Contexts) -> Iterator[None]:
+    """Within it, what several tables are joined with is read once and put into `kept`.
+
+    Only for tables of one database whose data stand still for as long as `kept` is used.
+    """
+    token = _shared.set(kept)
+    try:
+        yield
+    finally:
+        _shared.reset(token)
+
+
+def _once(context: Context) -> Context:
+    """Read a context only once where contexts are shared."""
+
+    @wraps(context)
+    def read_once(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+        kept = _shared.get()
+        if kept is None:
+            return context(db, study_key, kind)
+        name = (context.__name__, study_key, kind)
+        if name not in kept:
+            kept[name] = context(db, study_key, kind)
+        return kept[name].copy(deep=False)
+
+    return read_once
+
+
+def of_kind(study: Study, kind: Kind) -> ColumnElement[bool]:
+    """The sessions of a study of one kind; `all` must be asked for by name.
+
+    Experts look a study over and give advice: they are in no table, `all` included.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"unknown kind {kind!r}; valid are {', '.join(KINDS)}")
+    of_study = StudySession.study_id == study.id
+    chosen = StudySession.kind == kind if kind != "all" else StudySession.kind != "expert"
+    return and_(of_study, chosen)
+
+
+def read(db: Session, query: Select[*tuple[Any, ...]], names: Sequence[str]) -> pd.DataFrame:
+    """The rows of a query under these column names; objects as the database gave them."""
+    rows = [tuple(row) for row in db.execute(query)]
+    return pd.DataFrame(rows, columns=list(names), dtype=object)
+
+
+def finished(frame: pd.DataFrame, table: str) -> pd.DataFrame:
+    """The columns of `table` in the codebook's order and types; a missing column is a KeyError."""
+    columns = columns_of(table)
+    shaped = frame[[column.name for column in columns]].reset_index(drop=True)
+    for column in columns:
+        shaped[column.name] = _cast(shaped[column.name], column.type)
+    return shaped
+
+
+def _cast(values: "pd.Series[Any]", kind: ColumnType) -> "pd.Series[Any]":
+    match kind:
+        case "time":
+            return pd.to_datetime(values, utc=True).astype("datetime64[us, UTC]")
+        case "integer":
+            missing = values.isna().to_numpy(dtype=np.bool_)
+            whole = np.zeros(len(values), np.int64)
+            whole[~missing] = values.to_numpy(dtype=object)[~missing].astype(np.int64)
+            return pd.Series(pd.arrays.IntegerArray(whole, missing))
+        case "number":
+            return values.astype("float64")
+        case "boolean":
+            if not values.isna().any():
+                return values.astype("bool")
+            told = [None if pd.isna(value) else bool(value) for value in values]
+            return pd.Series(pd.array(told, dtype="boolean"))
+        case "text":
+            return values.astype("object").where(values.notna(), None)
+
+
+@_once
+def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per session, oldest first: the columns that every table begins with, and status."""
+    study = study_by_key(db, study_key)
+    query = (
+        select(
+            StudyVersion.number,
+            StudySession.kind,
+            StudySession.avatar,
+            Participant.code,
+            StudySession.id,
+            StudySession.status,
+        )
+        .join(StudyVersion, StudyVersion.id == StudySession.study_version_id)
+        .join(Participant, Participant.id == StudySession.participant_id)
+        .where(of_kind(study, kind))
+        .order_by(StudySession.created_at, StudySession.id)
+    )
+    names = ("study_version", "kind", "avatar", "participant_code", "session_id", "session_status")
+    frame = read(db, query, names)
+    frame["study_key"] = study.key
+    frame["simulated"] = frame["kind"] == "simulated"
+    return frame
+
+
+@_once
+def steps_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per step of every session: its place in the design and the attempt that counts."""
+    study = study_by_key(db, study_key)
+    rows = []
+    for session in db.scalars(select(StudySession).where(of_kind(study, kind))):
+        plan, state = plan_of(db, session), state_of(session)
+        positions = _positions(plan)
+        skipped = {
+            (step.block, step.limb)
+            for step in plan
+            if step.kind == "task" and state.steps[step.index].status == "skipped"
+        }
+        for step in plan:
+            own = state.steps[step.index]
+            rows.append(
+                {
+                    "session_id": session.id,
+                    "step_index": step.index,
+                    "block": step.block,
+                    "position": positions.get((step.block, step.limb)),
+                    "limb": None if step.limb is None else str(step.limb),
+                    "condition": step.condition,
+                    "latency_ms": step.latency_ms,
+                    "attempt_that_counts": own.attempt,
+                    "answered": own.status == "done" and (step.block, step.limb) not in skipped,
+                }
+            )
+    return pd.DataFrame(rows, columns=list(STEP_COLUMNS), dtype=object)
+
+
+STEP_COLUMNS = (
+    "session_id",
+    "step_index",
+    "block",
+    "position",
+    "limb",
+    "condition",
+    "latency_ms",
+    "attempt_that_counts",
+    "answered",
+)
+
+
+@_once
+def phases_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per phase: whose, where in the design, and whether it counts."""
+    sessions = sessions_context(db, study_key, kind)
+    steps = steps_context(db, study_key, kind)[["session_id", "step_index", "position"]]
+    query = (
+        select(
+            Phase.session_id,
+            Phase.phase_id,
+            Phase.kind,
+            Phase.step_index,
+            Phase.block,
+            Phase.limb,
+            Phase.condition,
+            Phase.latency_ms,
+            Phase.attempt,
+            Phase.status,
+        )
+        .join(StudySession, StudySession.id == Phase.session_id)
+        .where(of_kind(study_by_key(db, study_key), kind))
+        .order_by(Phase.session_id, Phase.phase_id)
+    )
+    names = ("session_id", "phase_id", "phase_kind", "step_index", "block", "limb", "condition")
+    phases = read(db, query, (*names, "latency_ms", "attempt", "status"))
+    frame = sessions.merge(phases, on="session_id").merge(
+        steps, on=["session_id", "step_index"], how="left"
+    )
+    frame["valid"] = (frame["status"] == "done") & ~frame["session_status"].isin(BROKEN_OFF)
+    return frame
+
+
+def phase_limbs(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per session and limb of its phases."""
+    query = (
+        select(Phase.session_id, Phase.limb)
+        .join(StudySession, StudySession.id == Phase.session_id)
+        .where(of_kind(study_by_key(db, study_key), kind))
+        .distinct()
+    )
+    return read(db, query, ("session_id", "limb"))
+
+
+def _positions(plan: Sequence[Step]) -> dict[tuple[int | None, str | None], int]:
+    """Place of each task within its block, counted from 1; steps outside blocks have none."""
+    positions: dict[tuple[int | None, str | None], int] = {}
+    for step in plan:
+        if step.kind == "task":
+            earlier = sum(block == step.block for block, _ in positions)
+            positions[step.block, step.limb] = earlier + 1
+    return positions

@@ -1,0 +1,74 @@
+"""The table of joint errors, in degrees."""
+
+import math
+
+import pandas as pd
+from sqlalchemy import ColumnElement, select, true
+from sqlalchemy.orm import Session
+
+from app.features.results.analysis.schemas import Kind
+from app.features.results.analysis.tables.context import finished, of_kind, phases_context, read
+from app.features.studies.service import study_by_key
+from app.models import JointErrorRow, StudySession
+from app.science.joint_error import ERROR_AXES, ERROR_JOINTS
+
+_KEYS = ["session_id", "phase_id"]
+_FIGURES = ("mean", "rms", "p95", "max")
+_REFERENCES = ("present", "command")
+
+
+def joint_angles_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """Of the joint errors, the angles to the present pose: an eighth of the rows."""
+    return _table(
+        db,
+        study_key,
+        kind,
+        (JointErrorRow.reference == "present") & (JointErrorRow.axis == "angle"),
+    )
+
+
+def joint_errors_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per phase, reference, joint and axis, in the body's order."""
+    return _table(db, study_key, kind, true())
+
+
+def _table(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool]) -> pd.DataFrame:
+    query = (
+        select(
+            JointErrorRow.session_id,
+            JointErrorRow.phase_id,
+            JointErrorRow.reference,
+            JointErrorRow.joint,
+            JointErrorRow.axis,
+            JointErrorRow.mean_rad,
+            JointErrorRow.rms_rad,
+            JointErrorRow.p95_rad,
+            JointErrorRow.max_rad,
+            JointErrorRow.clipped_share,
+            JointErrorRow.samples,
+            JointErrorRow.excluded,
+        )
+        .join(StudySession, StudySession.id == JointErrorRow.session_id)
+        .where(of_kind(study_by_key(db, study_key), kind), wanted)
+    )
+    names = ("reference", "joint", "axis", *(f"{name}_rad" for name in _FIGURES))
+    errors = read(db, query, (*_KEYS, *names, "clipped_share", "samples", "excluded"))
+    # Without a single number, the column would not be one of numbers.
+    errors["clipped_share"] = errors["clipped_share"].astype("float64")
+    places = _places()
+    keys = zip(errors["reference"], errors["joint"], errors["axis"], strict=True)
+    errors["place"] = [places.get(key, len(places)) for key in keys]
+    for name in _FIGURES:
+        errors[f"{name}_deg"] = errors[f"{name}_rad"].astype("float64") * (180.0 / math.pi)
+    frame = phases_context(db, study_key, kind).merge(errors.sort_values("place"), on=_KEYS)
+    return finished(frame, "joint_errors")
+
+
+def _places() -> dict[tuple[str, str, str], int]:
+    ordered = [
+        (reference, joint, axis)
+        for reference in _REFERENCES
+        for joint in ERROR_JOINTS
+        for axis in ERROR_AXES
+    ]
+    return {key: place for place, key in enumerate(ordered)}

@@ -1,0 +1,102 @@
+"""The table of phases, with what each came to."""
+
+import pandas as pd
+from sqlalchemy import case, func, select
+from sqlalchemy.orm import Session
+
+from app.features.results.analysis.red_time import red_spans, total_s
+from app.features.results.analysis.schemas import Kind
+from app.features.results.analysis.tables.context import finished, of_kind, phases_context, read
+from app.features.studies.service import study_by_key
+from app.models import Completion, Contact, Phase, PhaseLatency, Study, StudySession
+
+MS_PER_S = 1000.0
+_KEYS = ["session_id", "phase_id"]
+
+
+def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per phase, in order of session and phase."""
+    study = study_by_key(db, study_key)
+    frame = phases_context(db, study_key, kind)
+    for more in (_details, _completions, _red, _latencies):
+        frame = frame.merge(more(db, study, kind), on=_KEYS, how="left")
+    for name in ("completions", "side_contacts", "side_red_s"):
+        frame[name] = [0 if pd.isna(value) else value for value in frame[name]]
+    return finished(frame, "phases")
+
+
+def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(
+            Phase.session_id,
+            Phase.phase_id,
+            Phase.step_key,
+            Phase.active_s,
+            Phase.paused_count,
+            Phase.walk_back_count,
+            Phase.client_started_s,
+            Phase.client_ended_s,
+            Phase.prepared_at,
+            Phase.started_at,
+            Phase.ended_at,
+        )
+        .join(StudySession, StudySession.id == Phase.session_id)
+        .where(of_kind(study, kind))
+    )
+    names = ("step_key", "active_s", "paused_count", "walk_back_count", "client_started_s")
+    times = ("client_ended_s", "prepared_at_utc", "started_at_utc", "ended_at_utc")
+    return read(db, query, (*_KEYS, *names, *times))
+
+
+def _completions(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(Completion.session_id, Completion.phase_id, func.count())
+        .join(StudySession, StudySession.id == Completion.session_id)
+        .where(of_kind(study, kind))
+        .group_by(Completion.session_id, Completion.phase_id)
+    )
+    return read(db, query, (*_KEYS, "completions"))
+
+
+def _latencies(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(
+            PhaseLatency.session_id,
+            PhaseLatency.phase_id,
+            PhaseLatency.achieved_s * MS_PER_S,
+            PhaseLatency.low_s * MS_PER_S,
+            PhaseLatency.high_s * MS_PER_S,
+            # Nothing is known to be off where nothing is known.
+            case((PhaseLatency.achieved_s.is_not(None), PhaseLatency.flagged)),
+            PhaseLatency.reason,
+            PhaseLatency.movement_s,
+            PhaseLatency.samples,
+        )
+        .join(StudySession, StudySession.id == PhaseLatency.session_id)
+        .where(of_kind(study, kind))
+    )
+    achieved = ("achieved_latency_ms", "achieved_latency_low_ms", "achieved_latency_high_ms")
+    others = ("latency_off", "latency_reason", "movement_s", "latency_samples")
+    return read(db, query, (*_KEYS, *achieved, *others))
+
+
+def _red(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(
+            Contact.session_id,
+            Contact.phase_id,
+            Contact.surface,
+            Contact.begin_active_s,
+            Contact.end_active_s,
+        )
+        .join(StudySession, StudySession.id == Contact.session_id)
+        .where(of_kind(study, kind), Contact.surface_kind == "side")
+    )
+    by_phase: dict[tuple[str, int], list[tuple[str, float, float]]] = {}
+    for session_id, phase_id, surface, begin_s, end_s in db.execute(query):
+        by_phase.setdefault((session_id, phase_id), []).append((surface, begin_s, end_s))
+    rows = []
+    for (session_id, phase_id), contacts in by_phase.items():
+        spans = [span for side in red_spans(contacts).values() for span in side]
+        rows.append((session_id, phase_id, len(spans), total_s(spans)))
+    return pd.DataFrame(rows, columns=[*_KEYS, "side_contacts", "side_red_s"], dtype=object)

@@ -1,0 +1,161 @@
+"""The tables of answers and scores: long, one row per item or score."""
+
+from collections.abc import Mapping
+
+import pandas as pd
+from sqlalchemy import Select, select
+from sqlalchemy.orm import Session
+
+from app.features.questionnaires.service import newest_corrections
+from app.features.results.analysis.schemas import Kind
+from app.features.results.analysis.tables.context import (
+    BROKEN_OFF,
+    finished,
+    of_kind,
+    read,
+    sessions_context,
+    steps_context,
+)
+from app.features.studies.service import instrument_of, study_by_key
+from app.models import (
+    Answer,
+    AnswerCorrection,
+    InstrumentVersion,
+    ScoreValue,
+    Study,
+    StudySession,
+    Submission,
+)
+from app.science.instruments import Instrument
+
+
+def answers_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per item of every stored form; items in the order in which they were shown."""
+    study = study_by_key(db, study_key)
+    query = (
+        select(Answer.submission_id, Answer.item, Answer.position, Answer.value_number)
+        .add_columns(Answer.value_text)
+        .join(Submission, Submission.id == Answer.submission_id)
+        .join(StudySession, StudySession.id == Submission.session_id)
+        .where(of_kind(study, kind))
+        .order_by(Answer.submission_id, Answer.position)
+    )
+    names = ("submission_id", "item", "shown_position", "value_number", "value_text")
+    frame = _forms(db, study, kind).merge(read(db, query, names), on="submission_id")
+    _put_corrections(frame, newest_corrections(db, _submissions(study, kind)))
+    instruments = _instruments(db)
+    items = [
+        instruments[row].by_key[item]
+        for row, item in zip(frame["instrument_version_id"], frame["item"], strict=True)
+    ]
+    frame["item_type"] = [item.type for item in items]
+    frame["shown_position"] = frame["shown_position"] + 1
+    _put_times(frame)
+    return finished(frame, "answers")
+
+
+def _put_times(frame: pd.DataFrame) -> None:
+    """When and how long each item was answered; numbers throughout, also where nothing is known."""
+    timed = list(zip(frame["timings"], frame["item"], strict=True))
+    traced = [
+        traces.get(item, {}) if isinstance(traces, dict) else {}
+        for traces, item in zip(frame["item_traces"], frame["item"], strict=True)
+    ]
+    columns = {
+        "response_s": [trace.get("response_s") for trace in traced],
+        "changes": [trace.get("changes") for trace in traced],
+        "answered_after_s": [(timings or {}).get(item) for timings, item in timed],
+    }
+    for name, values in columns.items():
+        frame[name] = values
+
+
+def _put_corrections(
+    frame: pd.DataFrame, corrected: Mapping[tuple[str, str], AnswerCorrection]
+) -> None:
+    """The values that count in the place of those given first."""
+    rows = [corrected.get(key) for key in zip(frame["submission_id"], frame["item"], strict=True)]
+    frame["corrected"] = [row is not None for row in rows]
+    for name in ("value_number", "value_text"):
+        frame[name] = [
+            given if row is None else getattr(row, name)
+            for given, row in zip(frame[name], rows, strict=True)
+        ]
+
+
+def _submissions(study: Study, kind: Kind) -> Select[str]:
+    return (
+        select(Submission.id)
+        .join(StudySession, StudySession.id == Submission.session_id)
+        .where(of_kind(study, kind))
+    )
+
+
+def scores_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per score of every stored form, in the instrument's order."""
+    study = study_by_key(db, study_key)
+    query = (
+        select(ScoreValue.submission_id, ScoreValue.score, ScoreValue.value)
+        .join(Submission, Submission.id == ScoreValue.submission_id)
+        .join(StudySession, StudySession.id == Submission.session_id)
+        .where(of_kind(study, kind))
+    )
+    frame = _forms(db, study, kind).merge(
+        read(db, query, ("submission_id", "score", "value")), on="submission_id"
+    )
+    known = {
+        (row, score.key): (place, score.minimum, score.maximum)
+        for row, instrument in _instruments(db).items()
+        for place, score in enumerate(instrument.scores)
+    }
+    of_row = [
+        known.get(key, (len(known), None, None))
+        for key in zip(frame["instrument_version_id"], frame["score"], strict=True)
+    ]
+    frame["place"] = [place for place, _, _ in of_row]
+    frame["minimum"] = [minimum for _, minimum, _ in of_row]
+    frame["maximum"] = [maximum for _, _, maximum in of_row]
+    return finished(frame.sort_values(["form", "place"], kind="stable"), "scores")
+
+
+def _forms(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    """One row per stored form, by session and time: whose, where in the design, if it counts."""
+    query = (
+        select(
+            Submission.session_id,
+            Submission.id,
+            Submission.administration,
+            Submission.instrument,
+            Submission.instrument_version_id,
+            Submission.step_index,
+            Submission.attempt,
+            Submission.mode,
+            Submission.language,
+            Submission.timings,
+            Submission.item_traces,
+            Submission.started_at,
+            Submission.submitted_at,
+        )
+        .join(StudySession, StudySession.id == Submission.session_id)
+        .where(of_kind(study, kind))
+        .order_by(Submission.submitted_at, Submission.id)
+    )
+    names = ("session_id", "submission_id", "administration", "instrument", "instrument_version_id")
+    more = ("step_index", "attempt", "mode", "language", "timings", "item_traces")
+    forms = read(db, query, (*names, *more, "started_at_utc", "submitted_at_utc"))
+    frame = (
+        sessions_context(db, study.key, kind)
+        .merge(forms, on="session_id")
+        .merge(steps_context(db, study.key, kind), on=["session_id", "step_index"], how="left")
+    )
+    versions = {row: instrument.version for row, instrument in _instruments(db).items()}
+    frame["instrument_version"] = [versions[row] for row in frame["instrument_version_id"]]
+    superseded = frame["attempt"] != frame["attempt_that_counts"]
+    broken_off = frame["session_status"].isin(BROKEN_OFF)
+    frame["valid"] = frame["answered"].fillna(value=False).astype(bool) & ~superseded & ~broken_off
+    frame["form"] = range(len(frame))
+    return frame
+
+
+def _instruments(db: Session) -> dict[str, Instrument]:
+    return {row.id: instrument_of(row) for row in db.scalars(select(InstrumentVersion))}

@@ -1,0 +1,124 @@
+"""The table of sessions."""
+
+import json
+from datetime import datetime
+
+import pandas as pd
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.results.analysis.schemas import Kind
+from app.features.results.analysis.tables.context import (
+    BROKEN_OFF,
+    finished,
+    of_kind,
+    read,
+    sessions_context,
+)
+from app.features.sessions.contents import content_body
+from app.features.sessions.service import plan_of, state_of
+from app.features.studies.service import protocol_of, study_by_key, versions_of
+from app.models import (
+    LedgerSlot,
+    SessionContent,
+    SessionEvent,
+    SlotAttempt,
+    Study,
+    StudySession,
+    StudyVersion,
+)
+
+
+def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per session, oldest first."""
+    study = study_by_key(db, study_key)
+    frame = sessions_context(db, study_key, kind).rename(columns={"session_status": "status"})
+    frame = frame.merge(_details(db, study, kind), on="session_id")
+    frame = frame.merge(_heights(db, study, kind), on="session_id", how="left")
+    frame = frame.merge(_consents(db, study, kind), on="session_id", how="left")
+    latencies = _latencies(db, study)
+    frame["order"] = [
+        " ".join(f"{latencies[version, key]:g}" for key in sequence or ())
+        for version, sequence in zip(frame["study_version"], frame["sequence"], strict=True)
+    ]
+    frame["valid"] = ~frame["status"].isin(BROKEN_OFF)
+    return finished(frame, "sessions")
+
+
+def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    query = (
+        select(
+            StudySession.id,
+            StudySession.language,
+            StudySession.time_scale,
+            StudySession.created_at,
+            StudySession.started_at,
+            StudySession.ended_at,
+            StudyVersion.content_hash,
+            StudySession.avatar_configuration_hash,
+            LedgerSlot.position,
+            LedgerSlot.block,
+            LedgerSlot.replicate,
+            LedgerSlot.sequence,
+        )
+        .join(StudyVersion, StudyVersion.id == StudySession.study_version_id)
+        .join(SlotAttempt, SlotAttempt.session_id == StudySession.id)
+        .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
+        .where(of_kind(study, kind))
+    )
+    names = ("session_id", "language", "time_scale")
+    times = ("created_at_utc", "started_at_utc", "ended_at_utc")
+    hashes = ("study_content_hash", "avatar_configuration_hash")
+    slot = ("slot_index", "slot_block", "slot_replicate", "sequence")
+    return read(db, query, (*names, *times, *hashes, *slot))
+
+
+def _heights(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    """The newest heights of each session; none once they were erased."""
+    contents = db.scalars(
+        select(SessionContent)
+        .join(StudySession, StudySession.id == SessionContent.session_id)
+        .where(of_kind(study, kind), SessionContent.kind == "height")
+        .order_by(SessionContent.created_at, SessionContent.id)
+    )
+    newest = {row.session_id: content_body(row) for row in contents}
+    rows = [
+        (session_id, body.get("stated"), body.get("matched"))
+        for session_id, body in newest.items()
+        if isinstance(body, dict)
+    ]
+    columns = ["session_id", "height_stated_m", "height_matched_m"]
+    return pd.DataFrame(rows, columns=columns, dtype=object)
+
+
+def _consents(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
+    """Whether and when consent was given, from the steps and the event log: yes or no, no words."""
+    events = db.execute(
+        select(SessionEvent.session_id, SessionEvent.payload, SessionEvent.recorded_at)
+        .join(StudySession, StudySession.id == SessionEvent.session_id)
+        .where(of_kind(study, kind), SessionEvent.type == "step_completed")
+        .order_by(SessionEvent.session_id, SessionEvent.seq)
+    )
+    completed: dict[str, list[tuple[int | None, datetime]]] = {}
+    for session_id, payload, at in events:
+        completed.setdefault(session_id, []).append((json.loads(payload).get("step"), at))
+    rows = []
+    for session in db.scalars(select(StudySession).where(of_kind(study, kind))):
+        consents = {step.index for step in plan_of(db, session) if step.kind == "consent"}
+        if not consents:
+            continue
+        steps = state_of(session).steps
+        given = all(steps[index].status == "done" for index in consents)
+        times = [at for step, at in completed.get(session.id, ()) if step in consents]
+        rows.append((session.id, given, times[-1] if given and times else None))
+    columns = ["session_id", "consent_given", "consent_at_utc"]
+    return pd.DataFrame(rows, columns=columns, dtype=object)
+
+
+def _latencies(db: Session, study: Study) -> dict[tuple[int, str], float]:
+    """Added latency in ms by study version and condition."""
+    return {
+        (version.number, condition.key): condition.latency_ms
+        for version in versions_of(db, study)
+        for condition in protocol_of(version).conditions
+    }

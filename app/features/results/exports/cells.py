@@ -1,0 +1,68 @@
+"""CSV cells: numbers in full, texts that no spreadsheet will run.
+
+A spreadsheet runs a text cell that begins with = + - @ as a formula, also behind white space or a
+quotation mark. An apostrophe in front makes it text (OWASP, CSV injection). Only texts are treated:
+a number stays a number, also a negative one.
+"""
+
+import csv
+import io
+import re
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import pandas as pd
+
+from app.features.results.analysis.codebook import ColumnType, columns_of
+
+ROWS_AT_ONCE = 2000
+# The full-width forms are read as the narrow ones by some spreadsheets.
+_RUNS = re.compile("^(?:[\\t\\r\\n]|[\\s\"'\ufeff\u200b]*[=+\\-@\uff1d\uff0b\uff0d\uff20])")
+
+
+def safe_text(text: str) -> str:
+    """The text, with an apostrophe in front if a spreadsheet would run it."""
+    return f"'{text}" if _RUNS.match(text) else text
+
+
+def csv_pieces(table: str, frame: pd.DataFrame) -> Iterator[bytes]:
+    """A table as CSV: UTF-8, LF, quoted as in RFC 4180, missing values empty; in pieces."""
+    columns = columns_of(table)
+    yield _lines([[column.name for column in columns]])
+    for first in range(0, len(frame), ROWS_AT_ONCE):
+        part = frame.iloc[first : first + ROWS_AT_ONCE]
+        cells = [_cells(part[column.name].tolist(), column.type) for column in columns]
+        yield _lines(list(zip(*cells, strict=True)))
+
+
+def _cells(values: Sequence[Any], kind: ColumnType) -> list[str]:
+    write = _WRITERS[kind]
+    return ["" if pd.isna(value) else write(value) for value in values]
+
+
+def _time(value: pd.Timestamp) -> str:
+    return value.isoformat(timespec="microseconds").replace("+00:00", "Z")
+
+
+_WRITERS: dict[ColumnType, Callable[[Any], str]] = {
+    "text": lambda value: safe_text(str(value)),
+    "integer": str,
+    "number": lambda value: repr(float(value)),
+    "boolean": lambda value: "true" if value else "false",
+    "time": _time,
+}
+
+
+def _lines(rows: Sequence[Sequence[str]]) -> bytes:
+    if any("\r" in cell for row in rows for cell in row):
+        return b"".join(_line_with_returns(row) for row in rows)
+    buffer = io.StringIO(newline="")
+    csv.writer(buffer, lineterminator="\n").writerows(rows)
+    return buffer.getvalue().encode()
+
+
+def _line_with_returns(row: Sequence[str]) -> bytes:
+    """Python up to 3.12 quotes a carriage return only if lines end with one; readers need it."""
+    buffer = io.StringIO(newline="")
+    csv.writer(buffer, lineterminator="\r\n").writerow(row)
+    return buffer.getvalue().removesuffix("\r\n").encode() + b"\n"

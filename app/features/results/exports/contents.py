@@ -1,0 +1,146 @@
+"""What an export holds: each file with its pieces, in the order in which they are written.
+
+Folder and archive are two ways of writing the same members, so they cannot differ. A member is read
+from the database while it is written; only the README at the end knows what came of it.
+"""
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from datetime import datetime
+
+import pandas as pd
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.receipts.service import receipt_of
+from app.features.results.analysis.codebook import codebook_frame
+from app.features.results.analysis.tables import (
+    Kind,
+    alarms_table,
+    answers_table,
+    calibrations_table,
+    clock_mapping_table,
+    clock_probes_table,
+    completions_table,
+    contacts_table,
+    corrections_table,
+    events_table,
+    joint_error_course_table,
+    joint_errors_table,
+    phases_table,
+    quality_table,
+    scores_table,
+    sessions_table,
+)
+from app.features.results.exports.cells import csv_pieces
+from app.features.results.exports.names import receipt_path, samples_path
+from app.features.results.exports.readme import FileCount, Origin, readme_text
+from app.features.results.exports.samples import SampleFile
+from app.features.results.imports.service import import_files
+from app.features.studies.service import study_by_key
+from app.models import StudyVersion
+
+TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
+    "sessions": sessions_table,
+    "phases": phases_table,
+    "answers": answers_table,
+    "scores": scores_table,
+    "corrections": corrections_table,
+    "contacts": contacts_table,
+    "completions": completions_table,
+    "joint_errors": joint_errors_table,
+    "joint_error_course": joint_error_course_table,
+    "events": events_table,
+    "quality": quality_table,
+    "alarms": alarms_table,
+    "clock_probes": clock_probes_table,
+    "clock_mapping": clock_mapping_table,
+}
+README = "README.txt"
+FOLDERS = {"samples": ".csv", "receipts": ".json", "imported": ".csv"}
+"""The folders of an export, and how their files end."""
+TOP_LEVEL = frozenset(
+    {*(f"{name}.csv" for name in (*TABLE_FILES, "calibrations", "codebook")), README}
+)
+
+
+@dataclass(frozen=True)
+class Member:
+    """A file of an export: its path inside, made by us, and its bytes in pieces."""
+
+    path: str
+    pieces: Iterator[bytes]
+
+
+@dataclass
+class Contents:
+    """The members of one export. Iterate once; `files` and `sessions` fill as members are used.
+
+    `only`: leave out every session but these, as for one participant's own copy.
+    """
+
+    db: Session
+    study_key: str
+    kind: Kind
+    now: datetime
+    only: frozenset[str] | None = None
+    files: list[FileCount] = field(default_factory=list)
+    sessions: int = 0
+
+    def members(self) -> Iterator[Member]:
+        """Tables, codebook, frames and receipt of each session, and the README last."""
+        sessions = self._table(sessions_table)
+        self.sessions = len(sessions)
+        for name, table in TABLE_FILES.items():
+            frame = sessions if name == "sessions" else self._table(table)
+            yield self._member(f"{name}.csv", csv_pieces(name, frame))
+        equipment = calibrations_table(self.db)
+        yield self._member("calibrations.csv", csv_pieces("calibrations", equipment))
+        yield self._member("codebook.csv", csv_pieces("codebook", codebook_frame()))
+        rows = sessions[["participant_code", "session_id", "simulated", "avatar"]]
+        for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
+            samples = SampleFile(self.db, session_id, bool(simulated), avatar)
+            yield self._member(samples_path(code, session_id), samples.pieces())
+            yield self._member(receipt_path(code, session_id), self._receipt(session_id))
+        # Apart from every table, since nothing here ran them; a person's own copy is of sessions.
+        if self.kind in ("people", "all") and self.only is None:
+            for name, body in import_files(self.db, study_by_key(self.db, self.study_key)):
+                yield self._member(f"imported/{name}", iter([body]))
+        yield Member(README, iter([self._readme(sessions).encode()]))
+
+    def _table(self, table: Callable[[Session, str, Kind], pd.DataFrame]) -> pd.DataFrame:
+        frame = table(self.db, self.study_key, self.kind)
+        return frame if self.only is None else frame[frame["session_id"].isin(list(self.only))]
+
+    def _receipt(self, session_id: str) -> Iterator[bytes]:
+        """What of the session is there, and the proof; told by this very export's record."""
+        yield json.dumps(receipt_of(self.db, session_id).as_json(), indent=2).encode() + b"\n"
+
+    def _member(self, path: str, pieces: Iterator[bytes]) -> Member:
+        return Member(path, self._counted(path, pieces))
+
+    def _counted(self, path: str, pieces: Iterator[bytes]) -> Iterator[bytes]:
+        """The same pieces; what they came to is noted once the last is out."""
+        digest, lines = hashlib.sha256(), 0
+        for piece in pieces:
+            digest.update(piece)
+            lines += piece.count(b"\n")
+            yield piece
+        self.files.append(FileCount(path, lines, digest.hexdigest()))
+
+    def _readme(self, sessions: pd.DataFrame) -> str:
+        study = study_by_key(self.db, self.study_key)
+        used = {int(number) for number in sessions["study_version"].dropna()}
+        versions = self.db.scalars(
+            select(StudyVersion)
+            .where(StudyVersion.study_id == study.id)
+            .order_by(StudyVersion.number)
+        ).all()
+        hashes = {
+            row.number: row.content_hash for row in versions if not used or row.number in used
+        }
+        statuses = {str(key): int(n) for key, n in sessions["status"].value_counts().items()}
+        origin = Origin(self.study_key, self.kind, self.now, hashes, statuses)
+        return readme_text(origin, self.files)

@@ -1,0 +1,178 @@
+"""Where exports are ordered, made one after the other, fetched and forgotten.
+
+Files stand in a folder of their own beside the database, readable by the server alone. They go when
+their owner removes them, when nobody has asked for them for a while, when a participant of the
+study is erased, and at every start and end of the server. What is cancelled stops at once: its
+process is killed, and what it had written is removed.
+"""
+
+import logging
+import shutil
+import threading
+from collections.abc import Callable
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from app.clock import Clock
+from app.errors import NotFound, NotNow
+from app.features.results.exports.jobs import KEPT, Job
+from app.features.results.exports.orders import Made, NotMade, Order, make_archive
+from app.features.results.exports.schemas import ExportTrouble, ExportView
+
+log = logging.getLogger(__name__)
+AT_ONCE = 5
+"""How many a person may have waiting or under way."""
+ENDED = NotMade(
+    "the process that made the export ended",
+    "Make it again; if that fails too, look at the server's log and memory.",
+)
+
+
+@dataclass(eq=False)
+class ExportDesk:
+    """Safe from any thread. `keep_free_bytes` of the disk are never written to."""
+
+    folder: Path
+    url: str
+    clock: Clock
+    keep_free_bytes: int
+    _jobs: dict[str, Job] = field(default_factory=dict)
+    _lock: threading.RLock = field(default_factory=threading.RLock)
+    _maker: ThreadPoolExecutor = field(
+        default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="exports")
+    )
+
+    def begin(self) -> None:
+        """Remove what an earlier run left."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def end(self) -> None:
+        """Stop whatever is made, and remove every file."""
+        self._drop(lambda _: True)
+        self._maker.shutdown(wait=True, cancel_futures=True)
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def order(self, job: Job) -> ExportView:
+        """Have a file made; one that is under way is not made twice. Raises NotNow."""
+        self._forget_old()
+        with self._lock:
+            mine = [one for one in self._jobs.values() if one.owner == job.owner and one.is_open]
+            same = next((one for one in mine if one.is_the_same(job)), None)
+            if same is not None:
+                return self._view(same)
+            if len(mine) >= AT_ONCE:
+                raise NotNow(
+                    "too many of your exports are waiting",
+                    value=len(mine),
+                    valid=f"up to {AT_ONCE}",
+                    remedy="Wait until one is ready, or cancel one.",
+                )
+            self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            self._jobs[job.id] = job
+            self._maker.submit(self._make, job)
+            return self._view(job)
+
+    def of(self, owner: str) -> list[ExportView]:
+        """A person's exports, newest first."""
+        self._forget_old()
+        with self._lock:
+            mine = [self._view(job) for job in self._jobs.values() if job.owner == owner]
+        return mine[::-1]
+
+    def find(self, owner: str, export_id: str) -> Job:
+        """One of a person's exports; raises NotFound, also where it is somebody else's."""
+        self._forget_old()
+        with self._lock:
+            job = self._jobs.get(export_id)
+        if job is None or job.owner != owner:
+            raise NotFound(
+                "there is no such export",
+                value=export_id,
+                remedy="It was removed, or the server was started again since. Make it again.",
+            )
+        return job
+
+    def view(self, owner: str, export_id: str) -> ExportView:
+        """How far one is; raises NotFound."""
+        return self._view(self.find(owner, export_id))
+
+    def cancel(self, owner: str, export_id: str) -> None:
+        """Stop making it, or remove the file; raises NotFound."""
+        wanted = self.find(owner, export_id)
+        self._drop(lambda job: job is wanted)
+
+    def forget_study(self, study_key: str) -> None:
+        """Remove what holds data of a study: somebody in it was erased."""
+        self._drop(lambda job: job.study_key == study_key)
+
+    def _view(self, job: Job) -> ExportView:
+        return job.view(self.clock.monotonic_ns())
+
+    def _make(self, job: Job) -> None:
+        order = Order(
+            url=self.url,
+            study_key=job.study_key,
+            kind=job.kind,
+            session_id=job.session_id,
+            now=job.asked_at,
+            to=job.path,
+            meter=job.meter.path,
+            keep_free_bytes=self.keep_free_bytes,
+        )
+        with self._lock:
+            if job.given_up:
+                return
+            job.state, job.began_ns = "making", self.clock.monotonic_ns()
+            future = job.worker.submit(make_archive, order)
+        try:
+            result = future.result()
+        except (BrokenProcessPool, CancelledError):
+            result = ENDED
+        except Exception:
+            log.exception("an export could not be made")
+            result = ENDED
+        finally:
+            job.worker.end()
+        self._settle(job, result)
+
+    def _settle(self, job: Job, result: Made | NotMade) -> None:
+        with self._lock:
+            job.ended_ns = self.clock.monotonic_ns()
+            if isinstance(result, Made) and not job.given_up:
+                job.size_bytes, job.sha256 = result.size_bytes, result.sha256
+                job.sessions, job.made_at = result.sessions, self.clock.utc_now()
+                job.state = "ready"
+                self._forget_later()
+                return
+            job.remove_files()
+            if isinstance(result, NotMade):
+                job.trouble = ExportTrouble(message=result.message, remedy=result.remedy)
+            job.state = "failed"
+
+    def _drop(self, which: Callable[[Job], bool]) -> None:
+        with self._lock:
+            dropped = [job for job in self._jobs.values() if which(job)]
+            for job in dropped:
+                job.given_up = True
+                del self._jobs[job.id]
+        for job in dropped:
+            # Kills the process first, so nothing is written after the files are gone.
+            job.worker.end()
+            job.remove_files()
+
+    def _forget_old(self) -> None:
+        now = self.clock.utc_now()
+        self._drop(lambda job: job.expires_at is not None and job.expires_at <= now)
+
+    def _forget_in_time(self) -> None:
+        self._forget_old()
+        with self._lock:
+            if any(job.state == "ready" for job in self._jobs.values()):
+                self._forget_later()
+
+    def _forget_later(self) -> None:
+        timer = threading.Timer(KEPT.total_seconds() + 1, self._forget_in_time)
+        timer.daemon = True
+        timer.start()

@@ -1,0 +1,88 @@
+"""An export as a folder: written beside its place, moved in whole.
+
+Whoever looks at the place sees the export before or the one after, never half of one. An export
+replaces an earlier one of ours; anything else that stands there is refused.
+"""
+
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from app.errors import Conflict
+from app.features.results.exports.contents import FOLDERS, README, TOP_LEVEL, Member
+from app.features.results.exports.readme import MARK
+
+Progress = Callable[[str], None]
+
+
+def silent(path: str) -> None:
+    """Tell nobody."""
+
+
+def write_folder(members: Iterable[Member], to: Path, *, progress: Progress = silent) -> None:
+    """Write `members` to `to`, telling each path to `progress` as it is begun.
+
+    Raises Conflict where something else is at `to`, and OSError where it cannot be written; then
+    nothing has changed.
+    """
+    to = to.absolute()
+    check_target(to)
+    to.parent.mkdir(parents=True, exist_ok=True)
+    beside = Path(tempfile.mkdtemp(prefix=f".{to.name}.", suffix=".partial", dir=to.parent))
+    try:
+        fresh = beside / "new"
+        for folder in FOLDERS:
+            (fresh / folder).mkdir(parents=True)
+        for member in members:
+            progress(member.path)
+            with (fresh / member.path).open("xb") as file:
+                file.writelines(member.pieces)
+        check_target(to)
+        _swap(fresh, to, beside / "old")
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def check_target(to: Path) -> None:
+    """Refuse a place that holds anything but nothing, an empty folder or an export of ours."""
+    if to.is_symlink() or (to.exists() and not to.is_dir()):
+        raise _refused(to, "is not a folder")
+    if not to.exists() or not any(to.iterdir()):
+        return
+    readme = to / README
+    if not (readme.is_file() and readme.read_text(encoding="utf-8").startswith(MARK + "\n")):
+        raise _refused(to, "is not an export of ours")
+    for path in sorted(to.rglob("*")):
+        inside = path.relative_to(to)
+        ours = str(inside) in TOP_LEVEL or _is_in_folder(inside)
+        if not ours or path.is_symlink():
+            raise _refused(to, f"also holds {inside}, which no export wrote")
+
+
+def _is_in_folder(inside: Path) -> bool:
+    return any(
+        inside == Path(folder) or (inside.parent == Path(folder) and inside.suffix == suffix)
+        for folder, suffix in FOLDERS.items()
+    )
+
+
+def _swap(fresh: Path, to: Path, old: Path) -> None:
+    if not to.exists():
+        fresh.rename(to)
+        return
+    to.rename(old)
+    try:
+        fresh.rename(to)
+    except OSError:
+        old.rename(to)
+        raise
+
+
+def _refused(to: Path, why: str) -> Conflict:
+    return Conflict(
+        f"{to} {why}; nothing was written",
+        value=str(to),
+        valid="a new or empty folder, or an earlier export",
+        remedy="Name another folder, or move what is there.",
+    )

@@ -1,0 +1,117 @@
+"""One export as the server keeps it while it is made and until it is fetched."""
+
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from pathlib import Path
+
+from app.features.results.analysis.schemas import Kind
+from app.features.results.exports.meter import Meter
+from app.features.results.exports.schemas import ExportState, ExportTrouble, ExportView
+from app.features.workers import Worker
+from app.models.types import new_id
+
+KEPT = timedelta(hours=2)
+"""How long a file that is ready stays, from the last time somebody asked for it."""
+FEWEST_ROWS = 2_000
+"""Before so many rows are written nobody can tell how large the file becomes."""
+NS_PER_S = 1e9
+
+
+@dataclass(eq=False)
+class Job:
+    """What is to be made for whom. `began_ns`, `ended_ns`: monotonic, of the making alone.
+
+    `recorded`: whether the copy that leaves is on record; `given_up`: whoever wanted it does not.
+    """
+
+    owner: str
+    study_key: str
+    kind: Kind
+    session_id: str | None
+    file_name: str
+    asked_at: datetime
+    folder: Path
+    id: str = field(default_factory=new_id)
+    state: ExportState = "queued"
+    began_ns: int | None = None
+    ended_ns: int | None = None
+    size_bytes: int = 0
+    sha256: str | None = None
+    sessions: int = 0
+    made_at: datetime | None = None
+    fetched_at: datetime | None = None
+    recorded: bool = False
+    trouble: ExportTrouble | None = None
+    given_up: bool = False
+    worker: Worker = field(default_factory=Worker)
+
+    @property
+    def path(self) -> Path:
+        """Where the file is once it is ready."""
+        return self.folder / f"{self.id}.zip"
+
+    @property
+    def meter(self) -> Meter:
+        """Where the process that makes it says how far it is."""
+        return Meter(self.folder / f"{self.id}.progress")
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is still to be made."""
+        return self.state in ("queued", "making")
+
+    @property
+    def expires_at(self) -> datetime | None:
+        """When the file is removed, unless somebody asks for it before."""
+        last = self.fetched_at or self.made_at
+        return None if last is None or self.state != "ready" else last + KEPT
+
+    def is_the_same(self, other: "Job") -> bool:
+        """Whether both ask for the same file."""
+        return (self.owner, self.study_key, self.kind, self.session_id) == (
+            other.owner,
+            other.study_key,
+            other.kind,
+            other.session_id,
+        )
+
+    def remove_files(self) -> None:
+        """Leave nothing of it on the disk."""
+        for path in (self.path, self.path.with_suffix(".part"), self.meter.path):
+            path.unlink(missing_ok=True)
+
+    def view(self, now_ns: int) -> ExportView:
+        """How far it is, and what can be told of the rest."""
+        done = self.meter.read()
+        elapsed_s = self._elapsed_s(now_ns)
+        size = self.size_bytes or done.bytes
+        share = done.rows / done.rows_total if done.rows_total else 0.0
+        tells = self.state == "making" and done.rows >= FEWEST_ROWS and 0 < share <= 1
+        return ExportView(
+            id=self.id,
+            study_key=self.study_key,
+            kind=self.kind,
+            session_id=self.session_id,
+            file_name=self.file_name,
+            state=self.state,
+            asked_at=self.asked_at,
+            rows=done.rows,
+            # Frames that came since are not in it, those of two streams may not be the same ones.
+            rows_total=done.rows if self.state == "ready" else max(done.rows_total, done.rows),
+            sessions=done.sessions,
+            sessions_total=done.sessions_total,
+            bytes=size,
+            bytes_expected=round(size / share) if tells else None,
+            bytes_per_s=size / elapsed_s if elapsed_s > 0 and size else None,
+            elapsed_s=elapsed_s,
+            remaining_s=elapsed_s * (1 - share) / share if tells else None,
+            sha256=self.sha256,
+            fetched_at=self.fetched_at,
+            expires_at=self.expires_at,
+            trouble=self.trouble,
+        )
+
+    def _elapsed_s(self, now_ns: int) -> float:
+        if self.began_ns is None:
+            return 0.0
+        return ((self.ended_ns or now_ns) - self.began_ns) / NS_PER_S

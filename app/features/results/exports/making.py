@@ -1,0 +1,126 @@
+"""Making an export as a file, in a process of its own.
+
+A thread of the server would hold up running sessions, since Python computes in one thread at a
+time; the process steps back where they want the processor. It looks at one moment of the database
+(a read transaction: nobody waits for it) and writes the archive piece by piece, so its memory does
+not grow with what it writes. The file gets its name once it is complete and on the disk.
+"""
+
+import hashlib
+import os
+import shutil
+from collections.abc import Iterable, Iterator
+
+from sqlalchemy import func, select
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from app.database import Database, make_engine
+from app.errors import ReembodyError
+from app.features.results.analysis.tables.context import of_kind
+from app.features.results.exports.archive import zip_pieces
+from app.features.results.exports.contents import Contents, Member
+from app.features.results.exports.meter import Meter, Progress
+from app.features.results.exports.orders import Made, NotMade, Order
+from app.features.studies.service import study_by_key
+from app.models import StudySession, TelemetryStream
+from app.wire import StreamName
+
+LOOK_EVERY_BYTES = 32 * 1024**2
+"""How often the disk's free space is looked at."""
+
+
+class _DiskNearlyFullError(Exception):
+    """The rest of the disk is for running sessions."""
+
+
+def made(order: Order) -> Made | NotMade:
+    """Write the file, or say why not; an unfinished file is left for whoever ordered it."""
+    try:
+        return _made(order)
+    except _DiskNearlyFullError:
+        return _no_room(order)
+    except ReembodyError as error:
+        return NotMade(error.message, error.remedy)
+    except (OSError, SQLAlchemyError) as error:
+        return NotMade(
+            f"the export could not be written: {type(error).__name__}: {str(error)[:200]}",
+            "Make it again; if that fails too, look at the server's disk and database.",
+        )
+
+
+def _made(order: Order) -> Made:
+    database = Database(make_engine(order.url, pooled=False))
+    progress, digest = Progress(), hashlib.sha256()
+    try:
+        with database.reading() as db, order.to.with_suffix(".part").open("xb") as file:
+            only = None if order.session_id is None else frozenset({order.session_id})
+            _expect(db, order, progress)
+            contents = Contents(db, order.study_key, order.kind, order.now, only)
+            members = watched(contents.members(), progress)
+            for piece in zip_pieces(members, order.now):
+                file.write(piece)
+                digest.update(piece)
+                before, progress.bytes = progress.bytes, progress.bytes + len(piece)
+                if progress.bytes // LOOK_EVERY_BYTES > before // LOOK_EVERY_BYTES:
+                    _require_room(order)
+                Meter(order.meter).tell(progress)
+            file.flush()
+            os.fsync(file.fileno())
+    finally:
+        database.close()
+    order.to.with_suffix(".part").rename(order.to)
+    return Made(progress.bytes, digest.hexdigest(), contents.sessions)
+
+
+def watched(members: Iterable[Member], progress: Progress) -> Iterator[Member]:
+    """The same members; rows and sessions are counted as they are used up."""
+    for member in members:
+        yield (
+            Member(member.path, _counted(member.pieces, progress))
+            if member.path.startswith("samples/")
+            else member
+        )
+
+
+def _counted(pieces: Iterator[bytes], progress: Progress) -> Iterator[bytes]:
+    header = 1
+    for piece in pieces:
+        progress.rows += piece.count(b"\n") - header
+        header = 0
+        yield piece
+    progress.sessions += 1
+
+
+def _expect(db: Session, order: Order, progress: Progress) -> None:
+    """How many sessions and rows there are to write: where a stream is longer, rows are its."""
+    study = study_by_key(db, order.study_key)
+    which = select(StudySession.id).where(of_kind(study, order.kind))
+    if order.session_id is not None:
+        which = which.where(StudySession.id == order.session_id)
+    stream = TelemetryStream
+    longest = (
+        select(func.max(stream.frames_stored).label("rows"))
+        .where(stream.session_id.in_(which))
+        .where(stream.stream.in_([StreamName.TARGET, StreamName.ACTUAL]))
+        .group_by(stream.session_id, stream.epoch)
+        .subquery()
+    )
+    progress.sessions_total = db.scalar(select(func.count()).select_from(which.subquery())) or 0
+    progress.rows_total = int(db.scalar(select(func.sum(longest.c.rows))) or 0)
+    Meter(order.meter).tell(progress)
+    _require_room(order)
+
+
+def _require_room(order: Order) -> None:
+    if shutil.disk_usage(order.to.parent).free < order.keep_free_bytes:
+        raise _DiskNearlyFullError
+
+
+def _no_room(order: Order) -> NotMade:
+    keep_gb = order.keep_free_bytes / 1e9
+    return NotMade(
+        f"the disk has less than {keep_gb:.1f} GB left, which are kept for running sessions",
+        "Free space on the server's disk (the page Storage shows what takes it), or export to"
+        " another disk on the server: reembody export --to FOLDER.",
+    )

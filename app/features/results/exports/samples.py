@@ -1,0 +1,88 @@
+"""The frames of a session as one wide CSV, written while it is read.
+
+A session of eight minutes has eight million numbers, so they are printed by one call a piece: the
+JSON writer of pydantic prints numbers, true, false and null in C, and with the brackets taken off
+its lists are CSV rows. Nothing but numbers and our own words stands in these files, so no cell
+needs quotes.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from pydantic_core import to_json
+from sqlalchemy.orm import Session
+
+from app.features.results.analysis.codebook import columns_of
+from app.features.results.exports.pairing import Rows, Side, paired_rows
+from app.features.results.exports.shortest import shortest_doubles
+from app.features.telemetry.frames import epochs_of, iter_frames
+from app.wire import VALUES_PER_FRAME, StreamName, flag_frames
+
+ACTIVE_BIT = 1
+_MISSING: list[float | None] = [None] * VALUES_PER_FRAME
+
+
+@dataclass(frozen=True)
+class SampleFile:
+    """A session's file: `pieces()` reads it from the database as it goes; `rows` counts."""
+
+    db: Session
+    session_id: str
+    simulated: bool
+    avatar: str
+
+    def pieces(self) -> Iterator[bytes]:
+        """The file in pieces of about a second of movement."""
+        yield (",".join(column.name for column in columns_of("samples")) + "\n").encode()
+        start = f"{'true' if self.simulated else 'false'},{self.avatar},"
+        for epoch in self._epochs():
+            target, actual = (
+                iter_frames(self.db, self.session_id, stream, epoch)
+                for stream in (StreamName.TARGET, StreamName.ACTUAL)
+            )
+            for rows in paired_rows(target, actual):
+                yield _csv(rows, f"{start}{epoch},".encode())
+
+    def _epochs(self) -> list[int]:
+        streams = (StreamName.TARGET, StreamName.ACTUAL)
+        return sorted(
+            {e for stream in streams for e in epochs_of(self.db, self.session_id, stream)}
+        )
+
+
+def _csv(rows: Rows, start: bytes) -> bytes:
+    head = _head(rows)
+    table = [
+        [*own, *target, *actual]
+        for own, target, actual in zip(
+            head, _values(rows.target), _values(rows.actual), strict=True
+        )
+    ]
+    text = to_json(table, inf_nan_mode="constants")[2:-2]
+    return start + text.replace(b"null", b"").replace(b"],[", b"\n" + start) + b"\n"
+
+
+def _head(rows: Rows) -> list[tuple[int, int, float, bool, bool]]:
+    """seq, phase_id, t_s, active and flagged of each row; of the target where it has a frame."""
+    count = len(rows.seq)
+    phase_id = np.zeros(count, np.int64)
+    t_s = np.zeros(count)
+    active = np.zeros(count, np.bool_)
+    flagged = np.zeros(count, np.bool_)
+    for side in (rows.actual, rows.target):
+        phase_id[side.present] = side.phase_id
+        t_s[side.present] = side.times_s
+        active[side.present] = (side.flags & ACTIVE_BIT) > 0
+        if len(side.values):
+            flagged[side.present] |= flag_frames(side.times_s, side.values).bad
+    columns = (rows.seq, phase_id, t_s, active, flagged)
+    return list(zip(*(column.tolist() for column in columns), strict=True))
+
+
+def _values(side: Side) -> list[list[float | None]]:
+    """The numbers of each row; empty cells where the stream has no frame."""
+    if not len(side.values):
+        return [_MISSING] * len(side.present)
+    own = iter(shortest_doubles(side.values).tolist())
+    return [next(own) if present else _MISSING for present in side.present.tolist()]

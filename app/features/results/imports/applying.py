@@ -1,0 +1,250 @@
+"""From the cells of a file to forms, with every problem of every cell before anything is stored.
+
+A cell becomes an answer in three steps: a word that was given a number becomes that number; a
+number x becomes multiply * x + add; an item that the file has turned round is turned back. What
+comes out must be a possible answer to the item, or the cell is a problem.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from datetime import date, datetime
+
+from app.features.results.imports.schemas import CellProblem, ColumnSet, Mapping
+from app.features.results.imports.sheet import Sheet, SheetRow
+from app.science.instruments import Instrument, score_answers
+from app.science.instruments.answers import fits, valid_answers
+from app.science.instruments.model import Item
+
+MISSING = frozenset({"", "na", "n/a", "nan", "null", ".", "-99"})
+"""What stands for no answer. Not "none": on many scales that is an answer."""
+_YES_NO = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
+_DATES = {
+    "iso": ("%Y-%m-%d", "%Y/%m/%d"),
+    "day_first": ("%d.%m.%Y", "%d/%m/%Y", "%d-%m-%Y"),
+    "month_first": ("%m/%d/%Y", "%m-%d-%Y"),
+}
+_SHOWN = 60
+MAX_CODE = 80
+Value = float | str | bool | None
+
+
+@dataclass(frozen=True)
+class Form:
+    """One filled-in form of the file."""
+
+    line: int
+    participant_code: str
+    condition: str
+    in_study: bool
+    answered_on: date | None
+    answers: dict[str, Value]
+    scores: dict[str, float | None]
+
+
+@dataclass
+class Applied:
+    """Forms and problems; `unknown_words`: answers in words that were given no number.
+
+    `missing`: empty cells of forms. `numbers`: by item, what was told in numbers, unchanged.
+    """
+
+    forms: list[Form] = field(default_factory=list)
+    problems: list[CellProblem] = field(default_factory=list)
+    unknown_words: dict[str, None] = field(default_factory=dict)
+    numbers: dict[str, list[float]] = field(default_factory=dict)
+    skipped_rows: int = 0
+    missing: int = 0
+
+
+def apply_mapping(
+    sheet: Sheet, mapping: Mapping, instrument: Instrument, study_conditions: frozenset[str]
+) -> Applied:
+    """Every form of the file; raises InvalidInput where a column is not there at all."""
+    return _Run(sheet, mapping, instrument, study_conditions).forms()
+
+
+class _Run:
+    def __init__(
+        self,
+        sheet: Sheet,
+        mapping: Mapping,
+        instrument: Instrument,
+        study_conditions: frozenset[str],
+    ) -> None:
+        self._sheet, self._mapping, self._instrument = sheet, mapping, instrument
+        self._study = study_conditions
+        self._words = {word.casefold(): number for word, number in mapping.words.items()}
+        self._turned = frozenset(mapping.turned)
+        self._out = Applied()
+        names = [mapping.participant, mapping.condition, mapping.date]
+        names += [column for one in mapping.sets for column in one.items.values()]
+        self._at = {name: sheet.column(name) for name in names if name is not None}
+
+    def forms(self) -> Applied:
+        for row in self._sheet.rows:
+            found = [form for one in self._mapping.sets for form in self._form(row, one)]
+            self._out.skipped_rows += not found
+            self._out.forms += found
+        self._find_doubled()
+        return self._out
+
+    def _form(self, row: SheetRow, columns: ColumnSet) -> Iterator[Form]:
+        cells = {item: self._cell(row, name) for item, name in columns.items.items()}
+        if all(self._is_missing(cell) for cell in cells.values()):
+            return
+        answers: dict[str, Value] = dict.fromkeys(self._instrument.by_key)
+        before = len(self._out.problems)
+        for item, cell in cells.items():
+            answers[item] = self._answer(row, columns.items[item], item, cell)
+        condition = self._condition(row, columns)
+        code = self._code(row)
+        day = self._day(row)
+        fit = len(self._out.problems) == before
+        yield Form(
+            line=row.line,
+            participant_code=code,
+            condition=condition,
+            in_study=condition in self._study,
+            answered_on=day,
+            answers=answers,
+            scores=score_answers(self._instrument, answers) if fit else {},
+        )
+
+    def _answer(self, row: SheetRow, column: str, key: str, cell: str) -> Value:
+        if self._is_missing(cell):
+            self._out.missing += 1
+            return None
+        item = self._instrument.by_key[key]
+        value = self._value(item, cell)
+        if value is None:
+            self._out.unknown_words[cell[:_SHOWN]] = None
+            self._tell(row, column, "These words have no number.", "Give the word a number above.")
+        elif not fits(self._instrument, item, value):
+            became = f" (becomes {value:g})" if isinstance(value, float) else ""
+            valid = valid_answers(self._instrument, item)
+            self._tell(
+                row,
+                column,
+                f"{key}: not a possible answer{became}; it must be {valid}.",
+                "Correct it in the file, or change how numbers are read.",
+            )
+            return None
+        return value
+
+    def _value(self, item: Item, cell: str) -> Value:
+        """None for words that mean nothing yet."""
+        if item.type == "text":
+            return cell
+        if item.type == "choice":
+            labels = {
+                text.casefold(): one.key for one in item.choices for text in one.label.values()
+            }
+            return labels.get(cell.casefold(), cell)
+        if item.type == "boolean":
+            return _YES_NO.get(cell.casefold())
+        number = self._words.get(cell.casefold(), self._labels(item).get(cell.casefold()))
+        if number is None:
+            number = self._number(cell)
+            if number is None:
+                return None
+            self._out.numbers.setdefault(item.key, []).append(number)
+            number = self._mapping.multiply * number + self._mapping.add
+        return self._turn_back(item, number)
+
+    def _is_missing(self, cell: str) -> bool:
+        word = cell.casefold()
+        return word in MISSING and word not in self._words
+
+    def _labels(self, item: Item) -> dict[str, float]:
+        """The scale's own words, where every step has one."""
+        scale = self._instrument.scale_of(item)
+        if scale is None or len(scale.labels) != len(scale.steps):
+            return {}
+        return {
+            text.strip().casefold(): float(step)
+            for step, label in zip(scale.steps, scale.labels, strict=True)
+            for text in label.values()
+        }
+
+    def _number(self, cell: str) -> float | None:
+        text = cell.replace(",", ".") if self._sheet.separator != "," else cell
+        if not text.isascii() or "_" in text or not any(letter.isdigit() for letter in text):
+            return None
+        try:
+            number = float(text)
+        except ValueError:
+            return None
+        return number if math.isfinite(number) else None
+
+    def _turn_back(self, item: Item, number: float) -> float:
+        scale = self._instrument.scale_of(item)
+        if item.key not in self._turned or scale is None:
+            return number
+        return scale.minimum + scale.maximum - number
+
+    def _condition(self, row: SheetRow, columns: ColumnSet) -> str:
+        name = self._mapping.condition
+        word = columns.condition or "" if name is None else self._cell(row, name)
+        if name is not None and not word:
+            self._tell(row, name, "The condition is missing.", "Fill it in, or remove the row.")
+        if len(word) > MAX_CODE and name is not None:
+            self._tell(row, name, "The condition is too long.", f"At most {MAX_CODE} letters.")
+        return self._mapping.conditions.get(word, word)[:MAX_CODE]
+
+    def _code(self, row: SheetRow) -> str:
+        name = self._mapping.participant
+        code = self._cell(row, name)
+        if not code:
+            self._tell(row, name, "The participant is missing.", "Fill it in, or remove the row.")
+        elif "@" in code:
+            self._tell(
+                row, name, "An e-mail address is no pseudonym.", "Replace addresses by codes first."
+            )
+        elif len(code) > MAX_CODE:
+            self._tell(row, name, "The code is too long.", f"At most {MAX_CODE} letters.")
+        return code
+
+    def _day(self, row: SheetRow) -> date | None:
+        name = self._mapping.date
+        cell = "" if name is None else self._cell(row, name)
+        if name is None or not cell:
+            return None
+        for pattern in _DATES[self._mapping.date_order]:
+            try:
+                return datetime.strptime(cell.split("T")[0].split(" ")[0], pattern).date()  # noqa: DTZ007 - a day has no zone
+            except ValueError:
+                continue
+        self._tell(row, name, "This is no date in the chosen order.", "Choose another order.")
+        return None
+
+    def _find_doubled(self) -> None:
+        first: dict[tuple[str, str], int] = {}
+        for form in self._out.forms:
+            key = (form.participant_code, form.condition)
+            if key in first and form.participant_code:
+                said = f" in {form.condition!r}" if form.condition else ""
+                self._out.problems.append(
+                    CellProblem(
+                        line=form.line,
+                        column=self._mapping.participant,
+                        value=form.participant_code[:_SHOWN],
+                        message=f"Answered{said} before, in line {first[key]}.",
+                        remedy="Name the column that tells them apart as the condition.",
+                    )
+                )
+            first.setdefault(key, form.line)
+
+    def _cell(self, row: SheetRow, name: str) -> str:
+        return row.cells[self._at[name]].strip()
+
+    def _tell(self, row: SheetRow, column: str, message: str, remedy: str) -> None:
+        self._out.problems.append(
+            CellProblem(
+                line=row.line,
+                column=column,
+                value=self._cell(row, column)[:_SHOWN],
+                message=message,
+                remedy=remedy,
+            )
+        )

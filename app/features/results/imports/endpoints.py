@@ -1,0 +1,169 @@
+"""Answers collected elsewhere over HTTP: look, check, take in, list, undo."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from fastapi import APIRouter, Response
+from sqlalchemy.orm import Session
+
+from app.errors import ReembodyError
+from app.features.audit.service import record
+from app.features.care.rights.service import (
+    expect_erasure,
+    forget_erasure,
+    in_browser_of,
+    overwrite,
+    record_copy,
+)
+from app.features.context import AppContext
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.results.imports.looking import check, look
+from app.features.results.imports.schemas import (
+    CheckRequest,
+    CheckView,
+    ErasedImported,
+    EraseImportedRequest,
+    ImportDetail,
+    ImportRequest,
+    ImportView,
+    LookRequest,
+    LookView,
+    UndoRequest,
+)
+from app.features.results.imports.service import erase_imported, take_in, undo
+from app.features.results.imports.stored import (
+    as_csv,
+    forms_of,
+    import_by_id,
+    import_view,
+    imports_of,
+    instrument_of_import,
+)
+from app.features.studies.service import study_by_key
+
+router = APIRouter(tags=["imports"], prefix="/studies/{key}/imports")
+
+
+@router.post("/look")
+def post_look(key: str, request: LookRequest, db: Reading, _: SignedIn) -> LookView:
+    """What a file holds and probably means; nothing is stored."""
+    return look(db, study_by_key(db, key), request)
+
+
+@router.post("/check")
+def post_check(key: str, request: CheckRequest, db: Reading, _: SignedIn) -> CheckView:
+    """What an import would do, with every cell that does not fit; nothing is stored."""
+    return check(db, study_by_key(db, key), request.text, request.mapping)
+
+
+@router.post("", status_code=201)
+def post_import(
+    key: str, request: ImportRequest, db: Writing, context: Context, caller: SignedIn
+) -> ImportView:
+    """Take a file in: every form or none."""
+    study = study_by_key(db, key)
+    now = context.clock.utc_now()
+    return import_view(db, take_in(db, study, request, actor=caller.actor, now=now))
+
+
+@router.get("")
+def get_imports(key: str, db: Reading, _: SignedIn) -> list[ImportView]:
+    """Every import of a study, newest first; undone ones too."""
+    return [import_view(db, row) for row in imports_of(db, study_by_key(db, key))]
+
+
+@router.get("/{import_id}")
+def get_import(key: str, import_id: str, db: Reading, _: SignedIn) -> ImportDetail:
+    """One import, and what its scores came to."""
+    # Loads scipy, which the start of the server need not wait for.
+    from app.features.results.imports.results import results_of
+
+    row = import_by_id(db, study_by_key(db, key), import_id)
+    results = results_of(instrument_of_import(db, row), forms_of(db, row))
+    return ImportDetail(view=import_view(db, row), results=results)
+
+
+@router.get(
+    "/{import_id}/table",
+    response_class=Response,
+    responses={200: {"content": {"text/csv": {}}, "description": "Forms, answers and scores."}},
+)
+def get_import_table(
+    key: str, import_id: str, db: Writing, context: Context, caller: SignedIn
+) -> Response:
+    """The forms of an import as CSV; every row says that it is imported."""
+    study = study_by_key(db, key)
+    row = import_by_id(db, study, import_id)
+    body = as_csv(study, instrument_of_import(db, row), row, forms_of(db, row)).encode()
+    now = context.clock.utc_now()
+    # People's data leave the database: whoever must erase them has to know.
+    record_copy(
+        db,
+        kind="export",
+        study_id=study.id,
+        session_kind="people",
+        place=f"{in_browser_of(caller.actor)}: imported answers {row.id}",
+        by=caller.actor,
+        now=now,
+        sessions=0,
+        size_bytes=len(body),
+    )
+    record(
+        db,
+        actor=caller.actor,
+        action="study.exported",
+        subject=f"study:{study.key}",
+        details={"import": row.id},
+        now=now,
+    )
+    name = f"{key}_imported_{row.instrument}_{row.id[:8]}.csv"
+    return Response(
+        body,
+        media_type="text/csv; charset=utf-8",
+        headers={"content-disposition": f'attachment; filename="{name}"'},
+    )
+
+
+@router.post("/{import_id}/undo")
+def post_undo(
+    key: str, import_id: str, request: UndoRequest, context: Context, caller: SignedIn
+) -> ImportView:
+    """Take the forms of an import away; who did it and why stays."""
+    with _erasing(context) as db:
+        study = study_by_key(db, key)
+        row = import_by_id(db, study, import_id, lock=True)
+        now = context.clock.utc_now()
+        undo(db, row, reason=request.reason, actor=caller.actor, now=now)
+    with context.database.reading() as db:
+        return import_view(db, import_by_id(db, study_by_key(db, key), import_id))
+
+
+@router.post("/erase")
+def post_erase_imported(
+    key: str, request: EraseImportedRequest, context: Context, caller: SignedIn
+) -> ErasedImported:
+    """Take away what all files of a study say of one participant."""
+    with _erasing(context) as db:
+        gone = erase_imported(
+            db,
+            study_by_key(db, key),
+            request.participant_code,
+            confirm=request.confirm,
+            actor=caller.actor,
+            now=context.clock.utc_now(),
+        )
+    return ErasedImported(forms=gone)
+
+
+@contextmanager
+def _erasing(context: AppContext) -> Iterator[Session]:
+    """A transaction that removes what people said, and then the bytes, as an erasure does."""
+    new = expect_erasure(context.settings)
+    try:
+        with context.database.writing() as db:
+            yield db
+    except ReembodyError:
+        if new:
+            forget_erasure(context.settings)
+        raise
+    overwrite(context.database, context.settings)

@@ -1,0 +1,143 @@
+"""Looking at a file and checking what is said of it; nothing is stored."""
+
+from collections import Counter
+
+from sqlalchemy.orm import Session
+
+from app.features.instruments.service import parsed_instruments
+from app.features.results.imports.applying import Applied, Form, apply_mapping
+from app.features.results.imports.proposing import likely_instrument, propose
+from app.features.results.imports.reading import applied_to, known_instrument
+from app.features.results.imports.schemas import (
+    CheckView,
+    ConditionCount,
+    FileColumn,
+    FormPreview,
+    LookRequest,
+    LookView,
+    Mapping,
+    Shift,
+)
+from app.features.results.imports.sheet import Sheet, read_sheet
+from app.features.results.imports.stored import import_view, imports_of, standing
+from app.features.results.imports.warnings import looks_turned, reversed_items, shift_of
+from app.features.studies.service import newest_version, protocol_of
+from app.models import Study
+from app.protocol.canonical import sha256_of
+from app.science.instruments import Instrument
+
+_EXAMPLES, _SHOWN_ROWS, _SHOWN_PROBLEMS, _SHOWN_WORDS = 6, 6, 200, 60
+_WIDTH = 80
+
+
+def look(db: Session, study: Study, request: LookRequest) -> LookView:
+    """What a file holds and probably means; nothing is stored. Raises InvalidInput, NotFound."""
+    sheet = read_sheet(request.text, request.header_rows)
+    known = parsed_instruments(db)
+    key = request.instrument or likely_instrument(sheet, known)
+    instrument = known_instrument(known, key)
+    remembered = _remembered(db, study, key, sheet)
+    protocol = protocol_of(newest_version(db, study))
+    proposal = remembered or propose(sheet, instrument, protocol)
+    same = standing(db, study, key, sha256_of(request.text))
+    return LookView(
+        separator=sheet.separator,
+        header_rows=sheet.header_rows,
+        rows=len(sheet.rows),
+        columns=[_column(sheet, at) for at in range(len(sheet.header))],
+        first_rows=[[cell[:_WIDTH] for cell in row.cells] for row in sheet.rows[:_SHOWN_ROWS]],
+        instrument=key,
+        proposal=proposal,
+        remembered=remembered is not None,
+        words=_answers_in_words(sheet, proposal, instrument),
+        condition_words=_condition_words(sheet, proposal),
+        same_file=None if same is None else import_view(db, same),
+    )
+
+
+def check(db: Session, study: Study, text: str, mapping: Mapping) -> CheckView:
+    """What an import would do; nothing is stored. Raises InvalidInput, NotFound."""
+    instrument, applied = applied_to(db, study, text, mapping)
+    turning = reversed_items(instrument)
+    conditions = Counter((form.condition, form.in_study) for form in applied.forms)
+    items = {item for one in mapping.sets for item in one.items}
+    return CheckView(
+        forms=len(applied.forms),
+        participants=len({form.participant_code for form in applied.forms}),
+        skipped_rows=applied.skipped_rows,
+        missing_answers=applied.missing,
+        conditions=[
+            ConditionCount(condition=name, in_study=own, forms=count)
+            for (name, own), count in conditions.items()
+        ],
+        problems=applied.problems[:_SHOWN_PROBLEMS],
+        n_problems=len(applied.problems),
+        unknown_words=list(applied.unknown_words)[:_SHOWN_WORDS],
+        shift=_shift(instrument, mapping, applied),
+        reversed_items=[key for key in turning if key in items],
+        notes=[*_not_mapped(instrument, items), *looks_turned(turning, applied.forms)],
+        first_forms=[_preview(form) for form in applied.forms[:_SHOWN_ROWS]],
+    )
+
+
+def _remembered(db: Session, study: Study, key: str, sheet: Sheet) -> Mapping | None:
+    """What was said of the newest file with these columns."""
+    for row in imports_of(db, study):
+        mapping = Mapping.model_validate(row.mapping)
+        names = {mapping.participant, mapping.condition, mapping.date} - {None}
+        names |= {column for one in mapping.sets for column in one.items.values()}
+        same_heads = mapping.header_rows == sheet.header_rows
+        if row.instrument == key and names <= set(sheet.header) and same_heads:
+            return mapping
+    return None
+
+
+def _column(sheet: Sheet, at: int) -> FileColumn:
+    values = [row.cells[at].strip() for row in sheet.rows]
+    distinct = list(dict.fromkeys(value for value in values if value))
+    return FileColumn(
+        name=sheet.header[at],
+        label=sheet.labels[at][:_WIDTH] if at < len(sheet.labels) else "",
+        filled=sum(bool(value) for value in values),
+        distinct=len(distinct),
+        examples=[value[:_WIDTH] for value in distinct[:_EXAMPLES]],
+    )
+
+
+def _answers_in_words(sheet: Sheet, mapping: Mapping | None, instrument: Instrument) -> list[str]:
+    if mapping is None:
+        return []
+    applied = apply_mapping(sheet, mapping, instrument, frozenset())
+    return [*mapping.words, *applied.unknown_words][:_SHOWN_WORDS]
+
+
+def _condition_words(sheet: Sheet, mapping: Mapping | None) -> list[str]:
+    if mapping is None:
+        return []
+    if mapping.condition is None:
+        return [one.condition for one in mapping.sets if one.condition is not None]
+    return list(dict.fromkeys(filter(None, sheet.values(mapping.condition))))[:_SHOWN_WORDS]
+
+
+def _shift(instrument: Instrument, mapping: Mapping, applied: Applied) -> Shift | None:
+    plain = mapping.multiply == 1.0 and mapping.add == 0.0
+    return shift_of(instrument, applied.numbers) if plain and applied.problems else None
+
+
+def _not_mapped(instrument: Instrument, items: set[str]) -> list[str]:
+    lacking = [key for key in instrument.by_key if key not in items]
+    if not lacking:
+        return []
+    return [f"No column for {', '.join(lacking)}: scores that need them stay empty."]
+
+
+def _preview(form: Form) -> FormPreview:
+    return FormPreview(
+        line=form.line,
+        participant_code=form.participant_code,
+        condition=form.condition,
+        in_study=form.in_study,
+        answered_on=form.answered_on,
+        answers=form.answers,
+        scores=form.scores,
+    )

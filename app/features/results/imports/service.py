@@ -1,0 +1,151 @@
+"""Imports: taking a file of answers in as a whole, undoing that, and forgetting a participant.
+
+An import is one transaction: either every form of the file is stored or none. The same file is not
+taken in twice for the same instrument. Undoing takes the forms away; who did it and why stays.
+"""
+
+from datetime import datetime
+from typing import Any, cast
+
+from sqlalchemy import CursorResult, delete, insert, select
+from sqlalchemy.orm import Session
+
+from app.errors import Conflict, InvalidInput, NotFound
+from app.features.audit.service import record
+from app.features.instruments.service import newest_instruments
+from app.features.results.imports.applying import Form
+from app.features.results.imports.reading import applied_to
+from app.features.results.imports.schemas import ImportRequest
+from app.features.results.imports.stored import import_files as import_files
+from app.features.results.imports.stored import standing
+from app.features.results.imports.stored import told_of as told_of
+from app.models import AnswerImport, ImportedForm, Study
+from app.models.types import new_id
+from app.protocol.canonical import sha256_of
+
+_SHOWN_PROBLEMS = 200
+
+
+def take_in(
+    db: Session, study: Study, request: ImportRequest, *, actor: str, now: datetime
+) -> AnswerImport:
+    """Store every form of a file, or none.
+
+    Raises InvalidInput with each cell that does not fit, Conflict where this file is in already.
+    """
+    mapping = request.mapping
+    instrument, applied = applied_to(db, study, request.text, mapping)
+    content_hash = sha256_of(request.text)
+    # The same file at the same time: the second waits here, and is then refused.
+    db.execute(select(Study.id).where(Study.id == study.id).with_for_update(key_share=True))
+    _refuse_second(db, study, mapping.instrument, content_hash)
+    if applied.problems or not applied.forms:
+        raise InvalidInput(
+            f"{len(applied.problems)} cells cannot be taken in; nothing was stored"
+            if applied.problems
+            else "the file holds no answers; nothing was stored",
+            remedy="Look through the list, correct the file or what its columns mean, try again.",
+            details=[one.model_dump() for one in applied.problems[:_SHOWN_PROBLEMS]],
+        )
+    row = AnswerImport(
+        id=new_id(),
+        study_id=study.id,
+        instrument_version_id=newest_instruments(db)[instrument.key].id,
+        instrument=instrument.key,
+        file_name=request.file_name,
+        content_hash=content_hash,
+        mapping=mapping.model_dump(mode="json"),
+        forms=len(applied.forms),
+        imported_at=now,
+        imported_by=actor,
+    )
+    db.add(row)
+    db.flush()
+    db.execute(insert(ImportedForm), [_row(form, row) for form in applied.forms])
+    details = {"study": study.key, "instrument": row.instrument, "forms": row.forms}
+    record(
+        db,
+        actor=actor,
+        action="answer.imported",
+        subject=f"import:{row.id}",
+        details=details | {"content_hash": content_hash},
+        now=now,
+    )
+    return row
+
+
+def undo(db: Session, row: AnswerImport, *, reason: str, actor: str, now: datetime) -> None:
+    """Take the forms of an import away; raises Conflict where that was done before."""
+    if row.undone_at is not None:
+        raise Conflict("this import was undone before", value=row.id, remedy="Nothing is left.")
+    gone = _count(db, delete(ImportedForm).where(ImportedForm.import_id == row.id))
+    row.undone_at, row.undone_by, row.undone_reason = now, actor, reason
+    db.flush()
+    record(
+        db,
+        actor=actor,
+        action="answer.import_undone",
+        subject=f"import:{row.id}",
+        details={"forms": gone},
+        now=now,
+    )
+
+
+def forget_participant(db: Session, study_id: str, code: str) -> int:
+    """Take away what files say of a participant; how many forms went."""
+    own = (ImportedForm.study_id == study_id) & (ImportedForm.participant_code == code)
+    return _count(db, delete(ImportedForm).where(own))
+
+
+def _refuse_second(db: Session, study: Study, instrument: str, content_hash: str) -> None:
+    same = standing(db, study, instrument, content_hash)
+    if same is not None:
+        raise Conflict(
+            "this file was imported before, as answers to the same instrument",
+            value=same.file_name,
+            remedy="Open that import. Undo it first if it was wrong.",
+            details=[{"import_id": same.id, "imported_at": same.imported_at.isoformat()}],
+        )
+
+
+def _row(form: Form, of: AnswerImport) -> dict[str, Any]:
+    return {
+        "id": new_id(),
+        "import_id": of.id,
+        "study_id": of.study_id,
+        "line": form.line,
+        "participant_code": form.participant_code,
+        "condition": form.condition,
+        "in_study": form.in_study,
+        "answered_on": None if form.answered_on is None else form.answered_on.isoformat(),
+        "answers": form.answers,
+        "scores": form.scores,
+    }
+
+
+def _count(db: Session, statement: Any) -> int:
+    done = db.execute(statement.execution_options(synchronize_session=False))
+    return cast("CursorResult[Any]", done).rowcount
+
+
+def erase_imported(
+    db: Session, study: Study, code: str, *, confirm: str, actor: str, now: datetime
+) -> int:
+    """Forget a participant on request; raises InvalidInput where the code was typed otherwise,
+    NotFound where no file has it.
+    """
+    if confirm != code:
+        raise InvalidInput(
+            "the code that was typed is not this participant's",
+            value=confirm,
+            valid=code,
+            remedy="Type the code as it stands in the list, to be sure whom you mean.",
+        )
+    gone = forget_participant(db, study.id, code)
+    if not gone:
+        raise NotFound("no imported answers have this code", value=code)
+    details = {"forms": gone}
+    subject = f"study:{study.key}"
+    action = "answer.imported_erased"
+    record(db, actor=actor, action=action, subject=subject, details=details, now=now)
+    return gone

@@ -1,0 +1,90 @@
+"""Which version declared what, and how the protocol changed around the first session."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from app.features.results.preregistration.schemas import DeclarationView
+from app.features.studies.service import protocol_of
+from app.models import StudyVersion
+from app.protocol import ExclusionRule, Preregistration, PrimaryTest
+
+MEASURES = {
+    "contact_time": "contact time (s)",
+    "completions": "completed tasks",
+}
+TESTS = {
+    "friedman": "Friedman's test",
+    "page_trend": "Page's trend test",
+    "rm_anova": "analysis of variance with repeated measures (Greenhouse-Geisser)",
+    "against_reference": "exact Wilcoxon signed-rank tests against the reference",
+}
+DIRECTIONS = {"two_sided": "two-sided", "rises": "it rises", "falls": "it falls"}
+RULES = {
+    "complete_session": "sessions that were not completed",
+    "minimum_frame_rate_hz": "a task phase below {limit:g} frames a second",
+    "minimum_share_of_frames": "a task phase with less than {limit:.0%} of its time in frames",
+    "maximum_latency_error_ms": "a task phase whose latency is off by more than {limit:g} ms",
+    "minimum_active_time_s": "a task phase shorter than {limit:g} s of active time",
+    "maximum_straight_lined_forms": "more than {limit:g} forms with ratings all alike",
+}
+
+
+@dataclass(frozen=True)
+class Declared:
+    """The declaration that counts, and the version that made it first."""
+
+    preregistration: Preregistration
+    version: StudyVersion
+
+    def view(self, frozen_at: datetime | None) -> DeclarationView:
+        """As it travels."""
+        own = self.preregistration
+        return DeclarationView(
+            version=self.version.number,
+            content_hash=self.version.content_hash,
+            created_at=self.version.created_at,
+            frozen_at=frozen_at,
+            registration=own.registration,
+            alpha=own.alpha,
+            planned_n=own.planned_n,
+            section=own,
+            primary_words=primary_words(own.primary),
+            rules=[rule_words(rule) for rule in own.exclusions],
+        )
+
+
+def declared_in(version: StudyVersion) -> Preregistration | None:
+    """What a version declares."""
+    return protocol_of(version).preregistration
+
+
+def declaration_of(versions: list[StudyVersion]) -> Declared | None:
+    """The newest version's declaration, by the first version of the unbroken run that has it."""
+    newest = declared_in(versions[-1])
+    if newest is None:
+        return None
+    first = versions[-1]
+    for version in reversed(versions):
+        if declared_in(version) != newest:
+            break
+        first = version
+    return Declared(newest, first)
+
+
+def primary_words(primary: PrimaryTest) -> str:
+    """The test in a sentence."""
+    if primary.measure == "score":
+        measure = f"the score {primary.score} of {primary.instrument}"
+    else:
+        measure = MEASURES[primary.measure]
+    limb = {"both": "the mean of both tasks"}.get(primary.limb, f"the {primary.limb} task")
+    words = f"{TESTS[primary.test]} of {measure} in {limb}, by added latency"
+    if primary.reference is not None:
+        words += f", against {primary.reference}"
+    corrected = ", corrected by Holm's rule" if primary.correction == "holm" else ""
+    return f"{words}; {DIRECTIONS[primary.direction]}{corrected}."
+
+
+def rule_words(rule: ExclusionRule) -> str:
+    """Whom a rule leaves out."""
+    return RULES[rule.rule].format(limit=rule.limit if rule.limit is not None else 0.0)

@@ -1,0 +1,179 @@
+"""Every way in which what was done differs from what was declared, in plain words."""
+
+import json
+from collections.abc import Sequence
+from datetime import datetime
+from itertools import pairwise
+
+import pandas as pd
+
+from app.features.results.preregistration.declared import Declared, declared_in
+from app.features.results.preregistration.excluding import Excluded
+from app.features.results.preregistration.schemas import DeviationCode, DeviationView
+from app.features.results.preregistration.testing import Values
+from app.models import StudyVersion
+from app.protocol.difference import differences
+
+_SHOWN = 12
+
+
+def deviations_of(
+    declared: Declared,
+    versions: Sequence[StudyVersion],
+    sessions: pd.DataFrame,
+    excluded: Excluded,
+    found: Values,
+    n_corrected: int,
+) -> list[DeviationView]:
+    """Deviations first, notes last."""
+    told = [
+        *_versions(declared, versions, sessions),
+        *_numbers(declared, sessions, len(found.people)),
+        *_by_hand(declared, sessions),
+        *_unjudged(excluded),
+        *_values(found, n_corrected),
+        *_notes(declared),
+    ]
+    return sorted(told, key=lambda one: one.is_note)
+
+
+def _versions(
+    declared: Declared, versions: Sequence[StudyVersion], sessions: pd.DataFrame
+) -> list[DeviationView]:
+    told: list[DeviationView] = []
+    by_number = {version.number: version for version in versions}
+    # Of no sessions an empty list would choose columns.
+    elsewhere = pd.Series(
+        [
+            declared_in(by_number[int(n)]) != declared.preregistration
+            for n in sessions["study_version"]
+        ],
+        index=sessions.index,
+        dtype=bool,
+    )
+    other = sessions[elsewhere]
+    begun = other[other["started_at_utc"].notna()]
+    if not begun.empty:
+        numbers = ", ".join(str(n) for n in sorted(set(begun["study_version"])))
+        told.append(
+            _deviation(
+                "declared_late",
+                f"{_count(len(begun), 'session')} ran on version {numbers}, which did not declare "
+                "this: it was declared, or changed, after data were collected.",
+            )
+        )
+    starts = sessions["started_at_utc"].dropna()
+    if starts.empty:
+        return told
+    first: datetime = starts.min().to_pydatetime()
+    for before, after in pairwise(versions):
+        if after.created_at <= first:
+            continue
+        trees = (json.loads(one.canonical_json) for one in (before, after))
+        places = list(differences(*trees))
+        code: DeviationCode = "changed_since_start"
+        said = "the protocol"
+        if any(one.path[:1] == ("preregistration",) for one in places):
+            code, said = "declaration_changed", "the protocol and the declaration itself"
+        told.append(
+            _deviation(
+                code,
+                f"Version {after.number} changed {said} after the first session "
+                f"({_count(len(places), 'place')}; Versions shows each).",
+            )
+        )
+    return told
+
+
+def _numbers(declared: Declared, sessions: pd.DataFrame, n: int) -> list[DeviationView]:
+    told = []
+    planned = declared.preregistration.planned_n
+    still = int(sessions["status"].isin(["planned", "active"]).sum())
+    if still:
+        told.append(
+            _note("still_open", f"{_count(still, 'session')} not over yet: not in the test.")
+        )
+    if n < planned:
+        said = f"{n} of {planned} declared participants are in the test."
+        told.append(_deviation("n_short", f"{said} A test before the last one is an interim look."))
+    if n > planned:
+        told.append(
+            _deviation("n_over", f"{n} participants are in the test; {planned} were declared.")
+        )
+    return told
+
+
+def _by_hand(declared: Declared, sessions: pd.DataFrame) -> list[DeviationView]:
+    rules = {rule.rule for rule in declared.preregistration.exclusions}
+    broken = sessions[sessions["status"].isin(["aborted", "withdrawn"])]
+    if broken.empty or "complete_session" in rules:
+        return []
+    names = _names(list(broken["participant_code"]))
+    return [
+        _deviation(
+            "left_out_by_hand",
+            f"{_count(len(broken), 'session')} broken off and left out, though no declared rule "
+            f"says so: {names}.",
+        )
+    ]
+
+
+def _unjudged(excluded: Excluded) -> list[DeviationView]:
+    return [
+        _deviation(
+            "not_judged",
+            f"The rule {rule} could not be judged for {_names(codes)}: nothing was measured. They "
+            "were not left out by it.",
+        )
+        for rule, codes in excluded.not_judged.items()
+    ]
+
+
+def _values(found: Values, n_corrected: int) -> list[DeviationView]:
+    told = []
+    if found.lacking:
+        told.append(
+            _deviation(
+                "missing_values",
+                f"{_names(list(found.lacking))} left out for a missing value in a condition, not "
+                "by a declared rule.",
+            )
+        )
+    if n_corrected:
+        where = "corrections.csv of the export has each with its reason."
+        said = f"{_count(n_corrected, 'answer')} corrected after it was given; {where}"
+        told.append(_note("corrected", said))
+    return told
+
+
+def _notes(declared: Declared) -> list[DeviationView]:
+    told = []
+    if not declared.preregistration.registration:
+        told.append(
+            _note(
+                "not_registered",
+                "No registration is named: this declaration is dated and hashed by this server "
+                "only. A registry (OSF, AsPredicted) makes the date independent of the lab.",
+            )
+        )
+    told.append(
+        _note("exploratory", "Every other test, the Statistics page included, is exploratory.")
+    )
+    return told
+
+
+def _names(codes: list[str]) -> str:
+    more = len(codes) - _SHOWN
+    return ", ".join(codes[:_SHOWN]) + (f" and {more} more" if more > 0 else "")
+
+
+def _count(n: int, what: str) -> str:
+    return f"{n} {what}{'' if n == 1 else 's'}"
+
+
+def _deviation(code: DeviationCode, text: str) -> DeviationView:
+    return DeviationView(code=code, is_note=False, text=text)
+
+
+def _note(code: DeviationCode, text: str) -> DeviationView:
+    return DeviationView(code=code, is_note=True, text=text)

@@ -1,0 +1,78 @@
+"""What was done of what was declared, from the record as it stands."""
+
+from datetime import datetime
+from typing import cast
+
+from sqlalchemy.orm import Session
+
+from app.features.results.analysis.tables import Kind, corrections_table
+from app.features.results.preregistration.declared import Declared, declared_in
+from app.features.results.preregistration.deviating import deviations_of
+from app.features.results.preregistration.excluding import BEGUN, Tables, exclude, read_tables
+from app.features.results.preregistration.schemas import PreregistrationView, PrimaryResult
+from app.features.results.preregistration.testing import Values, make_test, values_of
+from app.features.studies.service import newest_version, protocol_of, versions_of
+from app.models import Study, StudyVersion
+from app.science.statistics import StatisticsError
+
+FEWEST = 2
+
+
+def done(
+    db: Session, study: Study, declared: Declared, view: PreregistrationView
+) -> PreregistrationView:
+    """The view filled in: who is in the test, its result, every deviation."""
+    kind = cast("Kind", view.kind)
+    versions = versions_of(db, study)
+    protocol = protocol_of(newest_version(db, study))
+    tables = read_tables(db, study.key, kind)
+    excluded = exclude(tables, declared.preregistration.exclusions)
+    # Broken-off sessions count in no test, whether or not a rule says so.
+    completed = tables.sessions[tables.sessions["status"] == "completed"]
+    kept = set(completed["session_id"]) - excluded.session_ids
+    found = values_of(db, tables, protocol, kind, kept)
+    result, why = _result(declared, found)
+    return view.model_copy(
+        update={
+            "declaration": declared.view(_frozen_at(versions, declared)),
+            "sessions": int(tables.sessions["status"].isin(BEGUN).sum()),
+            "excluded": excluded.found,
+            "included": len(found.people),
+            "result": result,
+            "why_no_result": why,
+            "deviations": deviations_of(
+                declared,
+                versions,
+                tables.sessions,
+                excluded,
+                found,
+                _n_corrected(db, study.key, kind, tables),
+            ),
+        }
+    )
+
+
+def _result(declared: Declared, found: Values) -> tuple[PrimaryResult | None, str | None]:
+    if len(found.people) < FEWEST:
+        return None, "Fewer than two participants have every value: there is nothing to test yet."
+    try:
+        return make_test(declared.preregistration, found), None
+    except StatisticsError as error:
+        return None, str(error)
+
+
+def _frozen_at(versions: list[StudyVersion], declared: Declared) -> datetime | None:
+    """When the first session started on a version that declares just this."""
+    frozen = [
+        version.frozen_at
+        for version in versions
+        if version.number >= declared.version.number
+        and version.frozen_at is not None
+        and declared_in(version) == declared.preregistration
+    ]
+    return min(frozen, default=None)
+
+
+def _n_corrected(db: Session, study_key: str, kind: Kind, tables: Tables) -> int:
+    rows = corrections_table(db, study_key, kind)
+    return int(rows["session_id"].isin(set(tables.sessions["session_id"])).sum())

@@ -1,0 +1,158 @@
+"""The declared rules, applied to every session that was begun: who is left out, and why.
+
+A rule that cannot be judged, since nothing was measured, leaves nobody out; that is told.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import pandas as pd
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.results.analysis.tables import (
+    Kind,
+    answers_table,
+    phases_table,
+    quality_table,
+    sessions_table,
+)
+from app.features.results.preregistration.schemas import ExclusionView
+from app.features.studies.service import instrument_of
+from app.models import InstrumentVersion
+from app.protocol import ExclusionRule
+
+FEWEST_ALIKE = 5
+"""Ratings of a form from which on being all alike says something."""
+BEGUN = ("completed", "aborted", "withdrawn")
+
+
+@dataclass
+class Tables:
+    """The rows of a study's sessions of one kind that the rules and the test look at."""
+
+    sessions: pd.DataFrame
+    phases: pd.DataFrame
+    quality: pd.DataFrame
+    answers: pd.DataFrame
+    one_sided: frozenset[tuple[str, int]]
+
+    @property
+    def tasks(self) -> pd.DataFrame:
+        """Task phases that count."""
+        return self.phases[(self.phases["phase_kind"] == "task") & self.phases["valid"]]
+
+
+@dataclass
+class Excluded:
+    """Who is left out, and which rules could not be judged of whom."""
+
+    found: list[ExclusionView] = field(default_factory=list)
+    not_judged: dict[str, list[str]] = field(default_factory=dict)
+    session_ids: set[str] = field(default_factory=set)
+
+
+def read_tables(db: Session, study_key: str, kind: Kind) -> Tables:
+    """Read what is needed."""
+    instruments = [instrument_of(row) for row in db.scalars(select(InstrumentVersion))]
+    return Tables(
+        sessions=sessions_table(db, study_key, kind),
+        phases=phases_table(db, study_key, kind),
+        quality=quality_table(db, study_key, kind),
+        answers=answers_table(db, study_key, kind),
+        # Where every item points the same way, all at the lowest is an honest answer.
+        one_sided=frozenset(
+            (one.key, one.version)
+            for one in instruments
+            if not any(item.reverse_keyed for item in one.items)
+        ),
+    )
+
+
+def exclude(tables: Tables, rules: tuple[ExclusionRule, ...]) -> Excluded:
+    """Apply every rule to every session that is over."""
+    out = Excluded()
+    over = tables.sessions[tables.sessions["status"].isin(BEGUN)]
+    rows = over[["session_id", "participant_code", "status"]]
+    for session_id, code, status in rows.itertuples(index=False, name=None):
+        for rule in rules:
+            if rule.rule == "complete_session":
+                told = None if status == "completed" else f"the session was {status}"
+            elif status != "completed":
+                continue
+            else:
+                told = _JUDGES[rule.rule](tables, session_id, rule.limit or 0.0)
+            if told == NOT_JUDGED:
+                out.not_judged.setdefault(rule.rule, []).append(code)
+            elif told is not None:
+                out.found.append(ExclusionView(participant_code=code, rule=rule.rule, reason=told))
+                out.session_ids.add(session_id)
+    return out
+
+
+NOT_JUDGED = "?"
+Judge = Callable[[Tables, str, float], str | None]
+
+
+def _frame_rate(tables: Tables, session_id: str, limit: float) -> str | None:
+    values = _quality(tables, session_id)["frame_rate_hz"].dropna()
+    if values.empty:
+        return NOT_JUDGED
+    lowest = float(values.min())
+    return None if lowest >= limit else f"{lowest:.1f} frames a second, declared {limit:g}"
+
+
+def _share(tables: Tables, session_id: str, limit: float) -> str | None:
+    rows = _quality(tables, session_id)
+    rows = rows[rows["span_s"] > 0]
+    if rows.empty:
+        return NOT_JUDGED
+    lowest = float((1.0 - rows["gap_s"] / rows["span_s"]).min())
+    return None if lowest >= limit else f"{lowest:.1%} of the time in frames, declared {limit:.1%}"
+
+
+def _latency(tables: Tables, session_id: str, limit: float) -> str | None:
+    rows = _of(tables.tasks, session_id).dropna(subset=["achieved_latency_ms"])
+    if rows.empty:
+        return NOT_JUDGED
+    worst = float((rows["achieved_latency_ms"] - rows["latency_ms"]).abs().max())
+    return None if worst <= limit else f"latency off by {worst:.0f} ms, declared {limit:g} ms"
+
+
+def _active(tables: Tables, session_id: str, limit: float) -> str | None:
+    values = _of(tables.tasks, session_id)["active_s"].dropna()
+    if values.empty:
+        return NOT_JUDGED
+    shortest = float(values.min())
+    return None if shortest >= limit else f"{shortest:.0f} s of active time, declared {limit:g} s"
+
+
+def _straight(tables: Tables, session_id: str, limit: float) -> str | None:
+    rows = _of(tables.answers, session_id)
+    rows = rows[rows["valid"] & (rows["item_type"] == "likert")].dropna(subset=["value_number"])
+    alike = 0
+    for (_, key, version), form in rows.groupby(
+        ["submission_id", "instrument", "instrument_version"]
+    ):
+        values = form["value_number"].astype("float64")
+        honest = float(values.iloc[0]) == 0.0 and (str(key), int(str(version))) in tables.one_sided
+        alike += len(values) >= FEWEST_ALIKE and values.nunique() == 1 and not honest
+    return None if alike <= limit else f"{alike} forms with ratings all alike, declared {limit:g}"
+
+
+_JUDGES: dict[str, Judge] = {
+    "minimum_frame_rate_hz": _frame_rate,
+    "minimum_share_of_frames": _share,
+    "maximum_latency_error_ms": _latency,
+    "minimum_active_time_s": _active,
+    "maximum_straight_lined_forms": _straight,
+}
+
+
+def _quality(tables: Tables, session_id: str) -> pd.DataFrame:
+    rows = _of(tables.quality, session_id)
+    return rows[(rows["stream"] == "actual") & (rows["phase_kind"] == "task") & rows["valid"]]
+
+
+def _of(frame: pd.DataFrame, session_id: str) -> pd.DataFrame:
+    return frame[frame["session_id"] == session_id]

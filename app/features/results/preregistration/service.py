@@ -1,0 +1,37 @@
+"""A study's declaration, and what came of it."""
+
+from datetime import datetime
+
+from sqlalchemy.orm import Session
+
+from app.features.results.analysis.schemas import DashboardKind
+from app.features.results.preregistration.declared import declaration_of
+from app.features.results.preregistration.schemas import PreregistrationView
+from app.features.studies.service import study_by_key, versions_of
+
+
+def preregistration_of(
+    db: Session, study_key: str, kind: DashboardKind, now: datetime
+) -> PreregistrationView:
+    """What a study declared and what came of it; raises NotFound."""
+    study = study_by_key(db, study_key)
+    declared = declaration_of(versions_of(db, study))
+    view = PreregistrationView(
+        study_key=study.key,
+        kind=kind,
+        simulated=kind == "simulated",
+        as_of=now,
+        declaration=None,
+        sessions=0,
+        excluded=[],
+        included=0,
+        result=None,
+        why_no_result=None,
+        deviations=[],
+    )
+    if declared is None:
+        return view
+    # Loads pandas and scipy, which neither the start nor an empty page need wait for.
+    from app.features.results.preregistration.doing import done
+
+    return done(db, study, declared, view)

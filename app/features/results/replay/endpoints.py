@@ -1,0 +1,47 @@
+"""Replays over HTTP."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Path, Response
+
+from app.features.captures.binary import BYTES, binary
+from app.features.dependencies import Context, Reading, SignedIn
+from app.features.results.replay.schemas import Replay
+from app.features.results.replay.service import movement_tag, replayable
+from app.features.results.replay.timeline import replay_of
+
+router = APIRouter(prefix="/sessions/{session_id}/phases/{phase_id}", tags=["replay"])
+PhaseId = Annotated[int, Path(ge=0, lt=2**31)]
+
+
+@router.get("/replay")
+def get_replay(session_id: str, phase_id: PhaseId, db: Reading, caller: SignedIn) -> Replay:
+    """What happened in a phase that is over, on the phase's own time."""
+    return replay_of(db, replayable(db, caller, session_id, phase_id))
+
+
+@router.get(
+    "/movement",
+    response_class=Response,
+    responses={
+        200: binary("Places of the joints over time: app/features/results/replay/movement.py."),
+        304: {"description": "The movement is the one that is there already."},
+    },
+)
+def get_movement(
+    session_id: str,
+    phase_id: PhaseId,
+    context: Context,
+    caller: SignedIn,
+    if_none_match: Annotated[str | None, Header(max_length=400)] = None,
+) -> Response:
+    """Where the joints of participant and avatar were, to be drawn."""
+    with context.database.reading() as db:
+        asked = replayable(db, caller, session_id, phase_id)
+        tag = movement_tag(db, asked)
+    # To be asked for each time: who may see what changes with the session.
+    headers = {"etag": tag, "cache-control": "private, no-cache"}
+    if if_none_match is not None and tag in if_none_match:
+        return Response(status_code=304, headers=headers)
+    body = context.replays.movement(session_id, phase_id, full=asked.full)
+    return Response(body, media_type=BYTES, headers=headers)

@@ -1,0 +1,69 @@
+"""Joint errors of a phase over time, as its summary counts them, at a reduced rate."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.features.results.replay.grid import Grid, Indices, Sampling
+from app.features.telemetry.encoding import Frames
+from app.science.avatar.hinge_reference import HingeReference
+from app.science.joint_error import ERROR_JOINTS, joint_errors
+from app.science.recorded_error import Asked
+from app.science.rotations import FloatArray
+
+
+@dataclass
+class RunErrors:
+    """One run: the avatar's frames at the moments of the grid, and their partners by seq."""
+
+    sampling: Sampling
+    _at: list[Indices] = field(default_factory=list)
+    _seq: list[Indices] = field(default_factory=list)
+    _actual: list[FloatArray] = field(default_factory=list)
+    _asked: dict[int, tuple[float, FloatArray]] = field(default_factory=dict)
+
+    def actual(self, piece: Frames) -> None:
+        """Take a piece of what the avatar did."""
+        at, frames = self.sampling.take(piece)
+        if not len(at):
+            return
+        self._at.append(at)
+        self._seq.append(frames.seq)
+        self._actual.append(frames.rotations)
+
+    def target(self, piece: Frames) -> None:
+        """Take a piece of what the participant did, after everything that the avatar did."""
+        rows = np.flatnonzero(np.isin(piece.seq, self._wanted))
+        if not len(rows):
+            return
+        times_s, rotations = piece.times_s[rows], piece.rotations[rows]
+        for row, seq in enumerate(piece.seq[rows]):
+            self._asked[int(seq)] = (float(times_s[row]), rotations[row])
+
+    def fill(self, errors_rad: NDArray[np.float32], hinges: HingeReference | None) -> None:
+        """Write the angles (21) of each moment that has both frames."""
+        if not self._at:
+            return
+        at, seqs = np.concatenate(self._at), self._wanted
+        paired = np.flatnonzero([int(seq) in self._asked for seq in seqs])
+        if not len(paired):
+            return
+        partners = [self._asked[int(seqs[row])] for row in paired]
+        times_s = np.array([time_s for time_s, _ in partners])
+        rotations = np.stack([rotation for _, rotation in partners])
+        asked = Asked(rotations) if hinges is None else hinges.recording(times_s, rotations)
+        found = joint_errors(asked.rotations, np.concatenate(self._actual)[paired])
+        counts = found.valid
+        if asked.clipping is not None:
+            counts = counts & asked.clipping.hinged
+        errors_rad[at[paired]] = np.where(counts, found.values_rad[..., 0], np.nan)
+
+    @property
+    def _wanted(self) -> Indices:
+        return np.concatenate(self._seq) if self._seq else np.empty(0, np.int64)
+
+
+def no_errors(grid: Grid) -> NDArray[np.float32]:
+    """Errors of no moment: (count, 21) NaN."""
+    return np.full((grid.count, len(ERROR_JOINTS)), np.nan, np.float32)

@@ -1,0 +1,164 @@
+"""The movement of a phase as bytes that a page can draw.
+
+    bytes 0-3    length L of the header, unsigned, little-endian
+    bytes 4-     header: JSON in UTF-8, filled up with spaces so that 4 + L is a multiple of 4
+    then         float32, little-endian: x, y, z in m of every joint, [body][frame][joint][axis]
+    then         float32: joint errors in radians, [frame][joint]
+
+The header holds `names` and `parents` of the J joints, `bodies` ("target", the participant, and
+"actual", the avatar), `frames` N and `rate_hz` of them from the phase's time 0 on, `error_joints`,
+`error_frames` and `error_rate_hz`, and `gaps`: stretches (begin, end) of the phase's time in which
+nothing was recorded.
+
+Places follow by forward kinematics from the stored frame that is nearest to each moment; nothing is
+smoothed or made up. In a gap, and where a rotation is none, they are NaN. Errors are the angles
+between what the avatar was asked for at that moment and what it did (`app.science.joint_error`).
+Pieces of a second are read one after the other, so a long phase takes no more memory than its
+answer.
+"""
+
+import json
+import struct
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from sqlalchemy.orm import Session
+
+from app.features.results.replay.errors import RunErrors, no_errors
+from app.features.results.replay.grid import Grid, Sampling, uncovered
+from app.features.telemetry.encoding import Frames
+from app.features.telemetry.frames import iter_frames
+from app.science.avatar.hinge_reference import HingeReference
+from app.science.joint_error import ERROR_JOINTS
+from app.science.rotations import is_unit
+from app.science.skeleton import JOINT_COUNT, JOINT_NAMES, PARENTS, Skeleton, forward_kinematics
+from app.wire import StreamName
+
+MOST_HZ = 30.0
+ERROR_HZ = 10.0
+MOST_NUMBERS = 4_000_000
+"""16 MB: a quarter of an hour of two bodies at 30 Hz; what is longer comes at a lower rate."""
+Places = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Recording:
+    """Where the frames of a phase are, and on what they are drawn.
+
+    `offsets_s`: by epoch, what leads to the phase's time. `full`: the avatar, too, and its errors.
+    `hinges` of an avatar that is moved by physics.
+    """
+
+    session_id: str
+    phase_id: int
+    offsets_s: Mapping[int, float]
+    duration_s: float
+    skeleton: Skeleton
+    full: bool = True
+    hinges: HingeReference | None = None
+
+
+@dataclass
+class Movement:
+    """What is drawn of a phase.
+
+    Attributes:
+        positions_m: by body, (N, 22, 3).
+        errors_rad: (M, 21); no rows where there is one body.
+        gaps: stretches of the phase's time without a frame of the participant.
+    """
+
+    grid: Grid
+    error_grid: Grid
+    positions_m: dict[StreamName, Places]
+    errors_rad: NDArray[np.float32]
+    gaps: list[tuple[float, float]] = field(default_factory=list)
+
+
+def movement_of(db: Session, recording: Recording) -> Movement:
+    """Read a phase's frames and place its bodies."""
+    bodies = 2 if recording.full else 1
+    grid = Grid.over(recording.duration_s, _rate_hz(recording.duration_s, bodies))
+    error_grid = Grid.over(recording.duration_s, ERROR_HZ if recording.full else 0.0)
+    movement = Movement(grid, error_grid, {}, no_errors(error_grid))
+    tracks = {
+        epoch: RunErrors(Sampling(error_grid, offset_s))
+        for epoch, offset_s in recording.offsets_s.items()
+    }
+    if recording.full:
+        # First, so that it is known which frames of the participant are its partners.
+        body = _body(db, recording, StreamName.ACTUAL, grid, tracks)
+        movement.positions_m[StreamName.ACTUAL], _ = body
+    body = _body(db, recording, StreamName.TARGET, grid, tracks)
+    movement.positions_m[StreamName.TARGET], movement.gaps = body
+    if recording.full:
+        for track in tracks.values():
+            track.fill(movement.errors_rad, recording.hinges)
+    else:
+        movement.errors_rad = movement.errors_rad[:0]
+    return movement
+
+
+def _body(
+    db: Session,
+    recording: Recording,
+    stream: StreamName,
+    grid: Grid,
+    tracks: Mapping[int, RunErrors],
+) -> tuple[Places, list[tuple[float, float]]]:
+    """One body's places, and the gaps of its stream."""
+    places = np.full((grid.count, JOINT_COUNT, 3), np.nan, np.float32)
+    runs = []
+    for epoch, offset_s in recording.offsets_s.items():
+        sampling = Sampling(grid, offset_s)
+        for piece in _pieces(db, recording, stream, epoch):
+            at, frames = sampling.take(piece)
+            if len(at):
+                places[at] = _placed(recording.skeleton, frames)
+            track = tracks[epoch]
+            track.actual(piece) if stream is StreamName.ACTUAL else track.target(piece)
+        runs.append(sampling)
+    return places, uncovered(runs, recording.duration_s)
+
+
+def _pieces(db: Session, recording: Recording, stream: StreamName, epoch: int) -> Iterator[Frames]:
+    of_phase = iter_frames(db, recording.session_id, stream, epoch, recording.phase_id)
+    return (frames for _, frames in of_phase)
+
+
+def _placed(skeleton: Skeleton, frames: Frames) -> Places:
+    """Joints in the world (n, 22, 3); NaN for those that hang on a rotation that is none."""
+    rotations = frames.rotations
+    usable = np.where(is_unit(rotations)[..., np.newaxis], rotations, np.nan)
+    roots_m = frames.values[:, :3].astype(np.float64)
+    return forward_kinematics(skeleton, roots_m, usable).positions_m.astype(np.float32)
+
+
+def encode(movement: Movement) -> bytes:
+    """The bytes that a page gets: the participant first."""
+    bodies = sorted(movement.positions_m, reverse=True)
+    errors = np.ascontiguousarray(movement.errors_rad, dtype="<f4")
+    header = json.dumps(
+        {
+            "names": JOINT_NAMES,
+            "parents": PARENTS,
+            "bodies": [str(body) for body in bodies],
+            "frames": movement.grid.count,
+            "rate_hz": movement.grid.rate_hz,
+            "error_joints": ERROR_JOINTS,
+            "error_frames": errors.shape[0],
+            "error_rate_hz": movement.error_grid.rate_hz,
+            "gaps": [[round(a, 4), round(b, 4)] for a, b in movement.gaps],
+        }
+    ).encode()
+    header += b" " * (-len(header) % 4)
+    places = [np.ascontiguousarray(movement.positions_m[body], dtype="<f4") for body in bodies]
+    parts = (place.tobytes() for place in places)
+    return b"".join((struct.pack("<I", len(header)), header, *parts, errors.tobytes()))
+
+
+def _rate_hz(duration_s: float, bodies: int) -> float:
+    numbers_a_second = 3 * JOINT_COUNT * bodies * max(duration_s, 1e-3)
+    return min(MOST_HZ, MOST_NUMBERS / numbers_a_second)

@@ -1,0 +1,102 @@
+"""Which phases may be looked at again, by whom, and how much of them.
+
+A phase is replayed once it is over. Who must not learn the latency sees the participant's own
+movement and nothing of the avatar: the two beside each other, or contacts beside the movement that
+led to them, would show the latency to anybody who looks.
+"""
+
+import hashlib
+from dataclasses import dataclass
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app import __version__
+from app.errors import Gone, NotFound, NotNow
+from app.features.access import Caller, is_blind
+from app.features.headset.service import participant_info
+from app.features.results.replay.schemas import View
+from app.features.sessions.capture import erased_session
+from app.features.sessions.contents import content_body, contents_of
+from app.features.sessions.service import protocol_of_session, session_by_id
+from app.models import Phase, StudySession, TelemetryBatch, TelemetryChunk
+
+OVER = ("done", "voided")
+USUAL_STATURE_M = 1.7
+"""Of the body that is drawn where the participant's is not known."""
+
+
+@dataclass(frozen=True)
+class Replayable:
+    """A phase that the caller may look at, and how."""
+
+    session: StudySession
+    phase: Phase
+    view: View
+
+    @property
+    def full(self) -> bool:
+        """Whether the avatar is shown, and what happened to it."""
+        return self.view == "full"
+
+
+def replayable(db: Session, caller: Caller, session_id: str, phase_id: int) -> Replayable:
+    """The phase, if it can be replayed for the caller.
+
+    Raises NotFound where there is no such phase, Gone where its data were erased, NotNow before it
+    is over.
+    """
+    session = session_by_id(db, session_id)
+    if erased_session(db, session_id):
+        raise Gone(
+            "the data of this session's participant were erased",
+            value=session_id,
+            remedy="There is nothing left to replay; the tombstone on the session's page says why.",
+        )
+    phase = db.get(Phase, (session_id, phase_id))
+    if phase is None:
+        known = select(Phase.phase_id).where(Phase.session_id == session_id)
+        raise NotFound(
+            f"this session has no phase {phase_id}",
+            value=phase_id,
+            valid=list(db.scalars(known.order_by(Phase.phase_id))),
+            remedy="Choose a phase on the session's page.",
+        )
+    if phase.status not in OVER:
+        raise NotNow(
+            "this phase is not over yet",
+            value=phase.status,
+            valid=list(OVER),
+            remedy="Watch it on the session's page; it can be replayed as soon as it has ended.",
+        )
+    blind = is_blind(db, caller, protocol_of_session(db, session), session)
+    return Replayable(session, phase, "participant" if blind else "full")
+
+
+def stature_of(db: Session, session: StudySession) -> float | None:
+    """The stature of the body in the session: the avatar's on record, else the participant's."""
+    recorded = [content_body(row) for row in contents_of(db, session.id, "avatar")]
+    for body in reversed(recorded):
+        if isinstance(body, dict) and isinstance(body.get("stature_m"), float):
+            return float(body["stature_m"])
+    return participant_info(db, session).stature_m
+
+
+def frames_stored(db: Session, phase: Phase) -> int:
+    """How many frames of both bodies are stored of a phase."""
+    total = 0
+    for table in (TelemetryChunk, TelemetryBatch):
+        of_phase = (table.session_id == phase.session_id, table.phase_id == phase.phase_id)
+        counted = select(func.coalesce(func.sum(table.frame_count), 0)).where(*of_phase)
+        total += int(db.scalar(counted) or 0)
+    return total
+
+
+def movement_tag(db: Session, asked: Replayable) -> str:
+    """Changes whenever the bytes of the movement may: an entity tag, with its quotes."""
+    phase = asked.phase
+    told = (
+        *(phase.session_id, phase.phase_id, phase.status, phase.active_s, frames_stored(db, phase)),
+        *(stature_of(db, asked.session), asked.view, __version__),
+    )
+    return f'"{hashlib.sha256(repr(told).encode()).hexdigest()[:32]}"'

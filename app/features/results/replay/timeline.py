@@ -1,0 +1,198 @@
+"""What happened in a phase, on the phase's time."""
+
+import json
+from collections.abc import Iterator
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.questionnaires.service import stored_scores
+from app.features.results.replay.clock import PhaseClock
+from app.features.results.replay.schemas import (
+    ActiveStretch,
+    ClientRun,
+    Moment,
+    Replay,
+    ReplayCompletion,
+    ReplayContact,
+    ReplayNote,
+    ReplaySurface,
+)
+from app.features.results.replay.service import (
+    USUAL_STATURE_M,
+    Replayable,
+    frames_stored,
+    stature_of,
+)
+from app.features.results.replay.times import phase_clock, told_of
+from app.features.sessions.contents import content_body, contents_of
+from app.features.sessions.journal import events_of
+from app.features.sessions.service import plan_of, protocol_of_session
+from app.models import Completion, Contact, Phase, Submission
+from app.protocol.plan import TIMED_KINDS
+
+
+def replay_of(db: Session, asked: Replayable) -> Replay:
+    """The phase as a page draws it around its movement."""
+    session, phase = asked.session, asked.phase
+    clock = phase_clock(db, session, phase)
+    stature_m = stature_of(db, session)
+    administrations = _administrations(db, asked)
+    scores = [one for one in stored_scores(db, session) if one.administration in administrations]
+    return Replay(
+        session_id=session.id,
+        phase_id=phase.phase_id,
+        step_index=phase.step_index,
+        attempt=phase.attempt,
+        kind=phase.kind,
+        limb=phase.limb,
+        status=phase.status,
+        view=asked.view,
+        latency_ms=phase.latency_ms if asked.full else None,
+        duration_s=clock.duration_s,
+        active_s=phase.active_s,
+        time_scale=session.time_scale,
+        stature_m=stature_m or USUAL_STATURE_M,
+        stature_known=stature_m is not None,
+        has_movement=frames_stored(db, phase) > 0,
+        runs=[ClientRun(**vars(run)) for run in clock.runs],
+        active=[ActiveStretch(**vars(one)) for one in clock.active],
+        contacts=_contacts(db, phase, clock) if asked.full else [],
+        completions=_completions(db, phase, clock) if asked.full else [],
+        moments=sorted(_moments(db, phase, clock), key=lambda one: one.t_s),
+        notes=list(_notes(db, phase, clock)),
+        surfaces=_surfaces(db, asked) if asked.full else [],
+        administrations=administrations,
+        forms=scores,
+    )
+
+
+def _contacts(db: Session, phase: Phase, clock: PhaseClock) -> list[ReplayContact]:
+    rows = db.scalars(
+        select(Contact)
+        .where(Contact.session_id == phase.session_id, Contact.phase_id == phase.phase_id)
+        .order_by(Contact.begin_active_s, Contact.surface, Contact.body_part)
+    )
+    return [
+        ReplayContact(
+            surface=row.surface,
+            surface_kind=row.surface_kind,
+            box=row.box,
+            body_part=row.body_part,
+            effect=row.effect,
+            begin_s=clock.of_counted(row.begin_active_s, row.epoch, row.begin_s),
+            end_s=clock.of_counted(row.end_active_s, row.epoch, row.end_s),
+            begin_active_s=row.begin_active_s,
+            end_active_s=row.end_active_s,
+        )
+        for row in rows
+    ]
+
+
+def _completions(db: Session, phase: Phase, clock: PhaseClock) -> list[ReplayCompletion]:
+    rows = db.scalars(
+        select(Completion)
+        .where(Completion.session_id == phase.session_id, Completion.phase_id == phase.phase_id)
+        .order_by(Completion.number)
+    )
+    return [
+        ReplayCompletion(
+            number=row.number,
+            t_s=clock.of_counted(row.active_s, row.epoch, row.at_s),
+            active_s=row.active_s,
+            duration_s=row.duration_s,
+            out_of_order_touches=row.out_of_order_touches,
+        )
+        for row in rows
+    ]
+
+
+def _moments(db: Session, phase: Phase, clock: PhaseClock) -> Iterator[Moment]:
+    """As the headset told them; where it could not, as the server had to assume them."""
+    for one in told_of(db, phase):
+        t_s = one.client_s + clock.offsets_s[one.epoch]
+        cause = one.cause if one.what == "paused" else None
+        yield Moment(what=one.what, t_s=t_s, active_s=one.active_s, cause=cause)
+    for row in events_of(db, phase.session_id):
+        told = json.loads(row.payload)
+        if told.get("phase_id") != phase.phase_id:
+            continue
+        if row.type == "phase_paused" and told.get("client_t_s") is None:
+            t_s = clock.of_active(told["active_s"], later=False)
+            yield Moment(what="paused", t_s=t_s, active_s=told["active_s"], cause=told.get("cause"))
+        elif row.type == "phase_voided":
+            yield Moment(
+                what="voided",
+                t_s=clock.duration_s,
+                active_s=phase.active_s,
+                cause=told.get("cause"),
+            )
+
+
+def _notes(db: Session, phase: Phase, clock: PhaseClock) -> Iterator[ReplayNote]:
+    """Those that were written while the phase ran, paused or not."""
+    for row in contents_of(db, phase.session_id, "note"):
+        if row.body is None or phase.started_at is None or row.created_at < phase.started_at:
+            continue
+        t_s = clock.of_utc(row.created_at)
+        if (
+            t_s is None
+            or t_s > clock.duration_s
+            or (phase.ended_at or row.created_at) < row.created_at
+        ):
+            continue
+        yield ReplayNote(
+            id=row.id,
+            text=str(content_body(row)),
+            by=row.created_by,
+            at=row.created_at,
+            t_s=max(0.0, t_s),
+        )
+
+
+def _surfaces(db: Session, asked: Replayable) -> list[ReplaySurface]:
+    limb = asked.phase.limb
+    if limb is None:
+        return []
+    tasks = protocol_of_session(db, asked.session).tasks
+    layout = (tasks.hand if limb == "hand" else tasks.foot).layout()
+    return [
+        ReplaySurface(
+            key=one.key,
+            kind=str(one.kind),
+            box=one.box,
+            center_m=one.center_m,
+            half_size_m=one.half_size_m,
+        )
+        for one in layout.surfaces
+    ]
+
+
+def _administrations(db: Session, asked: Replayable) -> list[str]:
+    """The forms between this phase and the next step that is one, those of this attempt."""
+    phase, plan = asked.phase, plan_of(db, asked.session)
+    following = []
+    for step in plan[phase.step_index + 1 :]:
+        if step.kind in TIMED_KINDS:
+            break
+        following.append(step.index)
+    again = db.scalar(
+        select(Phase.prepared_at)
+        .where(
+            Phase.session_id == phase.session_id,
+            Phase.step_index == phase.step_index,
+            Phase.attempt > phase.attempt,
+        )
+        .order_by(Phase.attempt)
+        .limit(1)
+    )
+    filled = select(Submission.step_index, Submission.administration).where(
+        Submission.session_id == phase.session_id,
+        Submission.step_index.in_(following),
+        Submission.submitted_at >= phase.prepared_at,
+    )
+    if again is not None:
+        filled = filled.where(Submission.submitted_at < again)
+    # A form that was filled in again counts as it was last.
+    newest = dict(db.execute(filled.order_by(Submission.submitted_at)).all())
+    return [newest[index] for index in following if index in newest]

@@ -1,0 +1,62 @@
+"""Every exported column is described once."""
+
+from collections import Counter
+from pathlib import Path
+
+from app.features.results.analysis.codebook import CODEBOOK, TABLES, codebook_frame, data_dictionary
+from app.science.skeleton import JOINT_NAMES
+
+PAGE = Path(__file__).resolve().parents[3] / "docs" / "data-dictionary.md"
+
+
+def test_a_column_has_exactly_one_entry() -> None:
+    """No table has two columns of one name."""
+    counts = Counter((column.table, column.name) for column in CODEBOOK)
+    assert set(counts.values()) == {1}
+    assert {table for table, _ in counts} == set(TABLES)
+
+
+def test_every_entry_says_what_it_means() -> None:
+    """A meaning is a sentence; a boolean and a time say how they are written."""
+    for column in CODEBOOK:
+        assert column.meaning.endswith(".")
+        assert column.type in ("text", "integer", "number", "boolean", "time")
+
+
+def test_units_stand_in_the_names() -> None:
+    """What is in degrees, metres, seconds or milliseconds says so in its name, and the reverse."""
+    for column in CODEBOOK:
+        for suffix, unit in (("_deg", "deg"), ("_m", "m"), ("_s", "s"), ("_ms", "ms")):
+            if column.type == "number" and column.name.endswith(suffix):
+                assert column.unit.split(",")[0] == unit, column
+            if column.unit == unit:
+                assert column.name.endswith(suffix), column
+        assert (column.type == "time") == column.name.endswith("_utc")
+
+
+def test_every_table_of_data_says_whether_it_was_simulated() -> None:
+    """`simulated` and `avatar` stand in each; the codebook and the equipment are of no session."""
+    for table in set(TABLES) - {"codebook", "calibrations"}:
+        names = {column.name for column in CODEBOOK if column.table == table}
+        assert {"simulated", "avatar"} <= names
+
+
+def test_both_streams_have_a_root_and_four_parts_for_each_joint() -> None:
+    """3 + 4 x 22 columns for the target and for the actual body."""
+    names = [column.name for column in CODEBOOK if column.table == "samples"]
+    for stream in ("target", "actual"):
+        assert f"{stream}_root_x_m" in names
+        assert f"{stream}_{JOINT_NAMES[-1]}_qz" in names
+        assert sum(name.startswith(f"{stream}_") for name in names) == 3 + 4 * 22
+
+
+def test_the_page_is_the_codebook() -> None:
+    """docs/data-dictionary.md is what `python -m app.features.results.analysis.codebook` writes."""
+    assert PAGE.read_text(encoding="utf-8") == data_dictionary()
+
+
+def test_the_codebook_describes_itself() -> None:
+    """Its table has a row for each of its own columns."""
+    frame = codebook_frame()
+    own = frame[frame["table"] == "codebook"]["column"].tolist()
+    assert own == list(frame.columns)

@@ -1,0 +1,235 @@
+"""Figures from tables, without a database."""
+
+from typing import Any
+
+import pandas as pd
+import pytest
+
+from app.features.results.analysis.figures import (
+    completions_drawing,
+    contacts_drawing,
+    embodiment_drawings,
+    joint_error_drawing,
+    joint_error_map_drawing,
+    progress_drawing,
+)
+from app.features.results.analysis.figures.body_parts import BODY_PARTS, JOINTS_BY_PART
+from app.features.results.analysis.figures.drawing import Drawing, limb_note
+from app.features.results.analysis.figures.intervals import mean_interval
+from app.science.joint_error import ERROR_JOINTS
+
+
+def _phases(completions: dict[str, dict[float, int]], limb: str = "hand") -> pd.DataFrame:
+    return pd.DataFrame(
+        [
+            {
+                "participant_code": code,
+                "session_id": code,
+                "phase_id": int(latency),
+                "phase_kind": "task",
+                "limb": limb,
+                "position": 1,
+                "latency_ms": latency,
+                "completions": count,
+            }
+            for code, by_latency in completions.items()
+            for latency, count in by_latency.items()
+        ]
+    )
+
+
+def _contact(code: str, latency: float, part: str, begin_s: float, end_s: float) -> dict[str, Any]:
+    return {
+        "session_id": code,
+        "phase_id": int(latency),
+        "surface": "hand/2/left",
+        "surface_kind": "side",
+        "body_part": part,
+        "begin_active_s": begin_s,
+        "end_active_s": end_s,
+    }
+
+
+def _errors(angle_deg: float, code: str, latency: float, **changes: object) -> list[dict[str, Any]]:
+    row = {
+        "participant_code": code,
+        "phase_kind": "task",
+        "reference": "present",
+        "axis": "angle",
+        "latency_ms": latency,
+        "mean_deg": angle_deg,
+        "clipped_share": None,
+    }
+    return [{**row, "joint": joint, **changes} for joint in ERROR_JOINTS]
+
+
+def _traces(drawing: Drawing, name: str) -> list[dict[str, Any]]:
+    figure = drawing.as_json()
+    assert figure is not None, drawing.empty
+    return [trace for trace in figure["data"] if trace.get("name") == name]
+
+
+def test_the_interval_is_students() -> None:
+    """1 to 5: mean 3, s = sqrt(2.5), t(.975, 4) = 2.7764, so half the width is 1.9633."""
+    interval = mean_interval([1.0, 2.0, 3.0, 4.0, 5.0])
+    assert (interval.mean, interval.n) == (3.0, 5)
+    assert interval.half_width == pytest.approx(1.9633, abs=1e-4)
+
+
+def test_one_value_has_a_mean_and_no_interval() -> None:
+    """Nothing is known about the spread."""
+    assert mean_interval([2.0]).half_width is None
+    with pytest.raises(ValueError, match="at least one"):
+        mean_interval([])
+
+
+def test_means_are_over_participants() -> None:
+    """A participant with many phases counts as much as one with few."""
+    twice = _phases({"P-1": {0.0: 4}, "P-2": {0.0: 1}})
+    frame = pd.concat([twice, _phases({"P-1": {0.0: 4}})])
+    (mean,) = _traces(completions_drawing(frame), "mean, hand")
+    assert mean["y"] == [2.5]
+
+
+def test_every_participant_has_a_line() -> None:
+    """Lines are told apart by gaps and named in the hover text."""
+    drawing = completions_drawing(_phases({"P-1": {0.0: 5, 125.0: 3}, "P-2": {0.0: 4, 125.0: 1}}))
+    (people,) = _traces(drawing, "participants")
+    assert people["text"] == ["P-1", "P-1", None, "P-2", "P-2", None]
+    assert people["y"] == [5.0, 3.0, None, 4.0, 1.0, None]
+
+
+def test_limbs_have_panels_shapes_and_dashes_of_their_own() -> None:
+    """Colour is never the only difference."""
+    counts = {"P-1": {0.0: 5}, "P-2": {0.0: 4}}
+    drawing = completions_drawing(pd.concat([_phases(counts), _phases(counts, limb="foot")]))
+    (hand,), (foot,) = _traces(drawing, "mean, hand"), _traces(drawing, "mean, foot")
+    assert hand.get("xaxis") != foot.get("xaxis")
+    assert hand["marker"]["symbol"] != foot["marker"]["symbol"]
+    assert hand["line"]["dash"] != foot["line"]["dash"]
+
+
+def test_scores_that_are_missing_do_not_count() -> None:
+    """A questionnaire with a gap leaves its participant out of that component."""
+    scores = pd.DataFrame(
+        {
+            "participant_code": ["P-1", "P-2", "P-3"],
+            "score": "agency",
+            "limb": "hand",
+            "position": 1,
+            "latency_ms": 0.0,
+            "value": [4.0, 6.0, None],
+            "minimum": -12.0,
+            "maximum": 12.0,
+        }
+    )
+    by_key = {drawing.key: drawing for drawing in embodiment_drawings(scores)}
+    (mean,) = _traces(by_key["embodiment_agency"], "mean, hand")
+    assert (mean["y"], by_key["embodiment_agency"].n) == ([5.0], 2)
+    assert by_key["embodiment_ownership"].empty is not None
+
+
+def test_every_joint_is_in_one_part_of_the_body() -> None:
+    """Six parts hold the 21 joints, each once."""
+    assert len(BODY_PARTS) == 6
+    assert sorted(JOINTS_BY_PART) == sorted(ERROR_JOINTS)
+
+
+def test_joint_errors_are_those_of_the_whole_angle_against_the_present_pose() -> None:
+    """Axes, the delayed command and free movement do not enter."""
+    rows = [
+        *_errors(10.0, "P-1", 125.0),
+        *_errors(20.0, "P-2", 125.0),
+        *_errors(99.0, "P-1", 125.0, axis="x"),
+        *_errors(99.0, "P-1", 125.0, reference="command"),
+        *_errors(99.0, "P-1", 0.0, phase_kind="free_roam"),
+    ]
+    drawing = joint_error_drawing(pd.DataFrame(rows))
+    for part in BODY_PARTS:
+        (trace,) = _traces(drawing, part)
+        assert trace["y"] == [15.0]
+        assert trace["customdata"][0][0] == 125.0
+    figure = joint_error_map_drawing(pd.DataFrame(rows)).as_json()
+    assert figure is not None
+    (heat,) = figure["data"]
+    assert (heat["x"], heat["y"]) == (list(JOINTS_BY_PART), ["125"])
+    assert heat["z"] == [[15.0] * 21]
+    assert heat["customdata"] == [[""] * 21]
+
+
+def test_the_map_of_joint_errors_tells_what_limits_took() -> None:
+    """Beside each joint's error, and the worst joint in words; of physics avatars only."""
+    rows = [
+        {**row, "clipped_share": share if row["joint"] == "Head" else 0.0}
+        for code, share in (("P-1", 0.1), ("P-2", 0.32))
+        for row in _errors(10.0, code, 125.0)
+        if "Shoulder" not in row["joint"]
+    ]
+    drawing = joint_error_map_drawing(pd.DataFrame(rows))
+    figure = drawing.as_json()
+    assert figure is not None
+    (heat,) = figure["data"]
+    told = dict(zip(heat["x"], heat["customdata"][0], strict=True))
+    assert told["Head"] == "<br>clipped in 21.0 % of samples"
+    assert told["Neck"] == "<br>clipped in 0.0 % of samples"
+    assert "in 1.1 % of the samples, Head most often (21.0 %)" in drawing.caption
+    assert "before their limits" in joint_error_drawing(pd.DataFrame(rows)).caption
+    plain = joint_error_map_drawing(pd.DataFrame(_errors(10.0, "P-1", 125.0)))
+    assert "limit" not in plain.caption
+
+
+def test_red_time_is_a_union_and_parts_stand_beside_it() -> None:
+    """Two parts from 1 to 3 s and 2 to 4 s: the side 3 s, the parts 2 s each."""
+    phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
+    contacts = [
+        _contact(code, 0.0, part, begin_s, begin_s + 2.0)
+        for code in ("P-1", "P-2")
+        for part, begin_s in (("LeftHand", 1.0), ("LeftLowerArm", 2.0))
+    ]
+    sides, parts = _traces(contacts_drawing(phases, pd.DataFrame(contacts)), "0 ms")
+    assert dict(zip(sides["x"], sides["y"], strict=True)) == {"left": 3.0}
+    assert dict(zip(parts["x"], parts["y"], strict=True)) == {"LeftHand": 2.0, "LeftLowerArm": 2.0}
+
+
+def test_a_phase_without_a_contact_counts_as_zero() -> None:
+    """3 s for one of two participants are 1.5 s on average."""
+    phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
+    contacts = pd.DataFrame([_contact("P-1", 0.0, "LeftHand", 1.0, 4.0)])
+    sides, _ = _traces(contacts_drawing(phases, contacts), "0 ms")
+    assert sides["y"] == [1.5]
+
+
+def test_no_contact_at_all_is_said() -> None:
+    """Nobody touched a side: a sentence, not an empty plot."""
+    phases = _phases({"P-1": {0.0: 1}, "P-2": {0.0: 1}})
+    none = pd.DataFrame([_contact("P-1", 0.0, "LeftHand", 1.0, 4.0)]).iloc[:0]
+    drawing = contacts_drawing(phases, none)
+    assert drawing.figure is None
+    assert drawing.empty == "No side of a box was touched in any phase that counts."
+
+
+def test_progress_shows_every_order_also_one_nobody_had() -> None:
+    """Completed, open and withdrawn sessions of each order."""
+    sessions = pd.DataFrame(
+        {
+            "participant_code": ["P-1", "P-2", "P-3"],
+            "order": ["0 125 350", "0 125 350", "350 125 0"],
+            "status": ["completed", "withdrawn", "active"],
+        }
+    )
+    drawing = progress_drawing(sessions, ["0 125 350", "125 0 350", "350 125 0"])
+    (completed,), (opened,) = _traces(drawing, "completed"), _traces(drawing, "open")
+    (withdrawn,) = _traces(drawing, "withdrawn or aborted")
+    assert completed["x"] == ["0 → 125 → 350", "125 → 0 → 350", "350 → 125 → 0"]
+    nobody = None
+    assert completed["y"] == [1, nobody, nobody]
+    assert (opened["y"], withdrawn["y"]) == ([nobody, nobody, 1], [1, nobody, nobody])
+
+
+def test_the_confounding_of_limb_and_time_is_said_where_it_is_there() -> None:
+    """Hand always first: confounded. Alternating: not."""
+    counts = {"P-1": {0.0: 1}}
+    hand, foot = _phases(counts), _phases(counts, limb="foot").assign(position=2)
+    assert "hand phase always came first" in limb_note(pd.concat([hand, foot]))
+    turned = pd.concat([hand, foot, hand.assign(position=2), foot.assign(position=1)])
+    assert limb_note(turned) == ""

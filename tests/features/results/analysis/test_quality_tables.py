@@ -1,0 +1,114 @@
+"""Data quality as tables."""
+
+from datetime import timedelta
+
+import pandas as pd
+import pytest
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.database import Database
+from app.features.alarms.alarm import Change, Condition
+from app.features.alarms.service import store_change
+from app.features.results.analysis.codebook import columns_of
+from app.features.results.analysis.tables import alarms_table, quality_table
+from app.models import Phase, PhaseQuality, StudySession
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session
+
+TABLES = {"quality": quality_table, "alarms": alarms_table}
+
+
+def build(database: Database, *specs: SessionSpec) -> None:
+    """Sessions whose phases were judged, with one alarm each."""
+    with database.writing() as db:
+        for spec in specs:
+            session = build_session(db, spec)
+            judge(db, session)
+            gap = Condition("gap", "a gap of 0.5 s", "target", 0.5, "s", 12.25)
+            store_change(db, session.id, Change("raised", gap, NOW))
+            store_change(db, session.id, Change("cleared", gap, NOW + timedelta(seconds=4)))
+
+
+def judge(db: Session, session: StudySession) -> None:
+    """Rows of both streams for every phase; the actual body's head froze."""
+    for phase in db.scalars(select(Phase).where(Phase.session_id == session.id)):
+        for stream, joints in (("actual", ["Head", "LeftHand"]), ("target", [])):
+            db.add(
+                PhaseQuality(
+                    session_id=session.id,
+                    phase_id=phase.phase_id,
+                    stream=stream,
+                    frames=5400,
+                    span_s=60.0,
+                    frame_rate_hz=90.0,
+                    gaps=2,
+                    gap_s=0.75,
+                    longest_gap_s=0.5,
+                    jumps=1,
+                    frozen_s=2.5 if joints else 0.0,
+                    frozen_joints=joints,
+                    non_unit=3,
+                    non_finite=4,
+                    backwards=5,
+                )
+            )
+    db.flush()
+
+
+def table(database: Database, name: str, kind: str = "people") -> pd.DataFrame:
+    """A table as it is exported."""
+    with database.reading() as db:
+        return TABLES[name](db, STUDY, kind)  # type: ignore[arg-type]  # the fact
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_has_the_columns_of_the_codebook_also_when_empty(
+    database: Database, name: str
+) -> None:
+    """Names and order come from the codebook, with rows and without."""
+    expected = [column.name for column in columns_of(name)]
+    assert list(table(database, name).columns) == expected
+    build(database, SessionSpec("P-0001"))
+    assert list(table(database, name).columns) == expected
+    assert len(table(database, name)) > 0
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_kinds_never_mix(database: Database, name: str) -> None:
+    """A kind gives its own rows only."""
+    build(database, SessionSpec("P-0001"), SessionSpec("SIM-0001", kind="simulated"))
+    for kind in ("people", "simulated"):
+        rows = table(database, name, kind)
+        assert set(rows["kind"]) == {kind}
+        assert set(rows["simulated"]) == {kind == "simulated"}
+    assert len(table(database, name, "test")) == 0
+    assert set(table(database, name, "all")["kind"]) == {"people", "simulated"}
+
+
+def test_every_phase_has_a_row_for_each_stream(database: Database) -> None:
+    """Target first; joints stand as words, none as nothing."""
+    build(database, SessionSpec("P-0001"))
+    rows = table(database, "quality")
+    assert rows["stream"].tolist() == ["target", "actual"] * (len(rows) // 2)
+    assert rows["frozen_joints"].tolist()[:2] == [None, "Head LeftHand"]
+    first = rows.iloc[0]
+    assert (first["gaps"], first["gap_s"], first["longest_gap_s"]) == (2, 0.75, 0.5)
+    assert (first["non_unit"], first["non_finite"], first["backwards"]) == (3, 4, 5)
+
+
+def test_a_redone_phase_stays_and_does_not_count(database: Database) -> None:
+    """As in every table of phases."""
+    build(database, SessionSpec("P-0001", redone=("block2.hand",)))
+    rows = table(database, "quality")
+    assert rows[~rows["valid"]]["attempt"].tolist() == [1, 1]
+
+
+def test_an_alarm_is_two_rows(database: Database) -> None:
+    """Raised, then cleared."""
+    build(database, SessionSpec("P-0001"))
+    rows = table(database, "alarms")
+    assert rows["state"].tolist() == ["raised", "cleared"]
+    assert rows["at_utc"].diff().iloc[1] == pd.Timedelta(seconds=4)
+    first = rows.iloc[0]
+    assert (first["code"], first["severity"], first["stream"]) == ("gap", "warning", "target")
+    assert (first["value"], first["value_unit"], first["client_t_s"]) == (0.5, "s", 12.25)

@@ -1,0 +1,154 @@
+"""The study's questions, answered from sessions whose answers are known beforehand."""
+
+import pytest
+
+from app.database import Database
+from app.features.results.analysis.material import read_material
+from app.features.results.analysis.questions import answers_of
+from app.features.results.analysis.questions.answers import DECLARED
+from app.features.results.analysis.questions.relations import group_of
+from app.features.results.analysis.questions.words import bounded, p_words
+from app.features.results.analysis.schemas import MeasureView, ResultView, StatisticsResults
+from app.features.studies.service import add_version, study_by_key
+from app.protocol.plan import Step
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session
+from tests.protocol.helpers import STUDY as FILE
+from tests.protocol.test_preregistration import SECTION
+
+FALLING = {0.0: 7, 125.0: 5, 350.0: 2}
+"""What everybody answers to every item, by latency."""
+
+
+def _likert(step: Step, item: str) -> int:
+    # Agency is q6 + q7 + q8 - q9: turned round, q9 falls with the others.
+    value = FALLING[step.latency_ms or 0.0]
+    return 8 - value if item == "q9" else value
+
+
+def _found(database: Database, people: int, **changes: str) -> StatisticsResults:
+    with database.writing() as db:
+        for at in range(people):
+            build_session(db, SessionSpec(f"P-{at:04d}", likert=_likert))
+        if changes:
+            build_session(db, SessionSpec("P-9999", likert=_likert, **changes))  # type: ignore[arg-type]  # a status
+    with database.reading() as db:
+        return answers_of(read_material(db, STUDY, "people"))
+
+
+def _measure(found: StatisticsResults, key: str) -> MeasureView:
+    return next(one for one in found.measures if one.key == key)
+
+
+def _result(found: StatisticsResults, measure: str, key: str) -> ResultView:
+    return next(one for one in _measure(found, measure).results if one.key == key)
+
+
+def test_everybody_alike_gives_the_smallest_p_there_is(database: Database) -> None:
+    """Six people of one mind: Friedman's exact p is 6^-5, W is 1, both latencies differ."""
+    found = _found(database, 6, status="withdrawn")
+    friedman = _result(found, "karas2020_agency", "friedman_hand")
+    assert "χ²(2, N = 6) = 12.00, p < .001 (exact), Kendall’s W = 1.00" in friedman.apa
+    planned = _result(found, "karas2020_agency", "planned_hand")
+    # Two-sided exact p of six pairs one way: 2 / 2^6 = .03125, adjusted for two it is .0625.
+    assert [row[5:7] for row in planned.rows] == [[".031", ".062"], [".031", ".062"]]
+    assert "No latency differs from 0 ms" in planned.sentence
+    assert any("Too few participants for any result" in one for one in planned.warnings)
+    predicted = _result(found, "karas2020_agency", "trend_hand")
+    # One-sided: 1 / 2^6 = .0156, adjusted .031; Page's: 6^-6.
+    assert "The prediction is supported: one-sided p < .001" in predicted.sentence
+    assert [row[4] for row in predicted.rows] == [".031", ".031"]
+    agency = _measure(found, "karas2020_agency")
+    assert (agency.n, agency.left_out) == (6, ["P-9999: withdrawn"])
+    assert [tuple(one.model_dump().values()) for one in agency.glance] == [
+        ("hand", "p < .001, W = 1.00", None, "p < .001", "falls"),
+        ("foot", "p < .001, W = 1.00", None, "p < .001", "falls"),
+    ]
+
+
+@pytest.mark.one_engine
+def test_a_glance_tells_where_a_measure_goes_and_not_where_it_should(database: Database) -> None:
+    """Agency was predicted to fall; here it rises: that is told, and p is nearly 1."""
+    rising = {0.0: 2, 125.0: 5, 350.0: 7}
+    with database.writing() as db:
+        for at in range(6):
+            spec = SessionSpec(
+                f"P-{at:04d}",
+                likert=lambda step, item: (
+                    8 - rising[step.latency_ms or 0.0]
+                    if item == "q9"
+                    else rising[step.latency_ms or 0.0]
+                ),
+            )
+            build_session(db, spec)
+    with database.reading() as db:
+        found = answers_of(read_material(db, STUDY, "people"))
+    line = _measure(found, "karas2020_agency").glance[0]
+    assert (line.trend, line.way) == ("p = 1.000", "rises")
+    told = _result(found, "karas2020_agency", "trend_hand")
+    assert "The prediction is not supported" in told.sentence
+
+
+@pytest.mark.one_engine
+def test_what_does_not_change_goes_neither_way(database: Database) -> None:
+    """Completed tasks are the same everywhere: no direction is told, and p is 1."""
+    found = _found(database, 4)
+    told = _result(found, "completions", "trend_hand")
+    assert "By ranks the measure goes neither way with latency." in told.sentence
+    line = _measure(found, "completions").glance[0]
+    assert (line.differ, line.first, line.trend, line.way) == (None, None, "p = 1.000", None)
+
+
+def test_nothing_is_significant_and_alpha_is_told(database: Database) -> None:
+    """The word does not occur; what was not declared is said to be so."""
+    found = _found(database, 3)
+    text = found.model_dump_json()
+    assert "significant" not in text
+    assert "α = .05" in text
+    assert found.declared is False
+
+
+@pytest.mark.one_engine
+def test_alpha_is_the_one_that_was_declared(database: Database) -> None:
+    """What is here beside the declared test is said to be exploratory."""
+    declared = SECTION.replace("alpha: 0.05", "alpha: 0.01")
+    with database.writing() as db:
+        add_version(db, study_by_key(db, STUDY), FILE + declared, NOW)
+    found = _found(database, 3)
+    assert (found.alpha, found.declared) == (0.01, True)
+    assert found.notes[0] == DECLARED
+    assert "α = .05" not in found.model_dump_json()
+
+
+def test_one_person_is_no_sample(database: Database) -> None:
+    """No measure, no error: two are needed for anything."""
+    assert _found(database, 1).measures == []
+
+
+def test_a_rescaled_score_is_not_tested_twice(database: Database) -> None:
+    """soe_rescaled is soe_thesis times 1.5: every rank test of both is the same."""
+    keys = [one.key for one in _found(database, 3).measures]
+    assert "karas2020_soe_thesis" in keys
+    assert "karas2020_soe_rescaled" not in keys
+
+
+@pytest.mark.parametrize(
+    ("part", "group"),
+    [
+        ("RightIndexDistal", "finger"),
+        ("LeftThumbProximal", "finger"),
+        ("RightHand", "hand"),
+        ("LeftLowerArm", "arm"),
+        ("LeftFoot", "foot"),
+        ("RightUpperLeg", "leg"),
+        ("UpperChest", "trunk and head"),
+    ],
+)
+def test_body_parts_are_grouped_by_what_they_are(part: str, group: str) -> None:
+    """Fingers, hand and arm; toes, foot and leg; the rest."""
+    assert group_of(part) == group
+
+
+def test_numbers_are_printed_as_papers_print_them() -> None:
+    """No zero before the point where 1 is the limit; small p as a bound."""
+    assert (p_words(0.0004), p_words(0.0125), p_words(1.0)) == ("p < .001", "p = .013", "p = 1.000")
+    assert (bounded(-0.5, 2), bounded(1.0, 2), bounded(0.0, 2)) == ("−.50", "1.00", ".00")

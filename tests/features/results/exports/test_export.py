@@ -1,0 +1,122 @@
+"""A whole export: as a folder, as an archive, and of which sessions."""
+
+import hashlib
+import io
+import zipfile
+from pathlib import Path
+
+from sqlalchemy.orm import Session
+
+from app.database import Database
+from app.features.results.analysis.codebook import CODEBOOK, columns_of
+from app.features.results.exports.service import study_archive, usual_kind
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session
+from tests.features.results.exports.whole import FILES, TABLES, export, rows_of, tree_of
+
+
+def test_an_export_has_every_file(filled: Database, tmp_path: Path) -> None:
+    """The tables, the codebook, the README, and frames and a receipt for each session."""
+    done = export(filled, tmp_path / "out")
+    tree = tree_of(tmp_path / "out")
+    samples = {name for name in tree if name.startswith("samples/")}
+    receipts = {name for name in tree if name.startswith("receipts/")}
+    assert set(tree) - samples - receipts == FILES
+    assert len(samples) == len(receipts) == done.sessions == 2
+    assert done.files == len(tree)
+
+
+def test_every_column_of_every_file_is_in_the_codebook(filled: Database, tmp_path: Path) -> None:
+    """Headers and entries are the same, in the same order."""
+    export(filled, tmp_path / "out")
+    for name, data in tree_of(tmp_path / "out").items():
+        if name.endswith(".csv"):
+            table = "samples" if name.startswith("samples/") else name.removesuffix(".csv")
+            header = data.decode().partition("\n")[0].split(",")
+            assert header == [column.name for column in columns_of(table)]
+    assert len(rows_of((tmp_path / "out" / "codebook.csv").read_bytes())) == len(CODEBOOK)
+
+
+def test_kinds_stay_apart_in_files(filled: Database, tmp_path: Path) -> None:
+    """People's export holds no simulated row, and the reverse."""
+    for kind, other in (("people", "simulated"), ("simulated", "people")):
+        export(filled, tmp_path / kind, kind=kind)
+        for name in (*TABLES, "events"):
+            rows = rows_of((tmp_path / kind / f"{name}.csv").read_bytes())
+            assert {row["kind"] for row in rows} == {kind}
+            assert other not in {row["kind"] for row in rows}
+
+
+def test_the_readme_says_where_it_comes_from(filled: Database, tmp_path: Path) -> None:
+    """Kind, time, study, content hash, counts, and a hash of each file that holds."""
+    export(filled, tmp_path / "out", kind="simulated")
+    tree = tree_of(tmp_path / "out")
+    readme = tree["README.txt"].decode()
+    for words in (STUDY, "2026-03-02T09:30:00Z", "simulated", "1 completed", "by a simulation"):
+        assert words in readme
+    assert rows_of(tree["sessions.csv"])[0]["study_content_hash"] in readme
+    for name, data in tree.items():
+        if name != "README.txt":
+            assert f"{hashlib.sha256(data).hexdigest()}" in readme
+
+
+def test_the_archive_holds_the_same_files(filled: Database, tmp_path: Path) -> None:
+    """Folder and ZIP agree byte for byte."""
+    export(filled, tmp_path / "out")
+    data = b"".join(study_archive(filled, STUDY, "people", now=NOW))
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        assert archive.testzip() is None
+        assert {name: archive.read(name) for name in archive.namelist()} == tree_of(
+            tmp_path / "out"
+        )
+
+
+def test_two_exports_of_the_same_data_are_the_same(filled: Database, tmp_path: Path) -> None:
+    """Nothing depends on when or where, but the time in the README that is given."""
+    export(filled, tmp_path / "one")
+    export(filled, tmp_path / "two")
+    assert tree_of(tmp_path / "one") == tree_of(tmp_path / "two")
+
+
+def test_a_formula_in_the_open_prompt_is_inert(filled: Database, tmp_path: Path) -> None:
+    """No cell of any file begins with what a spreadsheet runs, but numbers."""
+    export(filled, tmp_path / "out")
+    cells = [
+        cell
+        for name in FILES - {"README.txt"}
+        for row in rows_of((tmp_path / "out" / name).read_bytes())
+        for cell in row.values()
+    ]
+    assert '\'=HYPERLINK("http://x","y")' in cells
+    live = [cell for cell in cells if cell.startswith(("=", "+", "-", "@"))]
+    assert all(float(cell) < 0 for cell in live)
+
+
+def test_an_earlier_export_is_replaced(filled: Database, tmp_path: Path) -> None:
+    """Its files are gone, also those that the new one does not have."""
+    export(filled, tmp_path / "out")
+    export(filled, tmp_path / "out", kind="simulated")
+    assert len(list((tmp_path / "out" / "samples").iterdir())) == 1
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_progress_tells_each_file(filled: Database, tmp_path: Path) -> None:
+    """Every path once, as it is begun, the README last."""
+    told: list[str] = []
+    export(filled, tmp_path / "out", progress=told.append)
+    assert set(told) == set(tree_of(tmp_path / "out"))
+    assert told[-1] == "README.txt"
+
+
+def _kind_of(db: Session, *specs: SessionSpec) -> str:
+    for spec in specs:
+        build_session(db, spec)
+    return usual_kind(db, STUDY)
+
+
+def test_without_a_kind_people_come_first(database: Database) -> None:
+    """A study without people gives what it has; people are never joined by others."""
+    with database.writing() as db:
+        assert usual_kind(db, STUDY) == "people"
+        assert _kind_of(db, SessionSpec("T", kind="test")) == "test"
+        assert _kind_of(db, SessionSpec("S", kind="simulated")) == "simulated"
+        assert _kind_of(db, SessionSpec("P")) == "people"

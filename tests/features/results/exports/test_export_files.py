@@ -1,0 +1,188 @@
+"""Exports as files: made beside the server, fetched in parts, cancelled, forgotten."""
+
+import hashlib
+import io
+import os
+import time
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy import select
+
+from app.features.results.exports.jobs import KEPT
+from app.features.results.exports.service import study_archive
+from app.models import CopyMade
+from app.wire import StreamName
+from tests.api.people import sign_in
+from tests.features.builders import STUDY, SessionSpec, build_session
+from tests.features.lab import Json, Lab, error, ok, running_lab
+from tests.features.movement_builders import moving_values, store_chunks
+from tests.features.results.exports.stuck import never_done
+from tests.support.sqlite import fresh_sqlite
+
+FRAMES = 900
+WITHIN_S = 60.0
+
+
+@pytest.fixture
+def site(database_url: str, tmp_path: Path) -> Iterator[Lab]:
+    """An application with a folder of its own and two people's sessions, one with movement."""
+    with running_lab(database_url, data_dir=tmp_path) as lab:
+        _fill(lab)
+        yield lab
+
+
+@pytest.fixture
+def small_site(tmp_path: Path) -> Iterator[Lab]:
+    """The same on SQLite only: what is tested does not depend on the engine."""
+    with running_lab(fresh_sqlite(tmp_path / "reembody.sqlite"), data_dir=tmp_path) as lab:
+        _fill(lab)
+        yield lab
+
+
+def _fill(lab: Lab) -> None:
+    with lab.database.writing() as db:
+        first = build_session(db, SessionSpec("P-0001"))
+        build_session(db, SessionSpec("P-0002"))
+        for seed, stream in enumerate(StreamName):
+            store_chunks(db, first.id, stream, range(FRAMES), moving_values(FRAMES, seed))
+
+
+def _order(client: TestClient, **wish: object) -> Json:
+    body = {"kind": "people", **wish}
+    made: Json = ok(client.post(f"/api/studies/{STUDY}/exports", json=body))
+    return made
+
+
+def _until(client: TestClient, export_id: str, *states: str) -> Json:
+    give_up_s = time.monotonic() + WITHIN_S
+    while time.monotonic() < give_up_s:
+        view: Json = ok(client.get(f"/api/exports/{export_id}"))
+        if view["state"] in states:
+            return view
+        time.sleep(0.05)
+    raise AssertionError(f"the export is still {view['state']}")
+
+
+def _folder(lab: Lab) -> list[str]:
+    folder = lab.context.exports.folder
+    return sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+
+
+def _copies(lab: Lab) -> list[CopyMade]:
+    with lab.database.reading() as db:
+        return list(db.scalars(select(CopyMade).where(CopyMade.kind == "export")))
+
+
+def test_a_file_is_made_and_fetched_whole_or_in_parts(site: Lab) -> None:
+    """The same members as the streamed archive; its hash is told, and every part fits."""
+    client = site.operator
+    ordered = _order(client)
+    done = _until(client, ordered["id"], "ready", "failed")
+    assert (done["state"], done["sessions"], done["rows"]) == ("ready", 2, FRAMES), done
+    assert done["file_name"] == f"reembody_{STUDY}_people_{ordered['asked_at'][:10]}.zip"
+    assert not _copies(site)
+    whole = client.get(f"/api/exports/{done['id']}/file")
+    assert whole.headers["content-length"] == str(done["bytes"])
+    assert done["file_name"] in whole.headers["content-disposition"]
+    assert hashlib.sha256(whole.content).hexdigest() == done["sha256"]
+    # The browser goes on where it broke off, if the file is still the same one.
+    half = len(whole.content) // 2
+    headers = {"range": f"bytes={half}-", "if-range": whole.headers["etag"]}
+    rest = client.get(f"/api/exports/{done['id']}/file", headers=headers)
+    assert (rest.status_code, rest.content) == (206, whole.content[half:])
+    now = site.context.clock.utc_now()
+    streamed = b"".join(study_archive(site.database, STUDY, "people", now=now))
+    with (
+        zipfile.ZipFile(io.BytesIO(whole.content)) as made,
+        zipfile.ZipFile(io.BytesIO(streamed)) as known,
+    ):
+        assert made.testzip() is None
+        assert made.namelist() == known.namelist()
+        for name in set(made.namelist()) - {"README.txt"}:
+            assert made.read(name) == known.read(name), name
+    # On record once, however often it is fetched.
+    assert [(copy.sessions, copy.bytes) for copy in _copies(site)] == [(2, done["bytes"])]
+
+
+def test_one_session_alone_for_whoever_asked(small_site: Lab) -> None:
+    """Its file is named after the participant, holds nobody else, and is no colleague's."""
+    client = small_site.operator
+    sessions = ok(client.get(f"/api/studies/{STUDY}/sessions"))
+    one = next(row for row in sessions if row["participant_code"] == "P-0002")
+    done = _until(client, _order(client, session_id=one["id"])["id"], "ready", "failed")
+    assert "_P-0002_" in done["file_name"]
+    data = client.get(f"/api/exports/{done['id']}/file").content
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        assert b"P-0001" not in b"".join(archive.read(name) for name in archive.namelist())
+        assert b"P-0002" in archive.read("sessions.csv")
+    body = {"kind": "simulated", "session_id": one["id"]}
+    error(client.post(f"/api/studies/{STUDY}/exports", json=body), 404, "not_found")
+    # A colleague of the same study gets the words for what does not exist.
+    colleague = sign_in(small_site, "admin")
+    assert ok(colleague.get("/api/exports")) == []
+    for method, path in (("GET", ""), ("GET", "/file"), ("DELETE", "")):
+        answer = colleague.request(method, f"/api/exports/{done['id']}{path}")
+        error(answer, 404, "not_found")
+    # It goes two hours after somebody last asked for it.
+    job = small_site.context.exports.find(_account(client), done["id"])
+    assert job.fetched_at is not None
+    job.fetched_at -= KEPT
+    assert ok(client.get("/api/exports")) == []
+    assert _folder(small_site) == []
+
+
+def test_what_is_cancelled_ends_at_once_and_leaves_nothing(
+    small_site: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The process is gone with its half-written file; what waited behind it is made."""
+    client = small_site.operator
+    with monkeypatch.context() as patched:
+        patched.setattr("app.features.results.exports.desk.make_archive", never_done)
+        stuck = _order(client)
+        # Asked for again while it is under way, it is the same one.
+        assert _order(client)["id"] == stuck["id"]
+        pid_file = small_site.context.exports.folder / f"{stuck['id']}.pid"
+        give_up_s = time.monotonic() + WITHIN_S
+        while not pid_file.exists() and time.monotonic() < give_up_s:
+            time.sleep(0.05)
+    waiting = _order(client, kind="all")
+    assert waiting["state"] == "queued"
+    error(client.get(f"/api/exports/{stuck['id']}/file"), 409, "not_now")
+    ok(client.delete(f"/api/exports/{stuck['id']}"))
+    pid = int(pid_file.read_text())
+    pid_file.unlink()
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+    assert not [name for name in _folder(small_site) if name.startswith(stuck["id"])]
+    error(client.get(f"/api/exports/{stuck['id']}"), 404, "not_found")
+    assert _until(client, waiting["id"], "ready", "failed")["state"] == "ready"
+
+
+def test_a_file_goes_with_an_erasure(small_site: Lab) -> None:
+    """At once when somebody in the study is erased: the file may hold them."""
+    client = small_site.operator
+    done = _until(client, _order(client)["id"], "ready")
+    people = ok(client.get(f"/api/studies/{STUDY}/participants"))
+    path = f"/api/studies/{STUDY}/participants/{people[0]['id']}/erasure"
+    ok(client.post(path, json={"confirm": people[0]["code"], "reason_code": "requested"}))
+    error(client.get(f"/api/exports/{done['id']}/file"), 404, "not_found")
+    assert _folder(small_site) == []
+
+
+def test_a_disk_that_is_nearly_full_is_left_alone(small_site: Lab) -> None:
+    """The export fails in words, and nothing of it stays; running sessions keep their room."""
+    small_site.context.exports.keep_free_bytes = 2**60
+    client = small_site.operator
+    failed = _until(client, _order(client)["id"], "ready", "failed")
+    assert failed["state"] == "failed"
+    assert "running sessions" in failed["trouble"]["message"]
+    assert "Storage" in failed["trouble"]["remedy"]
+    assert _folder(small_site) == []
+
+
+def _account(client: TestClient) -> str:
+    return str(ok(client.get("/api/me"))["account"]["id"])

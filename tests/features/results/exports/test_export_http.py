@@ -1,0 +1,83 @@
+"""Exports and the codebook over HTTP."""
+
+import io
+import re
+import zipfile
+from collections.abc import Iterator
+
+import pytest
+from fastapi.testclient import TestClient
+from pydantic import SecretStr
+
+from app.features.results.analysis.codebook import CODEBOOK
+from app.main import create_app
+from app.settings import Settings
+from tests.features.builders import STUDY, SessionSpec, build_session
+
+
+@pytest.fixture
+def client(database_url: str) -> Iterator[TestClient]:
+    """A signed-in client of an application with two people and one simulated session."""
+    app = create_app(Settings(database_url=database_url, admin_password=SecretStr("secret-words")))
+    with TestClient(app) as client:
+        with app.state.context.database.writing() as db:
+            build_session(db, SessionSpec("P-0001"))
+            build_session(db, SessionSpec("P-0002"))
+            build_session(db, SessionSpec("SIM-0001", kind="simulated"))
+        login = {"username": "admin", "password": "secret-words"}
+        assert client.post("/api/login", json=login).status_code == 200
+        yield client
+
+
+def test_the_export_is_a_zip_of_csv(client: TestClient) -> None:
+    """With a file name made by us, and people's sessions unless another kind is asked for."""
+    answer = client.get(f"/api/studies/{STUDY}/export")
+    assert answer.status_code == 200
+    assert answer.headers["content-type"] == "application/zip"
+    name = rf"reembody_{STUDY}_people_\d{{4}}-\d\d-\d\d\.zip"
+    disposition = answer.headers["content-disposition"]
+    assert re.fullmatch(f'attachment; filename="{name}"', disposition)
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+        assert archive.testzip() is None
+        assert archive.read("sessions.csv").count(b"\n") == 3
+        assert b"SIM-0001" not in archive.read("events.csv")
+
+
+def test_a_kind_can_be_asked_for(client: TestClient) -> None:
+    """Simulated sessions come alone."""
+    answer = client.get(f"/api/studies/{STUDY}/export", params={"kind": "simulated"})
+    with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+        assert b"P-0001" not in archive.read("sessions.csv")
+        assert b"SIM-0001" in archive.read("sessions.csv")
+
+
+@pytest.mark.parametrize(
+    ("path", "status"),
+    [
+        ("/api/studies/nothing/export", 404),
+        ("/api/studies/..%2F..%2Fetc/export", 404),
+        ("/api/studies/..%5C../export", 404),
+        (f"/api/studies/{STUDY}/export?kind=../../etc", 422),
+    ],
+)
+def test_names_that_are_not_ours_are_refused(client: TestClient, path: str, status: int) -> None:
+    """Nothing in an address becomes part of a path."""
+    answer = client.get(path)
+    assert answer.status_code == status
+    assert answer.json()["error"]["message"]
+
+
+@pytest.mark.parametrize("what", ["export", "codebook"])
+def test_nobody_gets_them_without_signing_in(client: TestClient, what: str) -> None:
+    """Both ask who is there."""
+    client.cookies.clear()
+    assert client.get(f"/api/studies/{STUDY}/{what}").status_code == 401
+
+
+def test_the_codebook_describes_every_column(client: TestClient) -> None:
+    """One entry a column; an unknown study has none."""
+    answer = client.get(f"/api/studies/{STUDY}/codebook")
+    assert [(row["table"], row["column"]) for row in answer.json()] == [
+        (column.table, column.name) for column in CODEBOOK
+    ]
+    assert client.get("/api/studies/nothing/codebook").status_code == 404

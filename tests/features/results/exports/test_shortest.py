@@ -1,0 +1,42 @@
+"""Single-precision numbers printed short."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from app.features.results.exports.shortest import shortest_doubles
+
+
+def _any_singles(count: int) -> NDArray[np.float32]:
+    bits = np.random.default_rng(7).integers(0, 2**32, count, dtype=np.uint32)
+    return bits.view(np.float32)
+
+
+def test_the_text_reads_back_as_the_same_single() -> None:
+    """For every kind of number, from denormal to huge, to the last bit and sign."""
+    values = _any_singles(50_000)
+    values = values[np.isfinite(values)]
+    texts = [repr(double) for double in shortest_doubles(values).tolist()]
+    back = np.array([float(text) for text in texts]).astype(np.float32)
+    assert (back.view(np.uint32) == values.view(np.uint32)).all()
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-4, 3e4])
+def test_the_text_is_the_shortest(scale: float) -> None:
+    """As short as numpy's own shortest text of a single (Dragon4)."""
+    values = np.random.default_rng(1).normal(scale=scale, size=5000).astype(np.float32)
+    ours = shortest_doubles(values).tolist()
+    assert ours == [float(str(value)) for value in values]
+
+
+def test_known_numbers() -> None:
+    """0.1 in single precision is written 0.1, not 0.10000000149011612."""
+    values = np.array([0.1, 0.0, -0.0, 1.0, 16777216.0, 1e-45, -0.70710677], np.float32)
+    texts = [repr(double) for double in shortest_doubles(values).tolist()]
+    assert texts == ["0.1", "0.0", "-0.0", "1.0", "16777216.0", "1e-45", "-0.70710677"]
+
+
+def test_what_is_no_number_stays_so() -> None:
+    """NaN and the infinities pass through."""
+    values = np.array([np.nan, np.inf, -np.inf], np.float32)
+    assert [repr(double) for double in shortest_doubles(values).tolist()] == ["nan", "inf", "-inf"]

@@ -1,0 +1,46 @@
+"""A whole export as tests look at it: its files by name, and their rows."""
+
+import csv
+import io
+from pathlib import Path
+from typing import Any
+
+from app.database import Database
+from app.features.results.exports.service import Exported, export_study
+from tests.features.builders import NOW, STUDY
+
+TABLES = (
+    *("sessions", "phases", "answers", "scores", "contacts", "completions", "joint_errors"),
+    "joint_error_course",
+)
+MORE = (
+    "corrections",
+    "events",
+    "quality",
+    "alarms",
+    "clock_probes",
+    "clock_mapping",
+    "calibrations",
+    "codebook",
+)
+FILES = {*(f"{name}.csv" for name in (*TABLES, *MORE)), "README.txt"}
+
+
+def export(database: Database, to: Path, **options: Any) -> Exported:
+    """An export of the study into a folder."""
+    with database.reading() as db:
+        return export_study(db, STUDY, options.pop("kind", "people"), to, now=NOW, **options)
+
+
+def tree_of(folder: Path) -> dict[str, bytes]:
+    """Every file of a folder, by its path in it."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def rows_of(data: bytes) -> list[dict[str, str]]:
+    """The rows of a table."""
+    return list(csv.DictReader(io.StringIO(data.decode(), newline="")))

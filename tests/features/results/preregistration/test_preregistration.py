@@ -1,0 +1,124 @@
+"""What was declared, what was done, and every way in which the two differ."""
+
+from collections.abc import Iterator
+from datetime import timedelta
+
+import pytest
+
+from app.database import Database, open_database
+from app.features.results.preregistration.markdown import as_markdown, without_codes
+from app.features.results.preregistration.schemas import PreregistrationView
+from app.features.results.preregistration.service import preregistration_of
+from app.features.studies.service import add_version, freeze, newest_version, study_by_key
+from app.models import StudySession
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
+from tests.protocol.helpers import STUDY as FILE
+from tests.protocol.test_preregistration import SECTION
+
+LATER = NOW + timedelta(days=30)
+
+
+@pytest.fixture
+def database(database_url: str) -> Iterator[Database]:
+    """A database with the shipped studies."""
+    database = open_database(database_url)
+    with database.writing() as db:
+        build_study(db)
+    yield database
+    database.close()
+
+
+def declare(database: Database, section: str, days: int = -1) -> None:
+    """Make a version of the study that declares this."""
+    with database.writing() as db:
+        add_version(db, study_by_key(db, STUDY), FILE + section, NOW + timedelta(days=days))
+
+
+def visit(database: Database, code: str, status: str = "completed") -> None:
+    """A session of the newest version."""
+    with database.writing() as db:
+        session: StudySession = build_session(db, SessionSpec(code=code, status=status))
+        freeze(newest_version(db, study_by_key(db, STUDY)), session.created_at)
+
+
+def view_of(database: Database) -> PreregistrationView:
+    """The page now."""
+    with database.reading() as db:
+        return preregistration_of(db, STUDY, "people", LATER)
+
+
+def codes_of(view: PreregistrationView) -> list[str]:
+    """Which deviations and notes there are."""
+    return [one.code for one in view.deviations]
+
+
+@pytest.mark.one_engine
+def test_a_study_that_declared_nothing_says_so(database: Database) -> None:
+    """Nothing is made up for it."""
+    visit(database, "P1")
+    view = view_of(database)
+    assert (view.declaration, view.result, view.deviations) == (None, None, [])
+    assert "Nothing was declared." in as_markdown(view)
+
+
+@pytest.mark.one_engine
+def test_a_declaration_is_shown_before_anybody_came(database: Database) -> None:
+    """No session: nothing to test, nobody left out, and the plan not reached."""
+    declare(database, SECTION)
+    view = view_of(database)
+    assert view.declaration is not None
+    assert view.declaration.frozen_at is None
+    assert (view.sessions, view.included, view.excluded, view.result) == (0, 0, [], None)
+    assert "n_short" in codes_of(view)
+    assert "0 of 12 declared participants" in as_markdown(view)
+
+
+def test_what_was_declared_is_done_and_every_difference_is_told(database: Database) -> None:
+    """Exclusions by rule, n below the plan, a rule without data; the hash of the version."""
+    declare(database, SECTION)
+    for n in range(1, 5):
+        visit(database, f"P{n}")
+    visit(database, "P5", "withdrawn")
+    view = view_of(database)
+    assert view.declaration is not None
+    with database.reading() as db:
+        version = newest_version(db, study_by_key(db, STUDY))
+        assert view.declaration.content_hash == version.content_hash
+    assert (view.declaration.version, view.declaration.planned_n) == (2, 12)
+    assert view.declaration.frozen_at is not None
+    assert [(one.participant_code, one.rule) for one in view.excluded] == [
+        ("P5", "complete_session")
+    ]
+    assert (view.sessions, view.included) == (5, 4)
+    assert view.result is not None
+    assert view.result.n == 4
+    assert view.result.sentence.startswith("L = ")
+    told = codes_of(view)
+    assert "n_short" in told
+    assert "left_out_by_hand" not in told
+    assert "declared_late" not in told
+    assert told[-1] == "exploratory"
+
+
+@pytest.mark.one_engine
+def test_changes_after_the_first_session_are_told(database: Database) -> None:
+    """A declaration that comes late, or changes; sessions left out without a rule."""
+    visit(database, "P1")
+    visit(database, "P2", "aborted")
+    declare(database, SECTION.replace("    - {rule: complete_session}\n", ""), days=1)
+    visit(database, "P3")
+    told = codes_of(view_of(database))
+    assert {"declared_late", "declaration_changed", "left_out_by_hand", "n_short"} <= set(told)
+
+
+@pytest.mark.one_engine
+def test_what_a_registry_gets_names_no_participant(database: Database) -> None:
+    """Codes are pseudonyms of people: a file that is published has none."""
+    declare(database, SECTION)
+    for code, status in (("canary-1", "withdrawn"), ("canary-2", "completed")):
+        visit(database, code, status)
+    text = as_markdown(without_codes(view_of(database)))
+    assert "canary" not in text
+    assert "excluded 1: complete_session" in text
+    for word in ("## Declared", "## Done", "## Deviations", "SHA-256"):
+        assert word in text

@@ -1,0 +1,213 @@
+"""Replays over HTTP and behind it: places, gaps, who sees what, and what is refused."""
+
+import json
+import struct
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sqlalchemy import delete, select
+
+from app.features.results.replay.placing import placed_movement
+from app.features.telemetry.frames import phase_frames
+from app.models import Phase, StudySession, TelemetryChunk, TelemetryStream
+from app.science.joint_error import joint_errors
+from app.science.skeleton import build_skeleton, forward_kinematics
+from app.wire import StreamName
+from tests.api.people import sign_in
+from tests.features.builders import SessionSpec, build_session
+from tests.features.lab import STUDY, Json, Lab, error, ok
+from tests.features.latency_builders import HISTORY_S, RATE_HZ, store_movement
+from tests.features.movement_builders import moving_values, store_chunks
+from tests.features.session_filler import stable_id
+
+LATENCY_S = 0.125
+DURATION_S = 6.0
+STATURE_M = 1.73
+NEAREST_S = 0.5 / RATE_HZ + 1e-9
+
+
+@dataclass(frozen=True)
+class Decoded:
+    """The bytes of a movement, read as docs and module say; without the product's code."""
+
+    header: Json
+    bodies: dict[str, NDArray[np.float32]]
+    errors_rad: NDArray[np.float32]
+
+
+def decode(body: bytes) -> Decoded:
+    """Read them."""
+    (length,) = struct.unpack_from("<I", body)
+    header = json.loads(body[4 : 4 + length])
+    numbers = np.frombuffer(body, "<f4", offset=4 + length)
+    frames, joints = header["frames"], len(header["names"])
+    size = frames * joints * 3
+    bodies = {
+        name: numbers[at * size : (at + 1) * size].reshape(frames, joints, 3)
+        for at, name in enumerate(header["bodies"])
+    }
+    errors = numbers[len(bodies) * size :]
+    return Decoded(
+        header, bodies, errors.reshape(header["error_frames"], len(header["error_joints"]))
+    )
+
+
+@pytest.fixture
+def phase(lab: Lab, request: pytest.FixtureRequest) -> Phase:
+    """The first hand phase of a session that is over, with six seconds of movement."""
+    with lab.database.writing() as db:
+        session = build_session(db, SessionSpec(stable_id(request.node.name)[:12]))
+        found = db.scalars(
+            select(Phase)
+            .where(Phase.session_id == session.id, Phase.limb == "hand")
+            .order_by(Phase.phase_id)
+            .limit(1)
+        ).one()
+        started_s = found.client_started_s or 0.0
+        found.client_ended_s = started_s + DURATION_S
+        found.active_s = DURATION_S
+        store_movement(db, found, LATENCY_S, duration_s=DURATION_S, clock_s=started_s - HISTORY_S)
+        return found
+
+
+def path(phase: Phase, what: str = "replay") -> str:
+    """The address of a phase's replay, or of its movement."""
+    return f"/api/sessions/{phase.session_id}/phases/{phase.phase_id}/{what}"
+
+
+def placed(lab: Lab, phase: Phase, *, full: bool = True) -> Decoded:
+    """The movement as it is placed for a page."""
+    return decode(placed_movement(lab.database, phase.session_id, phase.phase_id, full=full))
+
+
+def test_places_are_those_of_the_stored_frame_nearest_to_each_moment(
+    lab: Lab, phase: Phase
+) -> None:
+    """Forward kinematics of the frames themselves, on the body of the matched height."""
+    shown = placed(lab, phase)
+    assert shown.header["rate_hz"] == 30.0
+    assert shown.header["gaps"] == []
+    skeleton = build_skeleton(STATURE_M)
+    for body in ("target", "actual"):
+        with lab.database.reading() as db:
+            ((_, frames),) = phase_frames(db, phase.session_id, StreamName(body), phase.phase_id)
+        times_s = frames.times_s - (phase.client_started_s or 0.0)
+        expected = forward_kinematics(
+            skeleton, frames.values[:, :3].astype(np.float64), frames.rotations
+        ).positions_m
+        for moment, place in enumerate(shown.bodies[body][:-1]):
+            nearest = int(np.argmin(np.abs(times_s - moment / 30.0)))
+            assert abs(times_s[nearest] - moment / 30.0) <= NEAREST_S
+            np.testing.assert_allclose(place, expected[nearest], atol=1e-6)
+
+
+def test_errors_are_the_angles_of_the_same_frames(lab: Lab, phase: Phase) -> None:
+    """Ten times a second, for every joint but the hips, against what was asked for then."""
+    shown = placed(lab, phase)
+    with lab.database.reading() as db:
+        ((_, target),) = phase_frames(db, phase.session_id, StreamName.TARGET, phase.phase_id)
+        ((_, actual),) = phase_frames(db, phase.session_id, StreamName.ACTUAL, phase.phase_id)
+    angles = joint_errors(target.rotations, actual.rotations).values_rad[..., 0]
+    every = round(RATE_HZ / shown.header["error_rate_hz"])
+    wanted = angles[::every]
+    np.testing.assert_allclose(shown.errors_rad[: len(wanted)], wanted, atol=1e-6)
+    assert shown.errors_rad.max() > 0.05
+
+
+def test_what_was_not_recorded_is_a_gap(lab: Lab, phase: Phase) -> None:
+    """Two seconds without frames are neither filled nor closed up."""
+    seqs = [*range(180), *range(360, 540)]
+    with lab.database.writing() as db:
+        for table in (TelemetryChunk, TelemetryStream):
+            db.execute(delete(table).where(table.session_id == phase.session_id))
+        db.merge(phase).client_started_s = 0.0
+        for stream in StreamName:
+            values = moving_values(len(seqs), 1)
+            store_chunks(db, phase.session_id, stream, seqs, values, phase_id=phase.phase_id)
+    shown = placed(lab, phase)
+    ((begin_s, end_s),) = shown.header["gaps"]
+    assert (begin_s, end_s) == (pytest.approx(179 / 90, abs=1e-3), 4.0)
+    known: NDArray[np.bool_] = np.isfinite(shown.bodies["actual"].sum(axis=(1, 2)))
+    moments_s = np.arange(known.size) / shown.header["rate_hz"]
+    half_step_s = 0.5 / shown.header["rate_hz"]
+    inside = (moments_s > begin_s + half_step_s) & (moments_s < end_s - half_step_s)
+    outside = (moments_s <= begin_s) | (moments_s >= end_s)
+    assert not known[inside].any()
+    assert known[outside & (moments_s < 539 / 90)].all()
+
+
+def test_contacts_completions_and_forms_lie_on_the_phases_time(lab: Lab, phase: Phase) -> None:
+    """With the task's scene, and the questionnaire that follows."""
+    shown = ok(lab.operator.get(path(phase)))
+    assert shown["view"] == "full"
+    assert shown["duration_s"] == pytest.approx(DURATION_S, abs=0.02)
+    assert shown["stature_m"] == STATURE_M
+    panels = [one for one in shown["contacts"] if one["surface_kind"] == "panel"]
+    assert [(one["effect"], one["begin_s"], one["end_s"]) for one in panels] == [
+        ("green", 5.0, 5.5)
+    ]
+    assert {one["surface"] for one in shown["contacts"]} <= {
+        one["key"] for one in shown["surfaces"]
+    }
+    assert [one["number"] for one in shown["completions"]] == [1, 2, 3]
+    with lab.database.reading() as db:
+        session = db.get_one(StudySession, phase.session_id)
+    steps = {step["index"]: step for step in lab.view(session.id)["steps"]}
+    following = [steps[one["step_index"]] for one in shown["forms"]]
+    assert following
+    assert {step["block"] for step in following} == {steps[phase.step_index]["block"]}
+
+
+def test_the_movement_is_sent_once_and_asked_for_by_its_tag(lab: Lab, phase: Phase) -> None:
+    """A page that has the bytes gets none, until more is stored."""
+    first = lab.operator.get(path(phase, "movement"))
+    assert first.content == placed_movement(
+        lab.database, phase.session_id, phase.phase_id, full=True
+    )
+    tag = {"if-none-match": first.headers["etag"]}
+    assert lab.operator.get(path(phase, "movement"), headers=tag).status_code == 304
+    with lab.database.writing() as db:
+        store_movement(db, db.merge(phase), LATENCY_S, duration_s=1.0, epoch=2)
+    later = lab.operator.get(path(phase, "movement"), headers=tag)
+    assert later.status_code == 200
+    assert later.headers["etag"] != first.headers["etag"]
+
+
+def test_a_phase_is_replayed_once_it_is_over(lab: Lab, phase: Phase) -> None:
+    """Before that, and where there is none, it is said what to do."""
+    with lab.database.writing() as db:
+        db.merge(phase).status = "running"
+    for what in ("replay", "movement"):
+        assert error(lab.operator.get(path(phase, what)), 409, "not_now")["value"] == "running"
+    unknown = f"/api/sessions/{phase.session_id}/phases/99/replay"
+    assert phase.phase_id in error(lab.operator.get(unknown), 404, "not_found")["valid"]
+
+
+def test_who_is_blind_sees_the_participant_alone(fresh_lab: Lab) -> None:
+    """Neither the avatar nor what happened to it: their distance in time is the latency."""
+    yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    blinded = yaml.replace("operator: false", "operator: true")
+    ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
+    with fresh_lab.database.writing() as db:
+        session = build_session(db, SessionSpec("P-0001", status="active"))
+        phase = db.scalars(
+            select(Phase).where(Phase.session_id == session.id, Phase.limb == "hand").limit(1)
+        ).one()
+        clock_s = (phase.client_started_s or 0.0) - HISTORY_S
+        store_movement(db, phase, LATENCY_S, duration_s=2.0, clock_s=clock_s)
+    operator = replace(fresh_lab, operator=sign_in(fresh_lab, "operator"))
+    for reader in (fresh_lab, operator):
+        shown = ok(reader.operator.get(path(phase)))
+        assert shown["view"] == "participant"
+        assert shown["latency_ms"] is None
+        assert [shown[name] for name in ("contacts", "completions", "surfaces")] == [[], [], []]
+        movement = decode(reader.operator.get(path(phase, "movement")).content)
+        assert movement.header["bodies"] == ["target"]
+        assert movement.errors_rad.size == 0
+        assert np.isfinite(movement.bodies["target"][:50]).all()
+    with fresh_lab.database.writing() as db:
+        db.merge(session).status = "completed"
+    assert ok(fresh_lab.operator.get(path(phase)))["view"] == "full"
+    assert ok(operator.operator.get(path(phase)))["view"] == "participant"
