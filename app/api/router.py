@@ -11,10 +11,8 @@ from sqlalchemy import text
 from app import __version__
 from app.features.accounts.endpoints import router as accounts
 from app.features.accounts.people_endpoints import router as people
-from app.features.alarms.endpoints import router as alarms
 from app.features.audit.endpoints import router as audit
 from app.features.avatar.endpoints import router as avatars
-from app.features.calibrations.endpoints import router as calibrations
 from app.features.captures.avatar_endpoints import router as on_avatars
 from app.features.captures.endpoints import router as captures
 from app.features.care.network.endpoints import router as network
@@ -22,30 +20,32 @@ from app.features.care.rights.endpoints import router as rights
 from app.features.care.storage.endpoints import router as storage
 from app.features.context import AppContext
 from app.features.dependencies import API_PREFIX, Context
-from app.features.devices.endpoints import router as devices
-from app.features.headset.avatar_endpoints import router as avatar_of_session
-from app.features.headset.socket import serve_headset
 from app.features.humanoids.endpoints import router as humanoids
 from app.features.instruments.endpoints import router as instruments
-from app.features.participants.endpoints import router as participants
-from app.features.poses.endpoints import router as poses
-from app.features.preflight.endpoints import router as preflight
-from app.features.receipts.endpoints import router as receipts
+from app.features.record.alarms.endpoints import router as alarms
+from app.features.record.calibrations.endpoints import router as calibrations
+from app.features.record.devices.endpoints import router as devices
+from app.features.record.headset.avatar_endpoints import router as avatar_of_session
+from app.features.record.headset.socket import serve_headset
+from app.features.record.ledger.endpoints import router as participants
+from app.features.record.poses.endpoints import router as poses
+from app.features.record.preflight.endpoints import router as preflight
+from app.features.record.receipts.endpoints import router as receipts
+from app.features.record.sessions.consent_endpoints import router as consents
+from app.features.record.sessions.endpoints import router as sessions
+from app.features.record.sessions.watching import router as watching
+from app.features.record.suggestions.endpoints import router as suggestions
+from app.features.record.tablet.call_endpoints import router as calls
+from app.features.record.tablet.endpoints import router as tablet
+from app.features.record.telemetry.writer import TelemetryWriter
+from app.features.record.tryout.endpoints import router as tryout
 from app.features.results.analysis.endpoints import router as analysis
 from app.features.results.exports.endpoints import router as exports
 from app.features.results.exports.file_endpoints import router as export_files
 from app.features.results.imports.endpoints import router as imports
 from app.features.results.preregistration.endpoints import router as preregistrations
 from app.features.results.replay.endpoints import router as replays
-from app.features.sessions.consent_endpoints import router as consents
-from app.features.sessions.endpoints import router as sessions
-from app.features.sessions.watching import router as watching
 from app.features.studies.endpoints import router as studies
-from app.features.suggestions.endpoints import router as suggestions
-from app.features.tablet.call_endpoints import router as calls
-from app.features.tablet.endpoints import router as tablet
-from app.features.telemetry.writer import TelemetryWriter
-from app.features.tryout.endpoints import router as tryout
 from app.features.walking.endpoints import router as walks
 from app.features.walking.model_endpoints import router as walking_models
 

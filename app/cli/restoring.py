@@ -17,7 +17,7 @@ from app.features.care.rights.service import (
     forget_erasure,
 )
 from app.features.context import AppContext
-from app.features.sessions.recovery import stop_running_clocks
+from app.features.record.sessions.recovery import stop_running_clocks
 from app.main import create_app
 from app.settings import Settings
 

@@ -15,8 +15,8 @@ from app.features.access import Caller, caller_of, require_object
 from app.features.accounts.service import account_of_token
 from app.features.context import AppContext
 from app.features.cookies import read_cookie
-from app.features.devices.service import device_of_token
 from app.features.policy import HEADSET, TABLET, allowed
+from app.features.record.devices.service import device_of_token
 from app.models import Device
 
 LOGIN_COOKIE = "reembody_login"

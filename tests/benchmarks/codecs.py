@@ -11,11 +11,11 @@ import numpy as np
 import zstandard
 from numpy.typing import NDArray
 
-from app.features.telemetry.encodings import f32_columns, f32_predicted
-from app.features.telemetry.encodings.byte_planes import from_planes, to_planes
-from app.features.telemetry.encodings.columns import Columns
-from app.features.telemetry.encodings.differences import best_differences, summed
-from app.features.telemetry.encodings.unit_quaternions import LeftOut, choose
+from app.features.record.telemetry.encodings import f32_columns, f32_predicted
+from app.features.record.telemetry.encodings.byte_planes import from_planes, to_planes
+from app.features.record.telemetry.encodings.columns import Columns
+from app.features.record.telemetry.encodings.differences import best_differences, summed
+from app.features.record.telemetry.encodings.unit_quaternions import LeftOut, choose
 
 Bits = NDArray[np.uint32]
 LEVEL = 3

@@ -17,13 +17,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.telemetry.encodings import f32_predicted
-from app.features.telemetry.encodings.columns import Columns
+from app.features.record.telemetry.encodings import f32_predicted
+from app.features.record.telemetry.encodings.columns import Columns
 from tests.benchmarks.codecs import Codec, own_codecs
 from tests.benchmarks.report import Figure, Report
 from tests.benchmarks.rival_codecs import rival_codecs
 from tests.conftest import SHARED_DATA_VARIABLE
-from tests.features.telemetry.followed_movement import (
+from tests.features.record.telemetry.followed_movement import (
     CHUNK_FRAMES,
     OWN_NOISE_DEG,
     RATE_HZ,

@@ -10,11 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.telemetry.encodings.bit_fields import pack, unpack
-from app.features.telemetry.encodings.columns import Columns
-from app.features.telemetry.encodings.differences import best_differences, summed
-from app.features.telemetry.encodings.significands import Significands, cut, joined, rest_widths
-from app.features.telemetry.encodings.unit_quaternions import LeftOut, choose
+from app.features.record.telemetry.encodings.bit_fields import pack, unpack
+from app.features.record.telemetry.encodings.columns import Columns
+from app.features.record.telemetry.encodings.differences import best_differences, summed
+from app.features.record.telemetry.encodings.significands import (
+    Significands,
+    cut,
+    joined,
+    rest_widths,
+)
+from app.features.record.telemetry.encodings.unit_quaternions import LeftOut, choose
 from tests.benchmarks.codecs import Codec, bits_of, values_of
 
 _GROUPS = 6

@@ -9,12 +9,12 @@ from sqlalchemy import select
 from app.client.file_journal import FileJournal
 from app.client.journal import Journal
 from app.client.telemetry import TelemetryClient
-from app.features.receipts.service import SessionReceipt, receipt_of
-from app.features.telemetry.frames import concatenate, iter_frames
+from app.features.record.receipts.service import SessionReceipt, receipt_of
+from app.features.record.telemetry.frames import concatenate, iter_frames
 from app.models import TelemetryStream
 from app.wire import StreamName
 from tests.faults.record import record_of
-from tests.features.headset.site import Site, open_site
+from tests.features.record.headset.site import Site, open_site
 from tests.support.server import LiveServer
 from tests.wire.samples import message, standing
 

@@ -9,8 +9,8 @@ from playwright.sync_api import Browser, BrowserContext, Page
 
 from app.database import open_database
 from tests.e2e.telemetry_bench import Headset, Mode, Wear
-from tests.features.headset.site import Site
 from tests.features.lab import ok
+from tests.features.record.headset.site import Site
 from tests.support.browser import (
     ColorScheme,
     ContextFactory,

@@ -10,8 +10,8 @@ from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.faults.figures import note
-from tests.features.headset.site import Site
-from tests.features.headset.streaming import in_free_movement, materialised
+from tests.features.record.headset.site import Site
+from tests.features.record.headset.streaming import in_free_movement, materialised
 from tests.support.browser import ColorScheme
 
 

@@ -9,8 +9,8 @@ from playwright.sync_api import Page, expect
 from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.e2e.test_first_study import STUDY, short_study
 from tests.e2e.wearer import Wearer
-from tests.features.headset.site import Site
 from tests.features.lab import ok
+from tests.features.record.headset.site import Site
 
 
 def test_a_start_needs_a_reason_and_the_boxes_light_up(

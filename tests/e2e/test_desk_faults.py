@@ -10,8 +10,8 @@ from playwright.sync_api import Page, expect
 from tests.e2e.people import PATIENCE_MS, Experimenter, Participant
 from tests.e2e.test_tablet_offline import EXPERT, FORM, code_for, stored
 from tests.faults.figures import note
-from tests.features.headset.site import Site
 from tests.features.lab import ok
+from tests.features.record.headset.site import Site
 from tests.support.browser import PageWatch
 
 TIMES = 50

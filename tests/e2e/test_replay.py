@@ -10,8 +10,8 @@ from sqlalchemy import select
 from app.models import Phase
 from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.features.builders import SessionSpec, build_session
-from tests.features.headset.site import Site
 from tests.features.latency_builders import HISTORY_S, store_movement
+from tests.features.record.headset.site import Site
 
 DURATION_S = 12.0
 

@@ -6,8 +6,8 @@ from playwright.sync_api import Page, expect
 
 from tests.e2e.people import Experimenter
 from tests.features.care.rights.visit import make_visit
-from tests.features.headset.site import open_site
 from tests.features.lab import STUDY
+from tests.features.record.headset.site import open_site
 from tests.support.server import LiveServer
 
 

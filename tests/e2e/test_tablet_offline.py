@@ -11,8 +11,8 @@ from playwright.sync_api import Browser, BrowserContext, Page, Response, expect
 from tests.e2e.killing import kept_profile, kill_browser
 from tests.e2e.people import PATIENCE_MS
 from tests.faults.figures import note
-from tests.features.headset.site import Site
 from tests.features.lab import Json, ok
+from tests.features.record.headset.site import Site
 from tests.support.browser import accessibility_violations
 
 FORM = "block1.hand.karas2020"

@@ -15,7 +15,7 @@ from tests.e2e.telemetry_bench import (
     Wear,
     reconciled,
 )
-from tests.features.headset.site import Site
+from tests.features.record.headset.site import Site
 
 BACKLOG_FRAMES = 54_000
 """Ten minutes of one stream."""

@@ -19,7 +19,7 @@ from tests.e2e.telemetry_bench import (
     Wear,
     reconciled,
 )
-from tests.features.headset.site import Site
+from tests.features.record.headset.site import Site
 from tests.support.browser import ContextFactory
 
 MANY = 6000

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.rehearsal.cast import Cast
 from app.wire.messages import PhaseOrder
-from tests.features.sessions.engine_run import PLAN
+from tests.features.record.sessions.engine_run import PLAN
 from tests.protocol.helpers import edited
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 

@@ -12,7 +12,7 @@ from sqlalchemy import func, select
 
 from app.client.http import call
 from app.client.telemetry import TelemetryClient
-from app.features.telemetry.frames import phase_frames
+from app.features.record.telemetry.frames import phase_frames
 from app.models import ClientReport
 from app.rehearsal.answers import fill_in
 from app.rehearsal.body import make_person

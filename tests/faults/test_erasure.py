@@ -17,8 +17,8 @@ from pathlib import Path
 import pytest
 
 from app.database import open_database
-from app.features.sessions.journal import events_of, verify_chain
-from app.features.sessions.service import session_by_id
+from app.features.record.sessions.journal import events_of, verify_chain
+from app.features.record.sessions.service import session_by_id
 from tests.faults.commands import reembody
 from tests.faults.figures import note
 from tests.features.care.rights.visit import (
@@ -30,8 +30,8 @@ from tests.features.care.rights.visit import (
     make_visit,
     participant_of,
 )
-from tests.features.headset.site import Site
 from tests.features.lab import STUDY, ok
+from tests.features.record.headset.site import Site
 from tests.support.postgres import fresh_postgres
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 from tests.wire.samples import message, standing

@@ -10,11 +10,11 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from app.errors import InvalidInput
-from app.features.headset.parsing import parse_message
+from app.features.record.headset.parsing import parse_message
 from app.wire import MalformedBatchError, decode_batch, flag_frames
 from tests.faults.figures import note
 from tests.faults.streaming import pair_headsets, stream
-from tests.features.headset.site import HELLO, Site, open_site
+from tests.features.record.headset.site import HELLO, Site, open_site
 from tests.rehearsal.ledger import reconcile
 from tests.support.server import LiveServer
 from tests.wire.samples import message, standing

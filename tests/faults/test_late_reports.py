@@ -2,10 +2,10 @@
 
 import pytest
 
-from app.features.sessions.engine import Refused
-from app.features.sessions.engine import commands as c
-from app.features.sessions.engine.state import PhaseState
-from tests.features.sessions.engine_run import PLAN, Run
+from app.features.record.sessions.engine import Refused
+from app.features.record.sessions.engine import commands as c
+from app.features.record.sessions.engine.state import PhaseState
+from tests.features.record.sessions.engine_run import PLAN, Run
 
 ASSUMED = ("headset_lost", "server_restarted")
 FOOT = next(step.key for step in PLAN if step.limb == "foot")

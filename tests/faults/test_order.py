@@ -6,11 +6,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.features.receipts.service import receipt_of
+from app.features.record.receipts.service import receipt_of
 from tests.faults.figures import note
-from tests.features.headset.site import Headset, Site, open_site
 from tests.features.lab import Json
 from tests.features.movement_builders import moving_values
+from tests.features.record.headset.site import Headset, Site, open_site
 from tests.support.server import LiveServer
 from tests.wire.samples import message
 

@@ -18,7 +18,7 @@ from app.wire import StreamName
 from tests.benchmarks.headsets import movement
 from tests.faults.figures import note
 from tests.faults.streaming import StreamingHeadset, batch_of, pair_headsets, signed_in, stream
-from tests.features.headset.site import open_site
+from tests.features.record.headset.site import open_site
 from tests.rehearsal.ledger import LedgerJournal, reconcile
 from tests.support.server import LiveServer
 

@@ -12,12 +12,12 @@ from sqlalchemy.orm import Session
 
 from app.clock import Clock
 from app.features.avatar.service import SHIPPED, version_of
-from app.features.participants.service import close_attempt, hold_slot, take_slot
-from app.features.sessions.contents import store_content
-from app.features.sessions.engine import events as e
-from app.features.sessions.engine import initial_state, state_to_json
-from app.features.sessions.engine.state import SessionStatus, StepState, StepStatus
-from app.features.sessions.journal import append_events
+from app.features.record.ledger.service import close_attempt, hold_slot, take_slot
+from app.features.record.sessions.contents import store_content
+from app.features.record.sessions.engine import events as e
+from app.features.record.sessions.engine import initial_state, state_to_json
+from app.features.record.sessions.engine.state import SessionStatus, StepState, StepStatus
+from app.features.record.sessions.journal import append_events
 from app.features.studies.service import (
     add_shipped,
     newest_version,

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sqlalchemy.orm import Session
 
-from app.features.telemetry.encoding import ENCODING, encode_frames
+from app.features.record.telemetry.encoding import ENCODING, encode_frames
 from app.models import Phase, PhaseLatency, TelemetryChunk, TelemetryStream
 from app.wire import VALUES_PER_FRAME, StreamName
 from tests.features.builders import NOW

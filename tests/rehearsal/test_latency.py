@@ -4,7 +4,7 @@ import pytest
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.telemetry.latencies import phase_latency
+from app.features.record.telemetry.latencies import phase_latency
 from app.models import PhaseLatency
 from tests.rehearsal.performed import PHASES, Performed
 

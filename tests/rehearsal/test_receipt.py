@@ -5,7 +5,7 @@ import hashlib
 import pytest
 from sqlalchemy.orm import Session
 
-from app.features.receipts.service import SessionReceipt, receipt_of
+from app.features.record.receipts.service import SessionReceipt, receipt_of
 from app.wire.messages import REPORT_STREAM
 from tests.rehearsal.performed import Performed
 

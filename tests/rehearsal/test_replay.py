@@ -6,10 +6,10 @@ import pytest
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.record.sessions.service import session_by_id
 from app.features.results.replay.service import Replayable
 from app.features.results.replay.timeline import replay_of
 from app.features.results.replay.times import phase_clock
-from app.features.sessions.service import session_by_id
 from app.models import Completion, Contact, Phase
 from tests.rehearsal.performed import PHASES, Performed
 

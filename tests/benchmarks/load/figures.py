@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.telemetry.live import PERIOD_S
+from app.features.record.telemetry.live import PERIOD_S
 from app.wire import StreamName
 from app.wire.batch import BODY_JOINTS
 from tests.benchmarks.load.record import STREAMS

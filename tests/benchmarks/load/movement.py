@@ -79,7 +79,7 @@ def _frames(
 
 def main() -> None:
     """Print how many bytes a frame of a stored chunk takes."""
-    from app.features.telemetry.encoding import encode_frames
+    from app.features.record.telemetry.encoding import encode_frames
 
     movement = make_movement(np.random.default_rng(1))
     for name, values in (("target", movement.target), ("actual", movement.actual)):

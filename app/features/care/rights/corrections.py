@@ -9,11 +9,11 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput, NotFound, NotNow
 from app.features.audit.service import record
 from app.features.context import AppContext
-from app.features.questionnaires.schemas import AnswerValue
-from app.features.questionnaires.service import correct_answer
-from app.features.sessions.contents import store_content
-from app.features.sessions.engine.commands import CorrectAnswers
-from app.features.sessions.service import apply_command, state_of
+from app.features.record.questionnaires.schemas import AnswerValue
+from app.features.record.questionnaires.service import correct_answer
+from app.features.record.sessions.contents import store_content
+from app.features.record.sessions.engine.commands import CorrectAnswers
+from app.features.record.sessions.service import apply_command, state_of
 from app.models import AnswerCorrection, StudySession, Submission
 
 CONTENT = "correction"

@@ -31,9 +31,9 @@ from app.features.care.rights.service import (
 )
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn, Writing
-from app.features.questionnaires.schemas import StoredAnswers
-from app.features.questionnaires.service import stored_answers
-from app.features.sessions.service import session_by_id
+from app.features.record.questionnaires.schemas import StoredAnswers
+from app.features.record.questionnaires.service import stored_answers
+from app.features.record.sessions.service import session_by_id
 from app.features.studies.service import study_by_key
 
 router = APIRouter(tags=["rights"])

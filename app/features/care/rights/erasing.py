@@ -12,9 +12,9 @@ from app.features.audit.service import record
 from app.features.care.rights.copies import copies_holding, register_found
 from app.features.care.rights.traces import remove_traces
 from app.features.context import AppContext
+from app.features.record.sessions.engine.commands import EraseData
+from app.features.record.sessions.service import apply_command
 from app.features.results.imports.service import forget_participant
-from app.features.sessions.engine.commands import EraseData
-from app.features.sessions.service import apply_command
 from app.models import CopyMade, Erasure, ImportedForm, Participant, Study, StudySession
 from app.models.types import new_id
 

@@ -14,7 +14,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.receipts.service import receipt_of
+from app.features.record.receipts.service import receipt_of
 from app.features.results.analysis.codebook import codebook_frame
 from app.features.results.analysis.tables import (
     Kind,

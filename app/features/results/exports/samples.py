@@ -13,10 +13,10 @@ import numpy as np
 from pydantic_core import to_json
 from sqlalchemy.orm import Session
 
+from app.features.record.telemetry.frames import epochs_of, iter_frames
 from app.features.results.analysis.codebook import columns_of
 from app.features.results.exports.pairing import Rows, Side, paired_rows
 from app.features.results.exports.shortest import shortest_doubles
-from app.features.telemetry.frames import epochs_of, iter_frames
 from app.wire import VALUES_PER_FRAME, StreamName, flag_frames
 
 ACTIVE_BIT = 1

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from app.features.record.telemetry.encoding import Frames
 from app.features.results.replay.grid import Grid, Indices, Sampling
-from app.features.telemetry.encoding import Frames
 from app.science.avatar.hinge_reference import HingeReference
 from app.science.joint_error import ERROR_JOINTS, joint_errors
 from app.science.recorded_error import Asked

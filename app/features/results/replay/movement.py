@@ -26,10 +26,10 @@ import numpy as np
 from numpy.typing import NDArray
 from sqlalchemy.orm import Session
 
+from app.features.record.telemetry.encoding import Frames
+from app.features.record.telemetry.frames import iter_frames
 from app.features.results.replay.errors import RunErrors, no_errors
 from app.features.results.replay.grid import Grid, Sampling, uncovered
-from app.features.telemetry.encoding import Frames
-from app.features.telemetry.frames import iter_frames
 from app.science.avatar.hinge_reference import HingeReference
 from app.science.joint_error import ERROR_JOINTS
 from app.science.rotations import is_unit

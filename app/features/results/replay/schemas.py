@@ -13,8 +13,8 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from app.features.questionnaires.schemas import StoredScores
-from app.features.sessions.schemas import LimbName, PhaseStatus
+from app.features.record.questionnaires.schemas import StoredScores
+from app.features.record.sessions.schemas import LimbName, PhaseStatus
 from app.protocol.plan import StepKind
 
 View = Literal["full", "participant"]

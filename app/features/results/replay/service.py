@@ -14,11 +14,11 @@ from sqlalchemy.orm import Session
 from app import __version__
 from app.errors import Gone, NotFound, NotNow
 from app.features.access import Caller, is_blind
-from app.features.headset.service import participant_info
+from app.features.record.headset.service import participant_info
+from app.features.record.sessions.capture import erased_session
+from app.features.record.sessions.contents import content_body, contents_of
+from app.features.record.sessions.service import protocol_of_session, session_by_id
 from app.features.results.replay.schemas import View
-from app.features.sessions.capture import erased_session
-from app.features.sessions.contents import content_body, contents_of
-from app.features.sessions.service import protocol_of_session, session_by_id
 from app.models import Phase, StudySession, TelemetryBatch, TelemetryChunk
 
 OVER = ("done", "voided")

@@ -6,7 +6,10 @@ from collections.abc import Iterator
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.questionnaires.service import stored_scores
+from app.features.record.questionnaires.service import stored_scores
+from app.features.record.sessions.contents import content_body, contents_of
+from app.features.record.sessions.journal import events_of
+from app.features.record.sessions.service import plan_of, protocol_of_session
 from app.features.results.replay.clock import PhaseClock
 from app.features.results.replay.schemas import (
     ActiveStretch,
@@ -25,9 +28,6 @@ from app.features.results.replay.service import (
     stature_of,
 )
 from app.features.results.replay.times import phase_clock, told_of
-from app.features.sessions.contents import content_body, contents_of
-from app.features.sessions.journal import events_of
-from app.features.sessions.service import plan_of, protocol_of_session
 from app.models import Completion, Contact, Phase, Submission
 from app.protocol.plan import TIMED_KINDS
 

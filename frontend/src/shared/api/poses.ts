@@ -1,7 +1,7 @@
 /**
  * The live movement of a session over a WebSocket.
  *
- * Poses come in binary (`app/features/poses/service.py` tells the layout), everything else in JSON.
+ * Poses come in binary (`app/features/record/poses/service.py` tells the layout), everything else in JSON.
  * Whoever has drawn a pose says so by `drawn`: the server never has more than a few on the way, so
  * what is shown is the newest, however slow the page is.
  */

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.features.headset.conftest import running_site
-from tests.features.headset.site import Site
+from tests.features.record.headset.conftest import running_site
+from tests.features.record.headset.site import Site
 
 
 @pytest.fixture(scope="module", params=["sqlite", "postgresql"])

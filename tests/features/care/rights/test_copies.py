@@ -7,8 +7,8 @@ from pathlib import Path
 
 from tests.faults.commands import reembody
 from tests.features.care.rights.visit import erase, in_bytes, make_visit, participant_of
-from tests.features.headset.site import Site
 from tests.features.lab import STUDY, Json, error, ok
+from tests.features.record.headset.site import Site
 
 
 def copies(site: Site) -> list[Json]:

@@ -6,15 +6,15 @@ import zipfile
 
 from sqlalchemy import select
 
-from app.features.headset.service import participant_info
-from app.features.sessions.contents import contents_of, salted_hash
-from app.features.sessions.journal import events_of, verify_chain
-from app.features.sessions.service import session_by_id
+from app.features.record.headset.service import participant_info
+from app.features.record.sessions.contents import contents_of, salted_hash
+from app.features.record.sessions.journal import events_of, verify_chain
+from app.features.record.sessions.service import session_by_id
 from app.models import Answer
 from app.science.instruments import score_answers
 from tests.features.care.rights.visit import Visit, make_visit
-from tests.features.headset.site import Site
 from tests.features.lab import STUDY, Json, error, ok
+from tests.features.record.headset.site import Site
 
 
 def forms(site: Site, visit: Visit) -> dict[str, Json]:

@@ -8,7 +8,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.audit.service import verify_trail
-from app.features.sessions.journal import canonical, events_of, verify_chain
+from app.features.record.sessions.journal import canonical, events_of, verify_chain
 from app.models import (
     AuditEntry,
     Erasure,
@@ -28,8 +28,8 @@ from tests.features.care.rights.visit import (
     participant_of,
     submit,
 )
-from tests.features.headset.site import Site
 from tests.features.lab import STUDY, Json, error, ok
+from tests.features.record.headset.site import Site
 
 
 def mine(code: str) -> str:

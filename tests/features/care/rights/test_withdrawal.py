@@ -6,8 +6,8 @@ from sqlalchemy import func, select
 
 from app.models import TelemetryBatch, TelemetryChunk, TelemetryStream
 from tests.features.care.rights.visit import FRAMES, make_visit
-from tests.features.headset.site import HELLO, Site
 from tests.features.lab import error, key, ok
+from tests.features.record.headset.site import HELLO, Site
 from tests.wire.samples import message, standing
 
 

@@ -24,8 +24,8 @@ from sqlalchemy import (
 )
 
 from app.wire import StreamName
-from tests.features.headset.site import Site
 from tests.features.lab import STUDY, Json, key, ok
+from tests.features.record.headset.site import Site
 from tests.wire.samples import message, standing
 
 CANARY = "CANARY-7f3a91c2"

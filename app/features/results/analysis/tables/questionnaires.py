@@ -6,7 +6,7 @@ import pandas as pd
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
-from app.features.questionnaires.service import newest_corrections
+from app.features.record.questionnaires.service import newest_corrections
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
     BROKEN_OFF,

@@ -7,6 +7,8 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.record.sessions.contents import content_body
+from app.features.record.sessions.service import plan_of, state_of
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
     BROKEN_OFF,
@@ -15,8 +17,6 @@ from app.features.results.analysis.tables.context import (
     read,
     sessions_context,
 )
-from app.features.sessions.contents import content_body
-from app.features.sessions.service import plan_of, state_of
 from app.features.studies.service import protocol_of, study_by_key, versions_of
 from app.models import (
     LedgerSlot,

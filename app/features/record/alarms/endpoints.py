@@ -1,0 +1,16 @@
+"""Alarms over HTTP: what went wrong in a session, and when."""
+
+from fastapi import APIRouter
+
+from app.features.dependencies import Reading, SignedIn
+from app.features.record.alarms.schemas import AlarmView
+from app.features.record.alarms.service import alarm_history
+from app.features.record.sessions.service import session_by_id
+
+router = APIRouter(tags=["sessions"])
+
+
+@router.get("/sessions/{session_id}/alarms")
+def get_alarms(session_id: str, db: Reading, _: SignedIn) -> list[AlarmView]:
+    """Every alarm that a session had, the newest first."""
+    return alarm_history(db, session_by_id(db, session_id))

@@ -1,0 +1,252 @@
+"""One headset's open socket: a reader, a talker, a follower, a watch; the writer stores it all.
+
+Reading stops while too many messages wait for the disk: the client then feels TCP's backpressure
+and its journal grows visibly instead of anything being dropped.
+"""
+
+import asyncio
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
+
+from app.errors import InvalidInput, Withdrawn
+from app.features.context import AppContext
+from app.features.live import Subscription
+from app.features.record.devices.service import device_of_token
+from app.features.record.headset.lookout import Lookout
+from app.features.record.headset.parsing import parse_message
+from app.features.record.headset.service import headset_state, welcome
+from app.features.record.sessions.service import session_by_id
+from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
+from app.features.record.telemetry.outcome import Outcome
+from app.features.record.telemetry.writer import (
+    Arrival,
+    BatchContent,
+    Content,
+    LossContent,
+    ProbeContent,
+    TelemetryWriter,
+)
+from app.wire import decode_batch
+from app.wire.messages import (
+    PROTOCOL_VERSION,
+    Ack,
+    Failure,
+    HeadsetState,
+    Hello,
+    Message,
+    Probe,
+    ProbeAnswer,
+    Probed,
+    Produced,
+    Report,
+    Welcome,
+)
+
+log = logging.getLogger(__name__)
+MAX_IN_FLIGHT = 64
+"""Two seconds of messages; more would let one who brings a backlog hold up all the others."""
+HELLO_DEADLINE_S = 10.0
+Told = TypeVar("Told")
+CLOSE_REFUSED = 4400
+
+
+@dataclass(eq=False)
+class HeadsetConnection:
+    """One open socket. Methods called by the writer are safe from its thread."""
+
+    socket: WebSocket
+    context: AppContext
+    writer: TelemetryWriter
+    session_id: str
+    token: str
+    epoch: int = 0
+    lookout: Lookout = field(init=False)
+    _loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
+    _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
+    _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
+    _unanswered: int = 0
+
+    def deliver(self, outcome: Outcome) -> None:
+        """Called by the writer: these are on disk."""
+        self._call(self._delivered, outcome)
+
+    def fail(self, error: Exception) -> None:
+        """Called by the writer: the session's messages cannot be stored."""
+        message = Failure(code="not_stored", message=str(error)[:300], remedy="Reconnect.")
+        if isinstance(error, Withdrawn):
+            message = Failure(code=error.code, message=error.message, remedy=error.remedy)
+        self._call(self._outbox.put_nowait, message)
+
+    async def run(self) -> None:
+        """Serve the socket until it closes."""
+        await self._greet()
+        with self.context.hub.subscribe(self.session_id) as subscription:
+            self.context.hub.headset_joined(self.session_id)
+            self.context.hub.publish(self.session_id, "session")
+            tasks = [
+                asyncio.create_task(self._read()),
+                asyncio.create_task(self._talk()),
+                asyncio.create_task(self._follow(subscription)),
+                asyncio.create_task(self.lookout.run(lambda: not self._in_flight.locked())),
+            ]
+            try:
+                done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+                for task in done:
+                    task.result()
+            finally:
+                for task in tasks:
+                    task.cancel()
+                await asyncio.gather(*tasks, return_exceptions=True)
+                self._leave()
+
+    def _leave(self) -> None:
+        self.context.hub.headset_left(self.session_id)
+        connected = self.context.hub.headset_connected(self.session_id)
+        if not connected:
+            self._submit(LossContent("headset_lost"))
+        self.lookout.leave(connected=connected)
+        self.context.hub.publish(self.session_id, "session")
+
+    async def _greet(self) -> None:
+        """Take the hello and answer it."""
+        received = await asyncio.wait_for(self.socket.receive(), HELLO_DEADLINE_S)
+        if received["type"] == "websocket.disconnect":
+            raise WebSocketDisconnect(received.get("code", 1005))
+        text = received.get("text") or ""
+        hello = parse_message(text)
+        if not isinstance(hello, Hello) or hello.protocol != PROTOCOL_VERSION:
+            raise InvalidInput(
+                "the first message must be a hello of this protocol",
+                value=text[:200],
+                valid={"type": "hello", "protocol": PROTOCOL_VERSION},
+                remedy="Update the client.",
+            )
+        answer, live = await asyncio.to_thread(self._welcome, hello)
+        self.epoch = answer.epoch
+        self.lookout = Lookout(self.context, self.session_id, self._submit, answer, live)
+        await self._send(answer)
+
+    def _welcome(self, hello: Hello) -> tuple[Welcome, LiveTelemetry]:
+        now = self.context.clock.utc_now()
+        with self.context.database.writing() as db:
+            answer = welcome(db, self.session_id, hello, now)
+        # For an avatar of physics this loads compiled code: neither in the writing turn nor in the
+        # event loop.
+        with self.context.database.reading() as db:
+            return answer, live_telemetry(db, self.session_id)
+
+    async def _read(self) -> None:
+        while True:
+            received = await self.socket.receive()
+            if received["type"] == "websocket.disconnect":
+                raise WebSocketDisconnect(received.get("code", 1005))
+            message = received.get("bytes")
+            if message is not None:
+                await self._take_batch(message)
+            else:
+                await self._take_text(received.get("text") or "")
+
+    async def _take_batch(self, message: bytes) -> None:
+        batch = decode_batch(message)
+        self._require_epoch(batch.header.epoch)
+        await self._store(BatchContent(batch, message))
+        # The live view does not wait for the commit.
+        self.lookout.batch(batch)
+
+    async def _take_text(self, text: str) -> None:
+        received_ns = self.context.clock.monotonic_ns()
+        message = parse_message(text)
+        match message:
+            case Report():
+                self._require_epoch(message.epoch)
+                self.lookout.report(message)
+                await self._store(message)
+            case Probe():
+                await self._send(
+                    ProbeAnswer(
+                        client_sent_s=message.client_sent_s,
+                        server_received_ns=received_ns,
+                        server_sent_ns=self.context.clock.monotonic_ns(),
+                    )
+                )
+            case Probed():
+                self.lookout.probed(message)
+                await self._store(ProbeContent(self.epoch, message))
+            case Produced():
+                self._require_epoch(message.epoch)
+                self.lookout.produced(message)
+                await self._store(message)
+            case Hello():
+                raise InvalidInput("hello came twice", remedy="Open a new connection.")
+
+    async def _store(self, content: Content) -> None:
+        await self._in_flight.acquire()
+        self._unanswered += 1
+        self._submit(content)
+
+    def _submit(self, content: Content) -> None:
+        self.writer.submit(Arrival(self.session_id, self, content))
+
+    def _delivered(self, outcome: Outcome) -> None:
+        # One delivery answers everything that was in the same commit.
+        for _ in range(min(outcome.messages, self._unanswered)):
+            self._in_flight.release()
+        self._unanswered = max(0, self._unanswered - outcome.messages)
+        self.lookout.delivered(outcome, waiting=self._unanswered > 0)
+        if outcome.positions:
+            self._outbox.put_nowait(Ack(positions=tuple(outcome.positions.values())))
+        for notice in outcome.notices:
+            self._outbox.put_nowait(notice)
+
+    async def _talk(self) -> None:
+        while True:
+            message = await self._outbox.get()
+            await self._send(message)
+            if isinstance(message, Failure):
+                await self.socket.close(CLOSE_REFUSED)
+                return
+
+    async def _follow(self, subscription: Subscription) -> None:
+        """Send the session's state on every change; close when the pairing was revoked."""
+        # Not the same for all: else those that came together would all ask at once, for ever.
+        pairing_checked_s = 10.0 + int(self.session_id[:4], 16) / 0x2000
+        while True:
+            news = await subscription.next(timeout_s=pairing_checked_s)
+            if not news:
+                await asyncio.to_thread(self._require_pairing)
+            if "session" in news:
+                state = await asyncio.to_thread(self._state)
+                self.lookout.follow(state)
+                await self._send(state)
+
+    def _state(self) -> HeadsetState:
+        with self.context.database.reading() as db:
+            device_of_token(db, self.token, "headset")
+            return headset_state(db, session_by_id(db, self.session_id))
+
+    def _require_pairing(self) -> None:
+        with self.context.database.reading() as db:
+            device_of_token(db, self.token, "headset")
+
+    def _require_epoch(self, epoch: int) -> None:
+        if epoch != self.epoch and epoch > self.epoch:
+            raise InvalidInput(
+                f"epoch {epoch} was not given out",
+                value=epoch,
+                valid=self.epoch,
+                remedy="Use the epoch of the welcome message, or an earlier one of this session.",
+            )
+
+    async def _send(self, message: Message) -> None:
+        if self.socket.application_state is WebSocketState.CONNECTED:
+            await self.socket.send_text(message.model_dump_json())
+
+    def _call(self, function: Callable[[Told], object], told: Told) -> None:
+        try:
+            self._loop.call_soon_threadsafe(function, told)
+        except RuntimeError:  # the loop has closed: nobody is left to tell
+            return

@@ -1,0 +1,145 @@
+"""What a headset is told: declarative state that it converges to, never a list of past commands."""
+
+from datetime import datetime
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.errors import Conflict
+from app.features.record.questionnaires.service import answers_of
+from app.features.record.sessions.capture import require_capture
+from app.features.record.sessions.contents import content_body, contents_of
+from app.features.record.sessions.engine import SessionState
+from app.features.record.sessions.service import plan_of, session_by_id, state_of
+from app.features.record.telemetry.positions import certain_active_s, positions_of, take_epoch
+from app.features.studies.service import protocol_of
+from app.models import Completion, StudySession, StudyVersion, Submission
+from app.protocol.plan import Step
+from app.wire.messages import (
+    PROTOCOL_VERSION,
+    HeadsetState,
+    Hello,
+    ParticipantInfo,
+    PhaseOrder,
+    Welcome,
+)
+
+CENTIMETRES_PER_METRE = 100.0
+
+
+def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcome:
+    """The answer to a hello; one without an epoch takes the next.
+
+    Raises Conflict where the client cannot show the session's avatar.
+    """
+    session = session_by_id(db, session_id, lock=True)
+    require_capture(db, session_id)
+    _require_avatar(session, hello)
+    protocol = protocol_of(db.get_one(StudyVersion, session.study_version_id))
+    return Welcome(
+        protocol=PROTOCOL_VERSION,
+        session_id=session.id,
+        epoch=hello.epoch or take_epoch(db, session_id, now),
+        time_scale=session.time_scale,
+        language=session.language,
+        avatar=session.avatar,
+        on_disconnect=protocol.on_disconnect,
+        undelayed_parts=protocol.latency.undelayed_parts,
+        tasks=protocol.tasks.model_dump(mode="json"),
+        texts={
+            key: text.get(session.language) or next(iter(text.values()))
+            for key, text in protocol.texts.items()
+        },
+        positions=positions_of(db, session_id),
+        state=headset_state(db, session),
+    )
+
+
+def _require_avatar(session: StudySession, hello: Hello) -> None:
+    if session.avatar not in hello.avatars:
+        raise Conflict(
+            f"{hello.client} cannot show the avatar {session.avatar!r} of this session",
+            value=session.avatar,
+            valid=list(hello.avatars),
+            remedy="Use a client that can, or a version of the study with another avatar.",
+        )
+
+
+def headset_state(db: Session, session: StudySession) -> HeadsetState:
+    """Where the session stands for the headset."""
+    state, plan = state_of(session), plan_of(db, session)
+    step = None if state.current is None else plan[state.current]
+    active = state.status == "active"
+    return HeadsetState(
+        version=session.version,
+        status=str(state.status),
+        step_index=state.current,
+        step_kind=None if step is None else step.kind,
+        materialised=state.materialised,
+        # Recording runs from the avatar's appearance to the debriefing.
+        recording=active and state.materialised and (step is None or step.kind != "debrief"),
+        phase=_phase_order(db, session, state, plan),
+        participant=participant_info(db, session),
+    )
+
+
+def participant_info(db: Session, session: StudySession) -> ParticipantInfo:
+    """Handedness, footedness and height, as far as they were answered; the matched height wins."""
+    answers = _demographics(db, session)
+    stature_m = None
+    stated_cm = answers.get("height_cm")
+    if isinstance(stated_cm, float):
+        stature_m = stated_cm / CENTIMETRES_PER_METRE
+    for row in contents_of(db, session.id, "height"):
+        body = content_body(row)
+        if isinstance(body, dict):
+            stature_m = body.get("matched") or body.get("stated") or stature_m
+    return ParticipantInfo(
+        handedness=_text(answers.get("handedness")),
+        footedness=_text(answers.get("footedness")),
+        stature_m=stature_m,
+    )
+
+
+def _demographics(db: Session, session: StudySession) -> dict[str, str | float | None]:
+    newest = db.scalar(
+        select(Submission.id)
+        .where(Submission.session_id == session.id, Submission.instrument == "demographics")
+        .order_by(Submission.submitted_at.desc())
+        .limit(1)
+    )
+    return {} if newest is None else answers_of(db, newest)
+
+
+def _text(value: str | float | None) -> str | None:
+    return value if isinstance(value, str) else None
+
+
+def _phase_order(
+    db: Session, session: StudySession, state: SessionState, plan: tuple[Step, ...]
+) -> PhaseOrder | None:
+    phase = state.phase
+    if phase is None or state.status != "active":
+        return None
+    step = plan[phase.step]
+    completions = db.scalar(
+        select(func.count())
+        .select_from(Completion)
+        .where(Completion.session_id == session.id, Completion.phase_id == phase.phase_id)
+    )
+    return PhaseOrder(
+        phase_id=phase.phase_id,
+        kind=step.kind,
+        limb=step.limb,
+        status=str(phase.status),
+        latency_ms=step.latency_ms or 0.0,
+        preparation_s=step.preparation_s or 0.0,
+        duration_s=step.duration_s or 0.0,
+        freeze_s=step.freeze_s or 0.0,
+        # A headset that takes over in mid-phase goes on from here, before the loss is noticed too.
+        active_s=max(phase.active_s, certain_active_s(db, session.id, phase.phase_id)),
+        completions=completions or 0,
+        pausing=phase.pausing,
+        resuming=phase.resuming,
+        until_completions=step.until_completions,
+    )

@@ -1,0 +1,80 @@
+"""Accepting a headset's WebSocket: who it is, and why it is closed.
+
+The token comes as a second subprotocol (`bearer.TOKEN`), so that it stands in no URL and in no log.
+"""
+
+import asyncio
+import logging
+
+from sqlalchemy.exc import DBAPIError
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
+
+from app.errors import InvalidInput, NotSignedIn, ReembodyError
+from app.features.context import AppContext
+from app.features.record.devices.service import device_of_token
+from app.features.record.headset.connection import CLOSE_REFUSED, HeadsetConnection
+from app.features.record.telemetry.writer import TelemetryWriter
+from app.wire import MalformedBatchError
+from app.wire.messages import SUBPROTOCOL, Failure
+
+log = logging.getLogger(__name__)
+CLOSE_NOT_PAIRED = 4401
+CLOSE_TRY_AGAIN = 1013
+MOST_REASON_BYTES = 123
+
+
+async def serve_headset(socket: WebSocket, context: AppContext, writer: TelemetryWriter) -> None:
+    """Accept, authenticate and serve one headset; every refusal says why before it closes."""
+    token = _token(socket)
+    await socket.accept(subprotocol=SUBPROTOCOL)
+    try:
+        device = await asyncio.to_thread(_device_session, context, token)
+        connection = HeadsetConnection(socket, context, writer, device, token)
+        await connection.run()
+    except (WebSocketDisconnect, asyncio.CancelledError):
+        return
+    except NotSignedIn as error:
+        await _close(socket, CLOSE_NOT_PAIRED, error)
+    except ReembodyError as error:
+        await _close(socket, CLOSE_REFUSED, error)
+    except MalformedBatchError as error:
+        await _close(
+            socket,
+            CLOSE_REFUSED,
+            InvalidInput(str(error), remedy="See docs/protocol.md for the layout of a batch."),
+        )
+    except DBAPIError:
+        # Nothing can be read or stored just now: the headset comes again by itself.
+        if socket.application_state is WebSocketState.CONNECTED:
+            await socket.close(CLOSE_TRY_AGAIN)
+    except TimeoutError:
+        await _close(
+            socket, CLOSE_REFUSED, InvalidInput("no hello came", remedy="Send hello first.")
+        )
+
+
+def _device_session(context: AppContext, token: str) -> str:
+    with context.database.reading() as db:
+        return device_of_token(db, token, "headset").session_id
+
+
+def _token(socket: WebSocket) -> str:
+    offered = socket.scope.get("subprotocols", [])
+    tokens = [name.removeprefix("bearer.") for name in offered if name.startswith("bearer.")]
+    return tokens[0] if tokens else ""
+
+
+async def _close(socket: WebSocket, code: int, error: ReembodyError) -> None:
+    if socket.application_state is not WebSocketState.CONNECTED:
+        return
+    failure = Failure(code=error.code, message=error.message, remedy=error.remedy)
+    try:
+        await socket.send_text(failure.model_dump_json())
+        await socket.close(code, reason=_reason(error.message))
+    except (RuntimeError, WebSocketDisconnect):
+        log.debug("the headset was gone before it could be told")
+
+
+def _reason(message: str) -> str:
+    """As much of a message as a close frame holds."""
+    return message.encode()[:MOST_REASON_BYTES].decode(errors="ignore")

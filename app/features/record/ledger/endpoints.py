@@ -1,0 +1,91 @@
+"""The counterbalancing ledger over HTTP."""
+
+from collections import Counter
+from collections.abc import Sequence
+
+from fastapi import APIRouter
+from sqlalchemy.orm import Session
+
+from app.features.access import Caller, is_blind
+from app.features.dependencies import Reading, SignedIn
+from app.features.record.ledger.service import SlotView, ledger_of, planned_slots
+from app.features.record.sessions.schemas import Kind
+from app.features.record.sessions.service import end_reason
+from app.features.studies.schemas import AttemptView, LedgerView, SequenceRow, SlotRow
+from app.features.studies.service import newest_version, protocol_of, study_by_key
+
+router = APIRouter(tags=["participants"])
+GIVEN_UP = ("aborted", "withdrawn")
+
+
+@router.get("/studies/{key}/ledger")
+def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -> LedgerView:
+    """Every slot with its attempts; before the first join, the slots as they will be.
+
+    In a blinded study only the orders of completed slots are told, and to operators none.
+    """
+    version = newest_version(db, study_by_key(db, key))
+    protocol = protocol_of(version)
+    latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
+    slots = ledger_of(db, version, kind)
+    rows = [_row(db, view, latency_ms) for view in slots] or [
+        SlotRow(
+            index=index,
+            block=index // max(1, len(planned_slots(protocol)) // protocol.orders.replicates),
+            replicate=replicate,
+            sequence=[latency_ms[condition] for condition in sequence],
+            state="free",
+            attempts=[],
+        )
+        for index, (sequence, replicate) in enumerate(planned_slots(protocol))
+    ]
+    blinded = is_blind(db, caller, protocol, None)
+    return LedgerView(
+        kind=kind,
+        seed=None if blinded else protocol.orders.seed,
+        when_full=protocol.orders.when_full,
+        started=bool(slots),
+        sequences=None if blinded else _sequences(rows),
+        slots=[_hidden(row, caller) for row in rows] if blinded else rows,
+    )
+
+
+def _hidden(row: SlotRow, caller: Caller) -> SlotRow:
+    """A slot of a blinded study: its order is told once it is completed, and never to operators."""
+    told = row.state == "completed" and caller.role != "operator"
+    return row if told else row.model_copy(update={"sequence": None})
+
+
+def _row(db: Session, view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
+    return SlotRow(
+        index=view.slot.position,
+        block=view.slot.block,
+        replicate=view.slot.replicate,
+        sequence=[latency_ms[condition] for condition in view.slot.sequence],
+        state=view.state,
+        attempts=[
+            AttemptView(
+                session_id=attempt.session_id,
+                participant_code=code,
+                outcome=attempt.outcome,
+                opened_at=attempt.opened_at,
+                closed_at=attempt.closed_at,
+                reason=end_reason(db, attempt.session_id) if attempt.outcome in GIVEN_UP else None,
+            )
+            for attempt, code in view.attempts
+        ],
+    )
+
+
+def _sequences(rows: Sequence[SlotRow]) -> list[SequenceRow]:
+    counts = Counter((tuple(row.sequence or ()), row.state) for row in rows)
+    orders = sorted({order for order, _ in counts})
+    return [
+        SequenceRow(
+            sequence=list(order),
+            completed=counts[order, "completed"],
+            open=counts[order, "open"],
+            total=sum(counts[order, state] for state in ("completed", "open", "free")),
+        )
+        for order in orders
+    ]

@@ -1,0 +1,100 @@
+"""From the headset's messages to what consoles draw, before any commit.
+
+The feed of one headset's connection publishes the newest frame of each stream at most `RATE_HZ`
+times a second, and only while a console listens. A console that is slow finds the newest frame in
+its slot and never learns of those between, so nobody can hold up the headset (app.features.live).
+
+A pose message is little-endian binary:
+
+    offset  type     field
+    0       4 bytes  magic "RMP1"
+    4       u8       stream: 1 target, 2 actual
+    5       u8       frame flags (bit 0: the phase's clock ran)
+    6       u16      values that follow, 91
+    8       u32      phase_id, 0 outside phases
+    12      u64      seq of the frame
+    20      f64      client monotonic time of the frame, s
+    28      f32[91]  root position x, y, z (m, world) then 22 local rotations w, x, y, z
+"""
+
+import struct
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.features.live import Hub
+from app.features.record.poses.schemas import Touch
+from app.wire import Batch, StreamName
+from app.wire.messages import CompletionReport, ContactReport, Report
+
+MAGIC = b"RMP1"
+HEADER = struct.Struct("<4sBBHIQd")
+RATE_HZ = 30.0
+TOPICS = {StreamName.TARGET: "pose_target", StreamName.ACTUAL: "pose_actual"}
+TOUCHES = "touches"
+TOUCHES_KEPT = 16
+_CODES = {StreamName.TARGET: 1, StreamName.ACTUAL: 2}
+
+
+@dataclass
+class PoseFeed:
+    """What one connection of a headset shows to consoles."""
+
+    hub: Hub
+    session_id: str
+    _told_s: dict[StreamName, float] = field(default_factory=dict)
+    _touches: deque[Touch] = field(default_factory=lambda: deque(maxlen=TOUCHES_KEPT))
+
+    def take(self, batch: Batch, now_s: float) -> None:
+        """Frames have come, at this monotonic time of the server."""
+        stream = batch.header.stream
+        if now_s - self._told_s.get(stream, float("-inf")) < 1.0 / RATE_HZ:
+            return
+        topic = TOPICS[stream]
+        if self.hub.has_listeners(self.session_id, topic):
+            self._told_s[stream] = now_s
+            self.hub.publish(self.session_id, topic, encode_pose(batch))
+
+    def report(self, report: Report) -> None:
+        """A contact or a completed task has come; the last few are told together."""
+        touch = _touch(report)
+        if touch is None:
+            return
+        self._touches.append(touch)
+        self.hub.publish(self.session_id, TOUCHES, tuple(self._touches))
+
+
+def encode_pose(batch: Batch) -> bytes:
+    """The message of a batch's newest frame."""
+    header = batch.header
+    values = np.ascontiguousarray(batch.values[-1], "<f4")
+    return (
+        HEADER.pack(
+            MAGIC,
+            _CODES[header.stream],
+            int(batch.flags[-1]),
+            len(values),
+            header.phase_id,
+            header.seq_end - 1,
+            float(batch.times_s[-1]),
+        )
+        + values.tobytes()
+    )
+
+
+def _touch(report: Report) -> Touch | None:
+    body = report.body
+    number = (report.epoch, report.seq)
+    if isinstance(body, ContactReport):
+        return Touch(
+            number=number,
+            phase_id=body.phase_id,
+            surface=body.surface,
+            kind=body.surface_kind,
+            part=body.body_part,
+            effect=body.effect,
+        )
+    if isinstance(body, CompletionReport):
+        return Touch(number=number, phase_id=body.phase_id, kind="completion", effect="completed")
+    return None

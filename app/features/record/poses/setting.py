@@ -1,0 +1,67 @@
+"""What a console needs before it can draw a pose: the body, the boxes, and whether it is blind."""
+
+from sqlalchemy.orm import Session
+
+from app.features.access import Caller, is_blind
+from app.features.record.headset.service import headset_state, participant_info
+from app.features.record.poses.schemas import Setup, SurfaceView, Vector
+from app.features.record.sessions.service import plan_of, protocol_of_session, session_by_id
+from app.models import StudySession
+from app.protocol import StudyProtocol
+from app.science.skeleton import JOINT_NAMES, PARENTS, SkeletonError, build_skeleton
+
+USUAL_STATURE_M = 1.72
+"""Until the participant's is known."""
+Limb = str | None
+
+
+def setup_of(db: Session, caller: Caller, session_id: str) -> Setup:
+    """The setup as `caller` may see it. Raises NotFound."""
+    session = session_by_id(db, session_id)
+    protocol = protocol_of_session(db, session)
+    state = headset_state(db, session)
+    stature_m = participant_info(db, session).stature_m
+    limb = _limb(db, session, state.step_index)
+    return Setup(
+        blinded=is_blind(db, caller, protocol, session),
+        simulated=session.kind == "simulated",
+        recording=state.recording,
+        limb=limb,
+        stature_m=stature_m or USUAL_STATURE_M,
+        stature_known=stature_m is not None,
+        joints=JOINT_NAMES,
+        parents=PARENTS,
+        offsets_m=_offsets_m(stature_m or USUAL_STATURE_M),
+        surfaces=_surfaces(protocol, limb),
+    )
+
+
+def _limb(db: Session, session: StudySession, step_index: int | None) -> Limb:
+    if step_index is None:
+        return None
+    limb = plan_of(db, session)[step_index].limb
+    return None if limb is None else str(limb)
+
+
+def _offsets_m(stature_m: float) -> tuple[Vector, ...]:
+    try:
+        offsets_m = build_skeleton(stature_m).offsets_m
+    except SkeletonError:
+        offsets_m = build_skeleton(USUAL_STATURE_M).offsets_m
+    return tuple((float(x), float(y), float(z)) for x, y, z in offsets_m)
+
+
+def _surfaces(protocol: StudyProtocol, limb: Limb) -> tuple[SurfaceView, ...]:
+    if limb is None:
+        return ()
+    task = protocol.tasks.hand if limb == "hand" else protocol.tasks.foot
+    return tuple(
+        SurfaceView(
+            key=one.key,
+            kind=one.kind,
+            box=one.box,
+            center_m=one.center_m,
+            half_size_m=one.half_size_m,
+        )
+        for one in task.layout().surfaces
+    )

@@ -1,0 +1,124 @@
+"""Whether what will be recorded gets onto the disk: tried, not assumed."""
+
+import os
+import secrets
+from datetime import datetime
+from pathlib import Path
+
+from anyio.to_thread import run_sync
+from sqlalchemy import delete, select
+from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from app.database import Database
+from app.errors import NotDurable
+from app.features.context import AppContext
+from app.features.record.preflight.schemas import Check
+from app.features.trouble import explain
+from app.models import SessionContent
+
+KIND = "write_test"
+WRITTEN_BYTES = 64 * 1024
+"""About a second of movement."""
+NS_PER_MS = 1e6
+BYTES_PER_GB = 1e9
+
+
+class DiffersError(Exception):
+    """What was read is not what was written."""
+
+
+async def storage_checks(context: AppContext, session_id: str) -> tuple[Check, ...]:
+    """The checks of the server's storage, in the order of the list."""
+    return await _written(context, session_id), await run_sync(_disk, context)
+
+
+async def _written(context: AppContext, session_id: str) -> Check:
+    """A row and a file are written, flushed to the disk, read back and removed."""
+    began_ns = context.clock.monotonic_ns()
+    try:
+        await write_and_read_back(context, session_id)
+    except DiffersError:
+        return Check(key="storage", status="fail", code="storage.differs")
+    except (SQLAlchemyError, NotDurable, OSError) as error:
+        trouble = explain(error)
+        told = str(error)[:200] if trouble is None else trouble.message
+        return Check(key="storage", status="fail", code="storage.failing", details=(told,))
+    took_ms = (context.clock.monotonic_ns() - began_ns) / NS_PER_MS
+    return Check(key="storage", status="ok", code="storage.ok", value=round(took_ms, 1), unit="ms")
+
+
+async def write_and_read_back(context: AppContext, session_id: str) -> None:
+    """Leaves nothing behind.
+
+    Raises DiffersError, or what the database or the file system raises.
+    """
+    words = secrets.token_hex(WRITTEN_BYTES // 2)
+    database = context.database
+    async with database.writing_async() as db:
+        row_id = await run_sync(_put, db, session_id, words, context.clock.utc_now())
+    try:
+        await run_sync(_compare, database, row_id, words)
+    finally:
+        async with database.writing_async() as db:
+            await run_sync(db.execute, delete(SessionContent).where(SessionContent.id == row_id))
+    await run_sync(_file, context.settings.data_dir, words.encode())
+
+
+def _put(db: Session, session_id: str, words: str, now: datetime) -> str:
+    # First what a crash in the midst of an earlier test has left.
+    db.execute(
+        delete(SessionContent).where(
+            SessionContent.session_id == session_id, SessionContent.kind == KIND
+        )
+    )
+    row = SessionContent(
+        session_id=session_id,
+        kind=KIND,
+        salt=None,
+        body=words,
+        created_at=now,
+        created_by="server",
+    )
+    db.add(row)
+    db.flush()
+    return row.id
+
+
+def _compare(database: Database, row_id: str, words: str) -> None:
+    with database.reading() as db:
+        if db.scalar(select(SessionContent.body).where(SessionContent.id == row_id)) != words:
+            raise DiffersError
+
+
+def _file(folder: Path, content: bytes) -> None:
+    if not folder.is_dir():
+        return  # The data are on a database server.
+    file = folder / f".write-test-{secrets.token_hex(8)}"
+    try:
+        with file.open("wb") as out:
+            out.write(content)
+            out.flush()
+            os.fsync(out.fileno())
+        if file.read_bytes() != content:
+            raise DiffersError
+    finally:
+        file.unlink(missing_ok=True)
+
+
+def _disk(context: AppContext) -> Check:
+    storage = context.storage
+    try:
+        free = storage.free_bytes(storage.folder)
+    except OSError:
+        return Check(key="disk", status="ok", code="disk.elsewhere")
+    low = free < storage.low_disk_bytes
+    return Check(
+        key="disk",
+        status="fail" if low else "ok",
+        code="disk.low" if low else "disk.ok",
+        value=round(free / BYTES_PER_GB, 1),
+        unit="GB",
+        expected="at_least",
+        limit=round(storage.low_disk_bytes / BYTES_PER_GB, 1),
+    )

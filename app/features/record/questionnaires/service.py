@@ -1,0 +1,161 @@
+"""Forms: storing one once, scoring it, moving the session on."""
+
+import hashlib
+import secrets
+from collections.abc import Mapping
+from typing import Any, cast
+
+from sqlalchemy import Table, bindparam, insert, select
+from sqlalchemy.orm import Session
+
+from app.errors import NotNow
+from app.features.context import AppContext
+from app.features.record.questionnaires.checks import check_answers
+from app.features.record.questionnaires.due import DueForm, due_form
+from app.features.record.questionnaires.due import current_administration as current_administration
+from app.features.record.questionnaires.refused import keep_refused, request_hash
+from app.features.record.questionnaires.schemas import AnswerValue, Receipt, SubmissionRequest
+from app.features.record.questionnaires.stop_rules import judge, tell
+from app.features.record.questionnaires.stored import answers_of as answers_of
+from app.features.record.questionnaires.stored import correct_answer as correct_answer
+from app.features.record.questionnaires.stored import newest_corrections as newest_corrections
+from app.features.record.questionnaires.stored import stored_answers as stored_answers
+from app.features.record.questionnaires.stored import stored_scores as stored_scores
+from app.features.record.sessions.capture import require_capture_of
+from app.features.record.sessions.engine.commands import SubmitForm
+from app.features.record.sessions.journal import canonical
+from app.features.record.sessions.service import apply_command
+from app.models import Answer, ScoreValue, StudySession, Submission
+from app.models.types import new_id
+from app.rows import insert_rows
+from app.science.instruments import Instrument, score_answers
+
+Row = dict[str, Any]
+ANSWERS = cast("Table", Answer.__table__)
+SCORES = cast("Table", ScoreValue.__table__)
+_STORED = (
+    select(Submission)
+    .where(
+        Submission.session_id == bindparam("session_id"),
+        (Submission.idempotency_key == bindparam("idempotency_key"))
+        | (Submission.administration == bindparam("administration")),
+    )
+    .limit(1)
+)
+
+
+def submit(
+    db: Session,
+    context: AppContext,
+    session: StudySession,
+    request: SubmissionRequest,
+    *,
+    mode: str,
+    actor: str,
+) -> Receipt:
+    """Store a form and move the session on; its receipt, the first one if it was stored before.
+
+    `session` must be locked. Raises InvalidInput with every answer that does not fit, NotNow when
+    this form is not due, KeptConflict when other answers are stored already; these are then kept
+    beside them.
+    """
+    require_capture_of(db, session)
+    hash_ = request_hash(request)
+    known = _stored(db, session, request)
+    if known is not None:
+        if known.idempotency_key == request.idempotency_key and known.request_hash == hash_:
+            return Receipt(receipt_id=known.id, stored_at=known.submitted_at, duplicate=True)
+        keep_refused(db, context, session, request, stands=known, actor=actor)
+    due = due_form(db, session)
+    if due is None or due.key != request.administration:
+        raise NotNow(
+            f"the form {request.administration!r} is not due now",
+            value=request.administration,
+            valid=due.key if due else None,
+            remedy="The answers are still on this device; tell the experimenter.",
+        )
+    instrument = due.used.instrument
+    check_answers(instrument, request, allow_missing=mode == "operator")
+    id_, salt, now = new_id(), secrets.token_hex(32), context.clock.utc_now()
+    _store(
+        db,
+        _submission_row(due, request)
+        | {"id": id_, "session_id": session.id, "request_hash": hash_, "salt": salt}
+        | {"mode": mode, "entered_by": actor, "submitted_at": now},
+        _answer_rows(id_, instrument, request),
+        _score_rows(id_, instrument, request.answers),
+    )
+    judgement = judge(db, session, instrument.key)
+    tell(db, session, judgement, now)
+    digest = hashlib.sha256(f"{salt}{canonical(request.answers)}".encode()).hexdigest()
+    command = SubmitForm(
+        step=due.step.index, submission_id=id_, content_hash=digest, rules_met=judgement.met
+    )
+    apply_command(db, context, session, command, actor=actor)
+    return Receipt(receipt_id=id_, stored_at=now, duplicate=False)
+
+
+def _stored(db: Session, session: StudySession, request: SubmissionRequest) -> Submission | None:
+    wanted = {
+        "session_id": session.id,
+        "idempotency_key": request.idempotency_key,
+        "administration": request.administration,
+    }
+    return db.scalar(_STORED, wanted)
+
+
+def _store(db: Session, submission: Row, answers: list[Row], scores: list[Row]) -> None:
+    """A form with its answers and scores, a statement for each table."""
+    db.connection().execute(insert(Submission), submission)
+    insert_rows(db, ANSWERS, answers)
+    if scores:
+        insert_rows(db, SCORES, scores)
+
+
+def _submission_row(due: DueForm, request: SubmissionRequest) -> Row:
+    """What the form and the request say of a submission."""
+    return {
+        "administration": due.key,
+        "step_index": due.step.index,
+        "attempt": due.attempt,
+        "instrument_version_id": due.used.version_id,
+        "instrument": due.used.instrument.key,
+        "idempotency_key": request.idempotency_key,
+        "language": request.language,
+        "item_seed": request.seed,
+        "shown_order": request.shown_order,
+        "timings": request.timings,
+        "item_traces": _as_stored(request),
+        "started_at": request.started_at_utc,
+    }
+
+
+def _as_stored(request: SubmissionRequest) -> dict[str, Any] | None:
+    traces = request.item_traces
+    return None if traces is None else {item: one.model_dump() for item, one in traces.items()}
+
+
+def _answer_rows(id_: str, instrument: Instrument, request: SubmissionRequest) -> list[Row]:
+    shown = {item: at for at, item in enumerate(request.shown_order)}
+    rows = []
+    for item in instrument.items:
+        value = request.answers.get(item.key)
+        text = value.strip() if isinstance(value, str) else None
+        number = float(value) if isinstance(value, bool | int | float) else None
+        rows.append(
+            {
+                "submission_id": id_,
+                "item": item.key,
+                "position": shown[item.key],
+                "value_number": number,
+                "value_text": text or None,
+            }
+        )
+    return rows
+
+
+def _score_rows(id_: str, instrument: Instrument, answers: Mapping[str, AnswerValue]) -> list[Row]:
+    return [
+        {"submission_id": id_, "score": key, "value": value}
+        for key, value in score_answers(instrument, answers).items()
+    ]

@@ -1,0 +1,22 @@
+"""A session's receipt over HTTP."""
+
+from dataclasses import replace
+
+from fastapi import APIRouter
+
+from app.features.access import is_blind
+from app.features.dependencies import Reading, SignedIn
+from app.features.record.receipts.service import SessionReceipt, receipt_of
+from app.features.record.sessions.service import protocol_of_session, session_by_id
+
+router = APIRouter(tags=["receipts"])
+
+
+@router.get("/sessions/{session_id}/receipt")
+def get_receipt(session_id: str, db: Reading, caller: SignedIn) -> SessionReceipt:
+    """Prove from the record what of a session is there; a blinded operator sees no latencies."""
+    receipt = receipt_of(db, session_id)
+    session = session_by_id(db, session_id)
+    if is_blind(db, caller, protocol_of_session(db, session), session):
+        return replace(receipt, achieved_latency=())
+    return receipt

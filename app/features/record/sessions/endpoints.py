@@ -1,0 +1,165 @@
+"""Sessions over HTTP: joining, the cockpit's view, commands, the log."""
+
+from fastapi import APIRouter
+from sqlalchemy import select
+
+from app.features.access import is_blind
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.record.questionnaires.schemas import (
+    Administration,
+    Receipt,
+    StoredAnswers,
+    SubmissionRequest,
+)
+from app.features.record.questionnaires.service import (
+    current_administration,
+    stored_answers,
+    submit,
+)
+from app.features.record.sessions.commands import command_of, reason_given
+from app.features.record.sessions.contents import store_content
+from app.features.record.sessions.engine.commands import LiftBlinding
+from app.features.record.sessions.schemas import (
+    CommandRequest,
+    EventView,
+    Kind,
+    NewSession,
+    Reveal,
+    SessionSummary,
+    SessionView,
+    StreamView,
+)
+from app.features.record.sessions.service import (
+    apply_command,
+    is_repeated,
+    join,
+    protocol_of_session,
+    session_by_id,
+)
+from app.features.record.sessions.view import event_views, list_sessions, session_view
+from app.features.studies.service import study_by_key
+from app.models import TelemetryStream
+
+router = APIRouter(tags=["sessions"])
+
+
+@router.post("/studies/{key}/sessions", status_code=201)
+def create_session(
+    key: str, request: NewSession, db: Writing, context: Context, caller: SignedIn
+) -> SessionView:
+    """Join a study: take the next slot of the ledger for a participant."""
+    session = join(
+        db,
+        context,
+        study_key=key,
+        participant_code=request.participant_code,
+        kind=request.kind,
+        language=request.language,
+        time_scale=request.time_scale,
+    )
+    return session_view(db, context, session, caller)
+
+
+@router.get("/studies/{key}/sessions")
+def get_sessions(
+    key: str, db: Reading, caller: SignedIn, kind: Kind | None = None
+) -> list[SessionSummary]:
+    """The sessions of a study, newest first."""
+    return list_sessions(db, study_by_key(db, key), kind, caller)
+
+
+@router.get("/sessions/{session_id}")
+def get_session(session_id: str, db: Reading, context: Context, caller: SignedIn) -> SessionView:
+    """A session as the cockpit shows it."""
+    return session_view(db, context, session_by_id(db, session_id), caller)
+
+
+@router.post("/sessions/{session_id}/commands")
+def post_command(
+    session_id: str, request: CommandRequest, db: Writing, context: Context, caller: SignedIn
+) -> SessionView:
+    """Do something with a session. A repeated `command_id` changes nothing."""
+    session = session_by_id(db, session_id, lock=True)
+    if is_repeated(db, session_id, request.command_id):
+        return session_view(db, context, session, caller)
+    apply_command(
+        db,
+        context,
+        session,
+        command_of(db, context, session, request, caller.actor),
+        actor=caller.actor,
+        command_id=request.command_id,
+        # A note cannot clash with anything.
+        expected_version=None if request.type == "note" else request.expected_version,
+    )
+    return session_view(db, context, session, caller)
+
+
+@router.get("/sessions/{session_id}/events")
+def get_events(session_id: str, db: Reading, caller: SignedIn) -> list[EventView]:
+    """The event log, oldest first."""
+    return event_views(db, session_by_id(db, session_id), caller)
+
+
+@router.post("/sessions/{session_id}/reveal")
+def post_reveal(
+    session_id: str, request: Reveal, db: Writing, context: Context, caller: SignedIn
+) -> SessionView:
+    """Show a blinded session's condition before it is over, for a reason that goes on record.
+
+    Asking again changes nothing. An operator stays blind.
+    """
+    session = session_by_id(db, session_id, lock=True)
+    reason = reason_given(request.reason, "showing the condition")
+    if is_blind(db, caller, protocol_of_session(db, session), session):
+        content = store_content(
+            db,
+            session_id=session.id,
+            kind="reason",
+            body=reason,
+            by=caller.actor,
+            now=context.clock.utc_now(),
+        )
+        apply_command(db, context, session, LiftBlinding(content=content), actor=caller.actor)
+    return session_view(db, context, session, caller)
+
+
+@router.get("/sessions/{session_id}/answers")
+def get_answers(session_id: str, db: Reading, _: SignedIn) -> list[StoredAnswers]:
+    """Every stored form with answers and scores."""
+    return stored_answers(db, session_by_id(db, session_id))
+
+
+@router.get("/sessions/{session_id}/administration")
+def get_administration(session_id: str, db: Reading, _: SignedIn) -> Administration | None:
+    """The form that is due now, for entry by the operator."""
+    return current_administration(db, session_by_id(db, session_id))
+
+
+@router.post("/sessions/{session_id}/submissions")
+def post_submission(
+    session_id: str, request: SubmissionRequest, db: Writing, context: Context, caller: SignedIn
+) -> Receipt:
+    """Store a form that the operator filled in from what the participant said."""
+    session = session_by_id(db, session_id, lock=True)
+    return submit(db, context, session, request, mode="operator", actor=caller.actor)
+
+
+@router.get("/sessions/{session_id}/streams")
+def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
+    """How much of each stream of each run of the headset is on disk."""
+    session_by_id(db, session_id)
+    return [
+        StreamView(
+            stream=row.stream,
+            epoch=row.epoch,
+            next_seq=row.next_seq,
+            frames_stored=row.frames_stored,
+            frames_flagged=row.frames_flagged,
+        )
+        for row in db.scalars(
+            select(TelemetryStream)
+            .where(TelemetryStream.session_id == session_id)
+            .order_by(TelemetryStream.epoch, TelemetryStream.stream)
+        )
+    ]

@@ -1,0 +1,42 @@
+"""Which commands make sense now, so that a page offers those and no others."""
+
+from collections.abc import Sequence
+
+from app.features.record.sessions.engine.state import PhaseStatus, SessionState, SessionStatus
+from app.protocol.plan import TIMED_KINDS, Step
+
+_DONE_BY_HAND = ("consent", "instructions", "height", "debrief")
+
+
+def allowed_commands(plan: Sequence[Step], state: SessionState) -> list[str]:
+    """Command types in the order a page shows them: the next action first."""
+    if state.erased:
+        return []
+    if state.status is SessionStatus.PLANNED:
+        return ["start", "note"]
+    if state.status is not SessionStatus.ACTIVE or state.current is None:
+        return ["note"]
+    if state.held is not None:
+        return ["abort", "withdraw", "override_stop", "note"]
+    step = plan[state.current]
+    allowed = _next_actions(step, state)
+    if state.phase is not None or step.kind in TIMED_KINDS or state.current > 0:
+        allowed.append("redo")
+    return [*allowed, "skip", "note", "abort", "withdraw"]
+
+
+def _next_actions(step: Step, state: SessionState) -> list[str]:
+    phase = state.phase
+    if phase is not None:
+        if phase.status is PhaseStatus.RUNNING and not phase.pausing:
+            return ["pause"]
+        if phase.status is PhaseStatus.PAUSED and not phase.resuming:
+            return ["resume"]
+        return []
+    if step.kind in _DONE_BY_HAND:
+        return ["complete_step"]
+    if step.kind == "materialise":
+        return ["materialise"]
+    if step.kind in TIMED_KINDS:
+        return ["begin_phase"]
+    return ["enter_answers"]

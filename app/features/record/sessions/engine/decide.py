@@ -1,0 +1,235 @@
+"""What may happen next: a command against the state gives events, or is refused with its reason."""
+
+from collections.abc import Sequence
+
+from app.features.record.sessions.engine import commands as c
+from app.features.record.sessions.engine import events as e
+from app.features.record.sessions.engine.beside import decide_beside
+from app.features.record.sessions.engine.holding import decide_override, require_not_held, rules_met
+from app.features.record.sessions.engine.phases import decide_headset_lost, decide_report
+from app.features.record.sessions.engine.refused import Refused
+from app.features.record.sessions.engine.state import (
+    PhaseState,
+    PhaseStatus,
+    SessionState,
+    SessionStatus,
+)
+from app.protocol.plan import TIMED_KINDS, Step
+
+FORMS = ("form", "questionnaire")
+
+__all__ = ["Refused", "decide"]
+
+
+def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> list[e.Event]:
+    """The events that `command` gives in `state`; raises Refused if it cannot be done now.
+
+    A refusal leaves everything as it was. Ending the last step also ends the session.
+    """
+    beside = decide_beside(state, command)
+    if beside is not None:
+        return beside
+    if isinstance(command, c.Start):
+        return _start(state)
+    if state.status is not SessionStatus.ACTIVE or state.current is None:
+        raise Refused(
+            f"the session is {state.status}",
+            value=state.status,
+            valid=[SessionStatus.ACTIVE],
+            remedy="Start the session first."
+            if state.status is SessionStatus.PLANNED
+            else "It has ended; only notes can be added.",
+        )
+    require_not_held(state, command)
+    match command:
+        case c.OverrideStop():
+            return decide_override(state, command)
+        case c.Report():
+            return _then_end(plan, state, decide_report(plan, state, command))
+        case c.HeadsetLost():
+            return decide_headset_lost(plan, state, command)
+        case c.Redo():
+            return _redo(plan, state, command)
+        case c.Stop():
+            ended = e.SessionEnded(status=command.status, **_ref(command.content))
+            return [*_void_running(state, command.status), ended]
+        case _:
+            return _then_end(plan, state, _decide_step(plan[state.current], state, command))
+
+
+def _start(state: SessionState) -> list[e.Event]:
+    if state.status is not SessionStatus.PLANNED:
+        raise Refused(
+            f"the session is {state.status} already",
+            value=state.status,
+            valid=[SessionStatus.PLANNED],
+            remedy="Look at its current step; somebody else may have started it.",
+        )
+    return [e.SessionStarted()]
+
+
+def _decide_step(step: Step, state: SessionState, command: c.Command) -> list[e.Event]:
+    match command:
+        case c.CompleteStep():
+            return _complete(step, command)
+        case c.SubmitForm():
+            return _submit(step, command)
+        case c.Materialise():
+            _require_kind(step, ("materialise",), "materialise the avatar")
+            return [
+                e.AvatarMaterialised(step=step.index, by=command.by, client_t_s=command.client_t_s)
+            ]
+        case c.BeginPhase():
+            return _begin(step, state, command)
+        case c.Pause():
+            return _pause(state, command)
+        case c.Resume():
+            return _resume(state, command)
+        case c.Skip():
+            skipped = e.StepSkipped(step=step.index, **_ref(command.content))
+            return [*_void_running(state, "skip"), skipped]
+        case _:
+            raise Refused(f"unknown command {type(command).__name__}", value=None, valid=None)
+
+
+def _complete(step: Step, command: c.CompleteStep) -> list[e.Event]:
+    _require_kind(step, ("consent", "instructions", "height", "debrief"), "mark the step as done")
+    if command.step is not None and command.step != step.index:
+        raise Refused(
+            f"step {command.step} is not the current one",
+            value=command.step,
+            valid=[step.index],
+            remedy="The session has moved on; the page shows the current step.",
+        )
+    ref = _ref(command.content) if command.content else {}
+    return [e.StepCompleted(step=step.index, by=command.by, **ref)]
+
+
+def _submit(step: Step, command: c.SubmitForm) -> list[e.Event]:
+    _require_kind(step, FORMS, "submit a form")
+    if command.step != step.index:
+        raise Refused(
+            f"the form of step {command.step} is not the current one",
+            value=command.step,
+            valid=[step.index],
+            remedy="The answers are kept on the tablet; tell the experimenter.",
+        )
+    return [
+        e.FormSubmitted(
+            step=step.index,
+            submission_id=command.submission_id,
+            content_hash=command.content_hash,
+        ),
+        *rules_met(command),
+    ]
+
+
+def _begin(step: Step, state: SessionState, command: c.BeginPhase) -> list[e.Event]:
+    _require_kind(step, TIMED_KINDS, "begin a phase")
+    if state.phase is not None:
+        raise Refused(
+            f"the phase is {state.phase.status} already",
+            value=state.phase.status,
+            valid=["no phase under way"],
+            remedy="Somebody else may have begun it.",
+        )
+    _require_headset(connected=command.headset_connected)
+    return [
+        e.PhasePrepared(
+            step=step.index,
+            phase_id=state.next_phase_id,
+            attempt=state.steps[step.index].attempt,
+            latency_ms=step.latency_ms or 0.0,
+        )
+    ]
+
+
+def _pause(state: SessionState, command: c.Pause) -> list[e.Event]:
+    phase = _require_phase(state, (PhaseStatus.RUNNING,), "pause")
+    if phase.pausing:
+        return []
+    ref = _ref(command.content) if command.content else {}
+    return [e.PauseRequested(phase_id=phase.phase_id, **ref)]
+
+
+def _resume(state: SessionState, command: c.Resume) -> list[e.Event]:
+    phase = _require_phase(state, (PhaseStatus.PAUSED,), "resume")
+    _require_headset(connected=command.headset_connected)
+    return [] if phase.resuming else [e.ResumeRequested(phase_id=phase.phase_id)]
+
+
+def _redo(plan: Sequence[Step], state: SessionState, command: c.Redo) -> list[e.Event]:
+    current = state.current if state.current is not None else 0
+    target = current if command.step is None else command.step
+    if not 0 <= target <= current:
+        raise Refused(
+            f"step {target} lies ahead",
+            value=target,
+            valid=list(range(current + 1)),
+            remedy="Only the current step or an earlier one can be done over.",
+        )
+    if target == current and state.phase is None and plan[target].kind not in TIMED_KINDS:
+        raise Refused(
+            "the current step has not been done yet",
+            value=target,
+            valid=list(range(current)),
+            remedy="Do it, or choose an earlier step to do over.",
+        )
+    voided: list[e.Event] = [
+        e.PhaseVoided(phase_id=past.phase_id, cause="redo")
+        for past in state.ended_phases
+        if past.step >= target and past.status is not PhaseStatus.VOIDED
+    ]
+    reopened = e.StepReopened(step=target, **_ref(command.content))
+    return [*voided, *_void_running(state, "redo"), reopened]
+
+
+def _void_running(state: SessionState, cause: str) -> list[e.Event]:
+    if state.phase is None:
+        return []
+    return [e.PhaseVoided(phase_id=state.phase.phase_id, cause=cause)]
+
+
+def _then_end(plan: Sequence[Step], state: SessionState, decided: list[e.Event]) -> list[e.Event]:
+    """Add the end of the session where the last step was left."""
+    leaves = (e.StepCompleted, e.FormSubmitted, e.StepSkipped, e.AvatarMaterialised, e.PhaseEnded)
+    last = state.current == len(plan) - 1
+    if last and any(isinstance(event, leaves) for event in decided):
+        return [*decided, e.SessionEnded(status=SessionStatus.COMPLETED)]
+    return decided
+
+
+def _require_kind(step: Step, kinds: Sequence[str], wish: str) -> None:
+    if step.kind not in kinds:
+        raise Refused(
+            f"cannot {wish} in step {step.key!r}, which is of kind {step.kind!r}",
+            value=step.kind,
+            valid=list(kinds),
+            remedy="Finish or skip the current step first.",
+        )
+
+
+def _require_phase(state: SessionState, statuses: Sequence[PhaseStatus], wish: str) -> PhaseState:
+    if state.phase is None or state.phase.status not in statuses:
+        status = state.phase.status if state.phase else "no phase under way"
+        raise Refused(
+            f"cannot {wish}: {status}",
+            value=status,
+            valid=list(statuses),
+            remedy="The page shows what can be done now.",
+        )
+    return state.phase
+
+
+def _require_headset(*, connected: bool) -> None:
+    if not connected:
+        raise Refused(
+            "no headset is connected, so nothing could run the phase",
+            value="headset not connected",
+            valid=["headset connected"],
+            remedy="Pair or wake the headset, or skip the step with a reason.",
+        )
+
+
+def _ref(content: c.ContentRef) -> dict[str, str]:
+    return {"content_id": content.content_id, "content_hash": content.content_hash}

@@ -1,0 +1,158 @@
+"""How the state follows from an event. Total: every stored event folds, whatever came before."""
+
+from dataclasses import replace
+
+from app.features.record.sessions.engine import events as e
+from app.features.record.sessions.engine.state import (
+    Hold,
+    PhaseState,
+    PhaseStatus,
+    SessionState,
+    SessionStatus,
+    StepState,
+    StepStatus,
+)
+
+
+def initial_state(step_count: int) -> SessionState:
+    """A session that has joined and not begun."""
+    return SessionState(
+        version=0,
+        status=SessionStatus.PLANNED,
+        steps=tuple(StepState() for _ in range(step_count)),
+    )
+
+
+def evolve(state: SessionState, event: e.Event) -> SessionState:
+    """The state after `event`."""
+    return replace(_applied(state, event), version=state.version + 1)
+
+
+def _applied(state: SessionState, event: e.Event) -> SessionState:
+    match event:
+        case e.SessionStarted():
+            return _enter(replace(state, status=SessionStatus.ACTIVE), 0)
+        case e.StepCompleted(step=step) | e.FormSubmitted(step=step):
+            return _leave(state, step, StepStatus.DONE)
+        case e.AvatarMaterialised(step=step):
+            return replace(_leave(state, step, StepStatus.DONE), materialised=True)
+        case e.StepSkipped(step=step):
+            return _leave(state, step, StepStatus.SKIPPED)
+        case e.StepReopened(step=step):
+            return _reopen(state, step)
+        case e.PhaseEnded():
+            return _end_phase(state, event)
+        case e.PhaseVoided():
+            return _void_phase(state, event)
+        case e.SessionEnded(status=status):
+            return replace(state, status=SessionStatus(status), current=None, held=None)
+        case e.StopRuleMet() | e.StopRuleOverridden() | e.DataErased():
+            return _marked(state, event)
+        case _:
+            return replace(state, phase=_clocked(state.phase, event))
+
+
+def _marked(state: SessionState, event: e.Event) -> SessionState:
+    """The state after an event that moves nothing: a hold, its end, an erasure."""
+    match event:
+        case e.StopRuleMet(rule=rule, submission_id=submission_id):
+            # Of several rules that one form meets, the first is named.
+            return replace(state, held=state.held or Hold(rule, submission_id))
+        case e.StopRuleOverridden():
+            return replace(state, held=None)
+        case _:
+            return replace(state, erased=True)
+
+
+def _clocked(phase: PhaseState | None, event: e.Event) -> PhaseState | None:
+    """The phase after an event of its clock."""
+    if isinstance(event, e.PhasePrepared):
+        return PhaseState(event.phase_id, event.step, event.attempt, PhaseStatus.PREPARING)
+    if phase is None:
+        return None
+    match event:
+        case e.PhaseStarted():
+            return replace(phase, status=PhaseStatus.RUNNING)
+        case e.PauseRequested():
+            return replace(phase, pausing=True)
+        case e.PhasePaused(active_s=active_s, cause=cause):
+            return replace(
+                phase,
+                status=PhaseStatus.PAUSED,
+                active_s=active_s,
+                pausing=False,
+                resuming=False,
+                pause_cause=cause,
+            )
+        case e.ResumeRequested():
+            return replace(phase, resuming=True)
+        case e.PhaseResumed(active_s=active_s) | e.WalkBackEnded(active_s=active_s):
+            return _running(phase, active_s)
+        case e.WalkBackStarted(active_s=active_s):
+            # Nobody waits for a resume any more: the walk back ends by itself.
+            return replace(
+                phase,
+                status=PhaseStatus.WALK_BACK,
+                active_s=active_s,
+                resuming=False,
+                pause_cause=None,
+            )
+        case e.PhaseFrozen(active_s=active_s):
+            return replace(
+                phase, status=PhaseStatus.FREEZING, active_s=active_s, pausing=False, resuming=False
+            )
+        case _:
+            return phase
+
+
+def _running(phase: PhaseState, active_s: float) -> PhaseState:
+    return replace(
+        phase, status=PhaseStatus.RUNNING, active_s=active_s, resuming=False, pause_cause=None
+    )
+
+
+def _end_phase(state: SessionState, event: e.PhaseEnded) -> SessionState:
+    phase = state.phase
+    if phase is None:
+        return state
+    ended = replace(phase, status=PhaseStatus.DONE, active_s=event.active_s)
+    left = _leave(state, phase.step, StepStatus.DONE)
+    return replace(left, phase=None, ended_phases=(*state.ended_phases, ended))
+
+
+def _void_phase(state: SessionState, event: e.PhaseVoided) -> SessionState:
+    if state.phase is not None and state.phase.phase_id == event.phase_id:
+        voided = replace(state.phase, status=PhaseStatus.VOIDED, pausing=False, resuming=False)
+        return replace(state, phase=None, ended_phases=(*state.ended_phases, voided))
+    return replace(
+        state,
+        ended_phases=tuple(
+            replace(past, status=PhaseStatus.VOIDED) if past.phase_id == event.phase_id else past
+            for past in state.ended_phases
+        ),
+    )
+
+
+def _leave(state: SessionState, step: int, status: StepStatus) -> SessionState:
+    left = _with_step(state, step, replace(state.steps[step], status=status))
+    return _enter(left, step + 1)
+
+
+def _enter(state: SessionState, step: int) -> SessionState:
+    if step >= len(state.steps):
+        return replace(state, current=None)
+    entered = replace(state.steps[step], status=StepStatus.CURRENT)
+    return replace(_with_step(state, step, entered), current=step)
+
+
+def _reopen(state: SessionState, step: int) -> SessionState:
+    last = state.current if state.current is not None else len(state.steps) - 1
+    steps = tuple(
+        StepState(StepStatus.PENDING, past.attempt + 1) if step <= index <= last else past
+        for index, past in enumerate(state.steps)
+    )
+    return _enter(replace(state, steps=steps), step)
+
+
+def _with_step(state: SessionState, step: int, value: StepState) -> SessionState:
+    return replace(state, steps=(*state.steps[:step], value, *state.steps[step + 1 :]))

@@ -1,0 +1,102 @@
+"""What happened in each phase so far, for the cockpit."""
+
+from collections.abc import Sequence
+from typing import TypedDict
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.features.record.sessions.schemas import PhaseView
+from app.models import Completion, Contact, Phase, PhaseLatency, StudySession
+from app.science.tasks import side_unit, union
+
+_MS_DIGITS = 3
+
+
+class _Latency(TypedDict):
+    """The fields of a phase's view about its achieved latency."""
+
+    achieved_latency_ms: float | None
+    achieved_low_ms: float | None
+    achieved_high_ms: float | None
+    latency_off: bool | None
+    latency_reason: str | None
+    movement_s: float | None
+
+
+def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[PhaseView]:
+    """Every phase in order; latencies are left out for a blinded operator."""
+    completions = dict(
+        db.execute(
+            select(Completion.phase_id, func.count())
+            .where(Completion.session_id == session.id)
+            .group_by(Completion.phase_id)
+        ).all()
+    )
+    sides = _side_contacts(db, session)
+    latencies = {
+        row.phase_id: row
+        for row in db.scalars(select(PhaseLatency).where(PhaseLatency.session_id == session.id))
+    }
+    phases = db.scalars(
+        select(Phase).where(Phase.session_id == session.id).order_by(Phase.phase_id)
+    )
+    return [
+        PhaseView(
+            phase_id=phase.phase_id,
+            step_index=phase.step_index,
+            attempt=phase.attempt,
+            kind=phase.kind,
+            limb=phase.limb,
+            latency_ms=None if blinded else phase.latency_ms,
+            status=phase.status,
+            active_s=phase.active_s,
+            completions=completions.get(phase.phase_id, 0),
+            side_contacts=sides.get(phase.phase_id, (0, 0.0))[0],
+            side_contact_s=sides.get(phase.phase_id, (0, 0.0))[1],
+            **_latency(latencies.get(phase.phase_id), blinded=blinded),
+            started_at=phase.started_at,
+            ended_at=phase.ended_at,
+        )
+        for phase in phases
+    ]
+
+
+def _latency(row: PhaseLatency | None, *, blinded: bool) -> _Latency:
+    """What was measured; a blinded operator is not told numbers, nor reasons that name lags."""
+    told = None if blinded else row
+    return _Latency(
+        achieved_latency_ms=_ms(told.achieved_s if told else None),
+        achieved_low_ms=_ms(told.low_s if told else None),
+        achieved_high_ms=_ms(told.high_s if told else None),
+        latency_off=row.flagged if row and row.achieved_s is not None else None,
+        latency_reason=told.reason if told else None,
+        movement_s=row.movement_s if row else None,
+    )
+
+
+def _ms(time_s: float | None) -> float | None:
+    return None if time_s is None else round(1000.0 * time_s, _MS_DIGITS)
+
+
+def _side_contacts(db: Session, session: StudySession) -> dict[int, tuple[int, float]]:
+    """By phase: how often a side turned red, and for how long in all.
+
+    A side is red while at least one body part touches it, so parts' intervals are united first.
+    """
+    spans: dict[int, dict[str, list[tuple[float, float]]]] = {}
+    for phase_id, surface, begin_s, end_s in db.execute(
+        select(
+            Contact.phase_id, Contact.surface, Contact.begin_active_s, Contact.end_active_s
+        ).where(Contact.session_id == session.id, Contact.surface_kind == "side")
+    ):
+        unit = side_unit(surface) or surface
+        spans.setdefault(phase_id, {}).setdefault(unit, []).append((begin_s, end_s))
+    return {
+        phase_id: _count_and_length([red for own in by_side.values() for red in union(own)])
+        for phase_id, by_side in spans.items()
+    }
+
+
+def _count_and_length(spans: Sequence[tuple[float, float]]) -> tuple[int, float]:
+    return len(spans), sum(end_s - begin_s for begin_s, end_s in spans)

@@ -1,0 +1,242 @@
+"""A session as pages and clients see it."""
+
+from datetime import datetime
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from app.features.record.alarms.schemas import AlarmView
+from app.features.record.questionnaires.schemas import StoredScores
+from app.features.record.sessions.consent_schemas import ConsentForm, PaperConsent
+from app.protocol.plan import StepKind
+
+Kind = Literal["people", "simulated", "test", "expert"]
+Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]
+StepStatus = Literal["pending", "current", "done", "skipped"]
+CurrentStatus = Literal["ready", "preparing", "running", "paused", "walk_back", "freezing"]
+PhaseStatus = Literal["preparing", "running", "paused", "walk_back", "freezing", "done", "voided"]
+LimbName = Literal["hand", "foot"]
+CommandType = Literal[
+    "start",
+    "complete_step",
+    "begin_phase",
+    "materialise",
+    "pause",
+    "resume",
+    "redo",
+    "skip",
+    "abort",
+    "withdraw",
+    "override_stop",
+    "note",
+]
+
+AllowedType = CommandType | Literal["enter_answers"]
+
+
+class NewSession(BaseModel):
+    """A request to join a study."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    participant_code: str | None = None
+    kind: Kind = "people"
+    language: str = "en"
+    time_scale: float = Field(default=1.0, allow_inf_nan=False)
+
+
+class Height(BaseModel):
+    """The participant's height as stated and as matched to the avatar, in metres."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    stated: float | None = Field(default=None, ge=0.8, le=2.5)
+    matched: float | None = Field(default=None, ge=0.8, le=2.5)
+
+
+class CommandRequest(BaseModel):
+    """An operator's command, decided on what their page showed (`expected_version`)."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    command_id: str = Field(min_length=8, max_length=36)
+    expected_version: int = Field(ge=0, lt=2**31)
+    type: CommandType
+    reason: str | None = Field(default=None, max_length=2000)
+    text: str | None = Field(default=None, max_length=4000)
+    step_index: int | None = Field(default=None, ge=0, lt=1000)
+    height_m: Height | None = None
+    paper_consent: PaperConsent | None = None
+
+
+class Reveal(BaseModel):
+    """Why the condition of a blinded session must be known before it is over."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    reason: str = Field(max_length=2000)
+
+
+class SlotInfo(BaseModel):
+    """The session's row of the ledger."""
+
+    index: int
+    block: int
+    replicate: int
+
+
+class StepView(BaseModel):
+    """One step of the procedure; fields that do not apply are null."""
+
+    index: int
+    key: str
+    kind: StepKind
+    title: str
+    block: int | None
+    latency_ms: float | None
+    limb: LimbName | None
+    preparation_s: float | None
+    duration_s: float | None
+    freeze_s: float | None
+    instrument: str | None
+    status: StepStatus
+    attempt: int
+    reason: str | None
+    consent: ConsentForm | None = None
+    until_completions: int | None = None
+
+
+class CurrentView(BaseModel):
+    """The current step; `status` is ready or that of its phase."""
+
+    index: int
+    status: CurrentStatus
+    active_s: float
+    duration_s: float | None
+    pausing: bool
+    resuming: bool
+    pause_reason: str | None
+
+
+class HeldView(BaseModel):
+    """Which stop rule holds the session: the limit `stop_at` on a score, or on its rise."""
+
+    rule: int
+    instrument: str
+    score: str
+    stop_at: float
+    is_rise: bool
+
+
+class DeviceView(BaseModel):
+    """A paired device."""
+
+    id: str
+    kind: Literal["tablet", "headset"]
+    name: str
+    paired_at: datetime
+    connected: bool
+    last_seen_at: datetime | None
+
+
+class PhaseView(BaseModel):
+    """A phase that was prepared, with what happened in it so far.
+
+    `side_contacts` counts how often a side turned red, `side_contact_s` sums how long (active s).
+
+    The achieved latency is measured once the phase is over: `movement_s` is null until then. It
+    comes with its 95 % interval; where nothing can be said it is null and `latency_reason` says
+    why. `latency_off`: by more than 10 ms and more than one frame. A blinded operator is only told
+    whether it is off.
+    """
+
+    phase_id: int
+    step_index: int
+    attempt: int
+    kind: StepKind
+    limb: LimbName | None
+    latency_ms: float | None
+    status: PhaseStatus
+    active_s: float
+    completions: int
+    side_contacts: int
+    side_contact_s: float
+    achieved_latency_ms: float | None
+    achieved_low_ms: float | None
+    achieved_high_ms: float | None
+    latency_off: bool | None
+    latency_reason: str | None
+    movement_s: float | None
+    started_at: datetime | None
+    ended_at: datetime | None
+
+
+class NoteView(BaseModel):
+    """A note of the lab."""
+
+    id: str
+    text: str
+    at: datetime
+    by: str
+
+
+class SessionSummary(BaseModel):
+    """A row of a list of sessions."""
+
+    id: str
+    participant_code: str
+    kind: Kind
+    simulated: bool
+    status: Status
+    sequence: list[float] | None
+    study_version: int
+    created_at: datetime
+    started_at: datetime | None
+    ended_at: datetime | None
+
+
+class SessionView(SessionSummary):
+    """Everything a cockpit shows. `sequence` and latencies are null where the reader is `blinded`.
+
+    `alarms`: those that are open, the oldest first.
+    """
+
+    blinded: bool
+    study_key: str
+    study_title: str
+    avatar: str
+    avatar_configuration_hash: str | None
+    language: str
+    version: int
+    time_scale: float
+    slot: SlotInfo
+    steps: list[StepView]
+    current: CurrentView | None
+    held: HeldView | None
+    allowed: list[AllowedType]
+    devices: list[DeviceView]
+    alarms: list[AlarmView]
+    phases: list[PhaseView]
+    notes: list[NoteView]
+    scores: list[StoredScores]
+
+
+class EventView(BaseModel):
+    """A row of the event log."""
+
+    seq: int
+    type: str
+    at: datetime
+    by: str
+    data: dict[str, Any]
+    hash: str | None
+
+
+class StreamView(BaseModel):
+    """How much of one stream of one run of the headset is on disk."""
+
+    stream: str
+    epoch: int
+    next_seq: int
+    frames_stored: int
+    frames_flagged: int

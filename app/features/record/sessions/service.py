@@ -1,0 +1,243 @@
+"""Running sessions: joining, and applying commands to the event log in one transaction."""
+
+import json
+import secrets
+from dataclasses import dataclass
+
+from sqlalchemy import bindparam, select
+from sqlalchemy.orm import Session
+
+from app.errors import InvalidInput, NotFound, NotNow, StaleVersion
+from app.features.avatar.service import version_of
+from app.features.context import AppContext
+from app.features.record.ledger.service import (
+    find_or_add_participant,
+    hold_slot,
+    take_slot,
+)
+from app.features.record.sessions.engine import (
+    Command,
+    Refused,
+    SessionState,
+    decide,
+    evolve,
+    initial_state,
+    state_from_json,
+    state_to_json,
+)
+from app.features.record.sessions.journal import append_events
+from app.features.record.sessions.plans import plan_of as plan_of
+from app.features.record.sessions.projection import project
+from app.features.studies.service import (
+    newest_version,
+    protocol_of,
+    require_open,
+    study_by_key,
+    version_content,
+)
+from app.models import SessionContent, SessionEvent, StudySession
+from app.models.ledger import KINDS
+from app.models.types import new_id
+from app.protocol import StudyProtocol
+
+MAX_TIME_SCALE = 100.0
+_BY_ID = select(StudySession).where(StudySession.id == bindparam("session_id"))
+_LOCKED_BY_ID = _BY_ID.with_for_update(key_share=True)
+
+
+@dataclass(frozen=True)
+class Applied:
+    """What a command led to; `events` is empty when it was a repetition or had nothing to do."""
+
+    session: StudySession
+    state: SessionState
+    events: tuple[object, ...]
+
+
+def protocol_of_session(db: Session, session: StudySession) -> StudyProtocol:
+    """The protocol of the study version that this session follows."""
+    return version_content(db, session.study_version_id).protocol
+
+
+def state_of(session: StudySession) -> SessionState:
+    """The folded state, from the snapshot."""
+    return state_from_json(session.snapshot)
+
+
+def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudySession:
+    """The session; `lock` makes writers of the same session queue. Raises NotFound."""
+    session = db.scalar(_LOCKED_BY_ID if lock else _BY_ID, {"session_id": session_id})
+    if session is None:
+        raise NotFound("there is no such session", value=session_id)
+    return session
+
+
+def join(
+    db: Session,
+    context: AppContext,
+    *,
+    study_key: str,
+    participant_code: str | None,
+    kind: str,
+    language: str,
+    time_scale: float = 1.0,
+) -> StudySession:
+    """A new session on the next slot of the ledger.
+
+    `time_scale` is how many seconds of the client's clock pass per real second; only simulated
+    sessions may set it. Raises InvalidInput, NotFound, Conflict or NotDurable.
+    """
+    context.storage.require_storage()
+    study = study_by_key(db, study_key)
+    require_open(study)
+    version = newest_version(db, study)
+    protocol = protocol_of(version)
+    _check_join(protocol, kind, language, time_scale)
+    now = context.clock.utc_now()
+    # The ledger first: it is what simultaneous joins queue on.
+    slot = take_slot(db, version, protocol, kind, now)
+    participant = find_or_add_participant(
+        db, study_id=study.id, kind=kind, code=participant_code, now=now
+    )
+    session = StudySession(
+        id=new_id(),
+        study_id=study.id,
+        study_version_id=version.id,
+        participant_id=participant.id,
+        kind=kind,
+        avatar=protocol.avatar,
+        avatar_configuration_hash=_avatar_hash(db, protocol),
+        language=language,
+        time_scale=time_scale,
+        seed=secrets.randbits(48),
+        status="planned",
+        version=0,
+        snapshot={},
+        created_at=now,
+    )
+    db.add(session)
+    db.flush()
+    hold_slot(db, slot, session, now)
+    session.snapshot = state_to_json(initial_state(len(plan_of(db, session))))
+    db.flush()
+    return session
+
+
+def _avatar_hash(db: Session, protocol: StudyProtocol) -> str | None:
+    """Which content the avatar's configuration has; versions are never edited."""
+    chosen = protocol.avatar_configuration
+    return None if chosen is None else version_of(db, chosen.key, chosen.version).content_hash
+
+
+def _check_join(protocol: StudyProtocol, kind: str, language: str, time_scale: float) -> None:
+    if kind not in KINDS:
+        raise InvalidInput(f"unknown kind {kind!r}", value=kind, valid=list(KINDS))
+    if language not in protocol.languages:
+        raise InvalidInput(
+            f"the study has no texts in {language!r}",
+            value=language,
+            valid=list(protocol.languages),
+        )
+    if not 0 < time_scale <= MAX_TIME_SCALE:
+        raise InvalidInput(
+            "time_scale is out of range",
+            value=time_scale,
+            valid=f"above 0, at most {MAX_TIME_SCALE}",
+        )
+    if time_scale != 1.0 and kind != "simulated":
+        raise InvalidInput(
+            "only simulated sessions may run faster than life",
+            value=time_scale,
+            valid=1.0,
+            remedy="Leave time_scale out, or make the session simulated.",
+        )
+
+
+def apply_command(
+    db: Session,
+    context: AppContext,
+    session: StudySession,
+    command: Command,
+    *,
+    actor: str,
+    command_id: str | None = None,
+    expected_version: int | None = None,
+) -> Applied:
+    """Decide a command and record its events. `session` must have been read with `lock=True`.
+
+    A repeated `command_id` changes nothing. `expected_version` is what the caller saw: if the
+    session has moved on, StaleVersion says what happened since. Raises NotNow when the command
+    cannot be done in the present state.
+    """
+    state = state_of(session)
+    if command_id is not None and is_repeated(db, session.id, command_id):
+        return Applied(session, state, ())
+    if expected_version is not None and expected_version != session.version:
+        raise _stale(db, session, expected_version)
+    plan = plan_of(db, session)
+    try:
+        events = decide(plan, state, command)
+    except Refused as refusal:
+        raise NotNow(
+            refusal.message, value=refusal.value, valid=refusal.valid, remedy=refusal.remedy
+        ) from refusal
+    if not events:
+        return Applied(session, state, ())
+    append_events(
+        db,
+        session_id=session.id,
+        version=session.version,
+        events=events,
+        actor=actor,
+        command_id=command_id,
+        clock=context.clock,
+    )
+    now = context.clock.utc_now()
+    for event in events:
+        state = evolve(state, event)
+        project(db, session, plan, event, now)
+    session.version = state.version
+    session.status = str(state.status)
+    session.snapshot = state_to_json(state)
+    db.flush()
+    context.hub.publish_after_commit(db, session.id)
+    return Applied(session, state, tuple(events))
+
+
+def end_reason(db: Session, session_id: str) -> str | None:
+    """Why a session was aborted or withdrawn, in the words of the lab; None once erased."""
+    ended = db.scalar(
+        select(SessionEvent).where(
+            SessionEvent.session_id == session_id, SessionEvent.type == "session_ended"
+        )
+    )
+    content_id = None if ended is None else json.loads(ended.payload)["content_id"]
+    content = db.get(SessionContent, content_id) if content_id else None
+    return None if content is None or content.body is None else str(json.loads(content.body))
+
+
+def is_repeated(db: Session, session_id: str, command_id: str) -> bool:
+    """Whether this command was applied before, so that sending it again changes nothing."""
+    query = select(SessionEvent.seq).where(
+        SessionEvent.session_id == session_id, SessionEvent.command_id == command_id
+    )
+    return db.scalar(query.limit(1)) is not None
+
+
+def _stale(db: Session, session: StudySession, expected_version: int) -> StaleVersion:
+    since = db.scalars(
+        select(SessionEvent)
+        .where(SessionEvent.session_id == session.id, SessionEvent.seq > expected_version)
+        .order_by(SessionEvent.seq)
+    )
+    details = [
+        {"seq": row.seq, "type": row.type, "actor": row.actor, "at": row.recorded_at.isoformat()}
+        for row in since
+    ]
+    return StaleVersion(
+        "the session has changed since this page was drawn",
+        value=expected_version,
+        valid=session.version,
+        remedy="Look at what changed, then decide again. Nothing was done.",
+        details=details,
+    )

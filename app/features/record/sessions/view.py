@@ -1,0 +1,236 @@
+"""Drawing a session for a page, from its snapshot and rows."""
+
+import json
+from collections.abc import Mapping, Sequence
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session, defer
+
+from app.features.access import Caller, is_blind
+from app.features.context import AppContext
+from app.features.record.alarms.service import open_alarms
+from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
+from app.features.record.ledger.service import slot_of
+from app.features.record.questionnaires.service import stored_scores
+from app.features.record.sessions.consent import consent_form
+from app.features.record.sessions.contents import content_body, contents_of
+from app.features.record.sessions.engine import SessionState, allowed_commands
+from app.features.record.sessions.held import held_view
+from app.features.record.sessions.journal import events_of
+from app.features.record.sessions.phase_views import phase_views
+from app.features.record.sessions.schemas import (
+    CurrentView,
+    DeviceView,
+    EventView,
+    NoteView,
+    SessionSummary,
+    SessionView,
+    SlotInfo,
+    StepView,
+)
+from app.features.record.sessions.service import plan_of, state_of
+from app.features.studies.service import protocol_of, versions_of
+from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
+from app.protocol import StudyProtocol
+from app.protocol.plan import Step
+
+
+def session_view(
+    db: Session, context: AppContext, session: StudySession, caller: Caller
+) -> SessionView:
+    """The whole session, as `caller` may see it."""
+    version = db.get_one(StudyVersion, session.study_version_id)
+    protocol = protocol_of(version)
+    blinded = is_blind(db, caller, protocol, session)
+    state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
+    reasons = _reasons(db, session)
+    summary = _summary(
+        session, protocol, version, _code(db, session), slot.sequence, blinded=blinded
+    )
+    return SessionView(
+        **summary.model_dump(),
+        blinded=blinded,
+        study_key=protocol.key,
+        study_title=_text(protocol.title, "en"),
+        avatar=session.avatar,
+        avatar_configuration_hash=session.avatar_configuration_hash,
+        language=session.language,
+        version=session.version,
+        time_scale=session.time_scale,
+        slot=SlotInfo(index=slot.position, block=slot.block, replicate=slot.replicate),
+        steps=[_step(step, state, reasons, blinded=blinded) for step in plan],
+        current=_current(plan, state),
+        held=held_view(db, version, protocol, state),
+        allowed=allowed_commands(plan, state),
+        devices=_devices(db, context, session),
+        alarms=open_alarms(db, session.id),
+        phases=phase_views(db, session, blinded=blinded),
+        notes=_notes(db, session),
+        scores=stored_scores(db, session),
+    )
+
+
+def list_sessions(
+    db: Session, study: Study, kind: str | None, caller: Caller
+) -> list[SessionSummary]:
+    """All sessions of a study, newest first; orders are left out where `caller` is blind."""
+    query = (
+        select(StudySession, Participant.code, LedgerSlot.sequence)
+        .join(Participant, Participant.id == StudySession.participant_id)
+        .join(SlotAttempt, SlotAttempt.session_id == StudySession.id)
+        .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
+        .where(StudySession.study_id == study.id)
+        .order_by(StudySession.created_at.desc())
+        # A thousand snapshots, or the protocol a thousand times over, would be most of the work.
+        .options(defer(StudySession.snapshot, raiseload=True))
+    )
+    if kind is not None:
+        query = query.where(StudySession.kind == kind)
+    versions = {version.id: version for version in versions_of(db, study)}
+    summaries = []
+    for session, code, sequence in db.execute(query):
+        version = versions[session.study_version_id]
+        protocol = protocol_of(version)
+        blinded = is_blind(db, caller, protocol, session)
+        summaries.append(_summary(session, protocol, version, code, sequence, blinded=blinded))
+    return summaries
+
+
+def event_views(db: Session, session: StudySession, caller: Caller) -> list[EventView]:
+    """The event log for reading.
+
+    Who is blind gets no latencies, and no hashes: with three latencies to try, a hash tells which.
+    """
+    version = db.get_one(StudyVersion, session.study_version_id)
+    blinded = is_blind(db, caller, protocol_of(version), session)
+    views = []
+    for row in events_of(db, session.id):
+        data = json.loads(row.payload)
+        if blinded:
+            data.pop("latency_ms", None)
+        views.append(
+            EventView(
+                seq=row.seq,
+                type=row.type,
+                at=row.recorded_at,
+                by=row.actor,
+                data=data,
+                hash=None if blinded else row.hash,
+            )
+        )
+    return views
+
+
+def _summary(
+    session: StudySession,
+    protocol: StudyProtocol,
+    version: StudyVersion,
+    code: str,
+    sequence: Sequence[str],
+    *,
+    blinded: bool,
+) -> SessionSummary:
+    latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
+    return SessionSummary(
+        id=session.id,
+        participant_code=code,
+        kind=session.kind,
+        simulated=session.kind == "simulated",
+        status=session.status,
+        sequence=None if blinded else [latency_ms[key] for key in sequence],
+        study_version=version.number,
+        created_at=session.created_at,
+        started_at=session.started_at,
+        ended_at=session.ended_at,
+    )
+
+
+def _code(db: Session, session: StudySession) -> str:
+    return db.get_one(Participant, session.participant_id).code
+
+
+def _text(text: Mapping[str, str], language: str) -> str:
+    return text.get(language) or next(iter(text.values()), "")
+
+
+def _step(
+    step: Step, state: SessionState, reasons: Mapping[int, str], *, blinded: bool
+) -> StepView:
+    own = state.steps[step.index]
+    return StepView(
+        index=step.index,
+        key=step.key,
+        kind=step.kind,
+        title=_text(step.title, "en"),
+        block=step.block,
+        latency_ms=None if blinded else step.latency_ms,
+        limb=step.limb,
+        preparation_s=step.preparation_s,
+        duration_s=step.duration_s,
+        freeze_s=step.freeze_s,
+        instrument=step.instrument,
+        status=str(own.status),
+        attempt=own.attempt,
+        reason=reasons.get(step.index),
+        consent=consent_form(step, "en"),
+        until_completions=step.until_completions,
+    )
+
+
+def _current(plan: Sequence[Step], state: SessionState) -> CurrentView | None:
+    if state.current is None:
+        return None
+    phase = state.phase
+    return CurrentView(
+        index=state.current,
+        status="ready" if phase is None else str(phase.status),
+        active_s=0.0 if phase is None else phase.active_s,
+        duration_s=plan[state.current].duration_s,
+        pausing=phase is not None and phase.pausing,
+        resuming=phase is not None and phase.resuming,
+        pause_reason=None if phase is None else phase.pause_cause,
+    )
+
+
+def _devices(db: Session, context: AppContext, session: StudySession) -> list[DeviceView]:
+    now = context.clock.utc_now()
+    views = []
+    for device in devices_of_session(db, session.id):
+        if device.kind == "headset":
+            connected = context.hub.headset_connected(session.id)
+        else:
+            seen = context.hub.last_seen(device.id) or device.last_seen_at
+            connected = seen is not None and (now - seen).total_seconds() < TABLET_SILENT_AFTER_S
+        views.append(
+            DeviceView(
+                id=device.id,
+                kind=device.kind,
+                name=device.name,
+                paired_at=device.paired_at,
+                connected=connected,
+                last_seen_at=context.hub.last_seen(device.id) or device.last_seen_at,
+            )
+        )
+    return views
+
+
+def _notes(db: Session, session: StudySession) -> list[NoteView]:
+    return [
+        NoteView(id=row.id, text=str(content_body(row)), at=row.created_at, by=row.created_by)
+        for row in contents_of(db, session.id, "note")
+        if row.body is not None
+    ]
+
+
+def _reasons(db: Session, session: StudySession) -> dict[int, str]:
+    """Why steps were skipped or done over, by step index; the newest reason of each."""
+    bodies = {
+        row.id: content_body(row) for row in contents_of(db, session.id, "reason") if row.body
+    }
+    reasons: dict[int, str] = {}
+    for row in events_of(db, session.id):
+        if row.type in ("step_skipped", "step_reopened"):
+            payload = json.loads(row.payload)
+            if payload["content_id"] in bodies:
+                reasons[payload["step"]] = str(bodies[payload["content_id"]])
+    return reasons

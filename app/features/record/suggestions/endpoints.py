@@ -1,0 +1,37 @@
+"""Suggestions over HTTP."""
+
+from fastapi import APIRouter
+
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.record.suggestions.schemas import Decision, NewSuggestion, SuggestionView
+from app.features.record.suggestions.service import (
+    add_suggestion,
+    decide_suggestion,
+    suggestions_of,
+)
+
+router = APIRouter(tags=["suggestions"])
+
+
+@router.get("/studies/{key}/suggestions")
+def get_suggestions(key: str, db: Reading, _: SignedIn) -> list[SuggestionView]:
+    """Every suggestion for a study, newest version first."""
+    return suggestions_of(db, key)
+
+
+@router.post("/studies/{key}/suggestions", status_code=201)
+def post_suggestion(
+    key: str, wish: NewSuggestion, db: Writing, context: Context, caller: SignedIn
+) -> SuggestionView:
+    """Advise about a version of a study, or about one of its steps."""
+    return add_suggestion(db, key, wish, by=caller.actor, now=context.clock.utc_now())
+
+
+@router.post("/suggestions/{suggestion_id}/decision")
+def post_decision(
+    suggestion_id: str, decision: Decision, db: Writing, context: Context, caller: SignedIn
+) -> SuggestionView:
+    """Adopt or decline a suggestion; this is done once."""
+    return decide_suggestion(
+        db, suggestion_id, decision, by=caller.actor, now=context.clock.utc_now()
+    )

@@ -1,0 +1,162 @@
+"""The tablet over HTTP: its cookie opens its own session and nothing else."""
+
+import asyncio
+from collections.abc import AsyncIterator
+
+from fastapi import APIRouter, Request, Response
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+from sqlalchemy.orm import Session
+
+from app.errors import InvalidInput
+from app.features.context import AppContext
+from app.features.dependencies import Context, PairedTablet, Writing, tablet_in, write
+from app.features.record.questionnaires.schemas import Receipt, SubmissionRequest
+from app.features.record.questionnaires.service import submit
+from app.features.record.sessions.consent import ConsentDesk
+from app.features.record.sessions.consent_schemas import ConsentGiven
+from app.features.record.sessions.engine.commands import CompleteStep
+from app.features.record.sessions.service import apply_command, plan_of, session_by_id, state_of
+from app.features.record.tablet.help import may_ask, note_help
+from app.features.record.tablet.schemas import (
+    Acknowledgement,
+    HelpWish,
+    LanguageChoice,
+    TabletState,
+)
+from app.features.record.tablet.service import tablet_state
+from app.features.studies.service import protocol_of
+from app.models import Device, StudySession, StudyVersion
+from app.protocol import Step
+
+router = APIRouter(prefix="/tablet", tags=["tablet"])
+HEARTBEAT_S = 10.0
+
+
+@router.get("/state", response_model=TabletState)
+def get_state(request: Request, context: Context) -> Response:
+    """What to show now."""
+    with context.database.reading() as db:
+        tablet = tablet_in(db, request, context)
+        state = tablet_state(db, session_by_id(db, tablet.session_id))
+    # Written out here, once: the event loop would check it again first.
+    return Response(state.model_dump_json(), media_type="application/json")
+
+
+@router.put("/language")
+def put_language(
+    choice: LanguageChoice, db: Writing, context: Context, tablet: PairedTablet
+) -> TabletState:
+    """Go on in another language of the study."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    valid = protocol_of(db.get_one(StudyVersion, session.study_version_id)).languages
+    if choice.language not in valid:
+        raise InvalidInput(
+            f"the study has no texts in {choice.language!r}",
+            value=choice.language,
+            valid=list(valid),
+        )
+    session.language = choice.language
+    context.hub.publish_after_commit(db, session.id)
+    return tablet_state(db, session)
+
+
+@router.put("/help")
+def put_help(wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet) -> TabletState:
+    """Call the experimenter, or take the call back; doing so twice does no harm."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    if may_ask(state_of(session)):
+        note_help(db, context, session, "asked" if wish.asked else "taken_back")
+    return tablet_state(db, session)
+
+
+@router.post("/consent")
+def post_consent(
+    given: ConsentGiven, db: Writing, context: Context, tablet: PairedTablet
+) -> TabletState:
+    """A consent with what the study asks for; sending it twice does no harm."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    step = _own_step(db, session, given.step_index, ("consent",))
+    _complete(db, context, session, step, f"tablet:{tablet.id}", given)
+    return tablet_state(db, session)
+
+
+@router.post("/acknowledge")
+def post_acknowledge(
+    request: Acknowledgement, db: Writing, context: Context, tablet: PairedTablet
+) -> TabletState:
+    """Consent given, or instructions read; sending it twice does no harm."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    step = _own_step(db, session, request.step_index, ("consent", "instructions"))
+    given = ConsentGiven(step_index=step.index) if step.kind == "consent" else None
+    _complete(db, context, session, step, f"tablet:{tablet.id}", given)
+    return tablet_state(db, session)
+
+
+def _own_step(db: Session, session: StudySession, index: int, kinds: tuple[str, ...]) -> Step:
+    """The step that a tablet wants to complete; raises InvalidInput where it is not its own."""
+    plan = plan_of(db, session)
+    step = plan[index] if index < len(plan) else None
+    if step is None or step.kind not in kinds:
+        raise InvalidInput(
+            "this step is not the tablet's to complete",
+            value=index,
+            valid=[one.index for one in plan if one.kind in kinds],
+            remedy="Wait for the experimenter.",
+        )
+    return step
+
+
+def _complete(
+    db: Session,
+    context: AppContext,
+    session: StudySession,
+    step: Step,
+    actor: str,
+    given: ConsentGiven | None,
+) -> None:
+    """Complete the step, once, with the record of a consent."""
+    if state_of(session).steps[step.index].status in ("done", "skipped"):
+        return
+    desk = ConsentDesk(db, context, session, actor)
+    content = None if given is None else desk.from_tablet(step, given)
+    command = CompleteStep(by="tablet", step=step.index, content=content)
+    apply_command(db, context, session, command, actor=actor)
+
+
+@router.post("/submissions")
+async def post_submission(
+    request: Request, form: SubmissionRequest, context: Context, _: PairedTablet
+) -> Receipt:
+    """Store a filled-in form; the same form under the same key may come any number of times."""
+
+    def store(db: Session) -> Receipt:
+        # Asked again: it may have been unpaired while the form waited for its turn.
+        tablet = tablet_in(db, request, context)
+        session = session_by_id(db, tablet.session_id, lock=True)
+        return submit(db, context, session, form, mode="tablet", actor=f"tablet:{tablet.id}")
+
+    return await write(context, store)
+
+
+@router.get("/live", response_class=EventSourceResponse)
+async def get_live(context: Context, tablet: PairedTablet) -> AsyncIterator[ServerSentEvent]:
+    """The screen, again at every change; ends when the tablet is unpaired."""
+    with context.hub.subscribe(tablet.session_id) as subscription:
+        event = await asyncio.to_thread(_seen, context, tablet.id)
+        while event is not None:
+            yield event
+            news = await subscription.next(HEARTBEAT_S)
+            event = await asyncio.to_thread(_seen, context, tablet.id)
+            if event is not None and not news:
+                event = ServerSentEvent(comment="still here")
+
+
+def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
+    """Note that the tablet is there, and draw its screen; None once it was unpaired."""
+    with context.database.reading() as db:
+        device = db.get(Device, device_id)
+        if device is None or device.revoked_at is not None:
+            return None
+        context.hub.note_seen(device.id, context.clock.utc_now())
+        state = tablet_state(db, session_by_id(db, device.session_id))
+    return ServerSentEvent(data=state, event="state", id=str(state.version))

@@ -1,0 +1,79 @@
+"""Chunks as compressed columns, bit for bit what came.
+
+A chunk names its encoding, and every encoding that was ever written can be read: `encodings` has a
+module for each. New chunks are written in `ENCODING`, described in docs/telemetry-encoding.md.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.features.record.telemetry.encodings import f32_columns, f32_predicted
+from app.features.record.telemetry.encodings.columns import Columns, DamagedChunkError
+
+__all__ = ["ENCODING", "DamagedChunkError", "Frames", "decode_frames", "encode_frames"]
+
+ENCODING = f32_predicted.NAME
+_DECODERS: dict[str, Callable[[bytes, int, int], Columns]] = {
+    f32_predicted.NAME: f32_predicted.decode,
+    f32_columns.NAME: f32_columns.decode,
+}
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Consecutive frames of a stream.
+
+    `seq` (n,), `times_s` (n,) client monotonic s, `flags` (n,) bits, `values` (n, 91) as on the
+    wire: root position (m, world), then 22 local rotations w, x, y, z.
+    """
+
+    seq: NDArray[np.int64]
+    times_s: NDArray[np.float64]
+    flags: NDArray[np.uint8]
+    values: NDArray[np.float32]
+
+    def __len__(self) -> int:
+        return len(self.seq)
+
+    @property
+    def rotations(self) -> NDArray[np.float64]:
+        """Local rotations (n, 22, 4), w x y z."""
+        with np.errstate(invalid="ignore"):  # a signalling NaN is allowed to be there
+            return self.values[:, 3:].reshape(len(self), -1, 4).astype(np.float64)
+
+    @property
+    def active(self) -> NDArray[np.bool_]:
+        """Frames (n,) during which the phase's clock ran."""
+        return (self.flags & 1).astype(np.bool_)
+
+
+def encode_frames(
+    times_s: NDArray[np.float64], flags: NDArray[np.uint8], values: NDArray[np.float32]
+) -> bytes:
+    """Compress the columns of at least one frame; the inverse of `decode_frames`."""
+    return f32_predicted.encode(Columns(times_s, flags, values))
+
+
+def decode_frames(
+    data: bytes, *, encoding: str, seq_first: int, frame_count: int, values_per_frame: int
+) -> Frames:
+    """The frames of a chunk.
+
+    Raises:
+        DamagedChunkError: the bytes are not what was written, or of another chunk.
+        ValueError: an encoding this version does not know.
+    """
+    decode = _DECODERS.get(encoding)
+    if decode is None:
+        known = ", ".join(repr(name) for name in _DECODERS)
+        raise ValueError(f"unknown encoding {encoding!r}; this version reads {known}")
+    columns = decode(data, frame_count, values_per_frame)
+    return Frames(
+        seq=np.arange(seq_first, seq_first + frame_count),
+        times_s=columns.times_s,
+        flags=columns.flags,
+        values=columns.values,
+    )

@@ -1,0 +1,116 @@
+"""Folding batches into chunks of about a second, stream by stream, as each becomes due.
+
+A reader merges both, so it never matters when this runs.
+"""
+
+import logging
+import threading
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import cast
+
+from sqlalchemy import Table, bindparam, delete, select
+from sqlalchemy.orm import Session
+
+from app.features.context import AppContext
+from app.features.record.telemetry.checkpoints import Checkpointer
+from app.features.record.telemetry.due import BATCHES, DUE_AFTER, KEY, Chunks, due_chunks
+from app.features.record.telemetry.encoder import Encoder
+from app.models import TelemetryChunk
+from app.rows import insert_rows
+
+log = logging.getLogger(__name__)
+TURN_S = 0.2
+CHUNKS = cast("Table", TelemetryChunk.__table__)
+
+
+class BatchesChanged(RuntimeError):
+    """What was to be folded is not what is stored any more; the next turn looks anew."""
+
+
+@dataclass
+class Folder:
+    """Folds in the background. `start` once, `stop` at the end.
+
+    Chunks are made by the `encoder`; without one, here.
+    """
+
+    context: AppContext
+    encoder: Encoder | None = None
+    _stop: threading.Event = field(default_factory=threading.Event)
+    _thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begin to fold."""
+        self._thread = threading.Thread(target=self._run, name="telemetry-folder", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End after the turn under way."""
+        self._stop.set()
+        if self._thread is not None:
+            self._thread.join(timeout=10.0)
+        if self.encoder is not None:
+            self.encoder.end()
+
+    def _run(self) -> None:
+        checkpoints = Checkpointer(self.context.database)
+        while not self._stop.wait(TURN_S):
+            try:
+                while self.fold_once() and not self._stop.is_set():
+                    pass
+                checkpoints.turn()
+                if self.encoder is not None and self.context.hub.any_headset_connected:
+                    self.encoder.begin()
+            except Exception:  # the next turn tries again; nothing is lost meanwhile
+                log.exception("batches could not be folded; they stay as they are")
+                self._stop.wait(1.0)
+
+    def fold_once(self) -> int:
+        """Fold the streams that are due, up to a turn's worth; how many batches that were."""
+        now = self.context.clock.utc_now()
+        # Compress before the writing turn: telemetry waits for it.
+        chunks = self._due_chunks(now)
+        if chunks:
+            with self.context.database.writing() as db:
+                _replace(db, chunks)
+        return sum(chunk["batches"] for chunk in chunks)
+
+    def _due_chunks(self, now: datetime) -> Chunks:
+        with self.context.database.reading() as db:
+            if self.encoder is None:
+                return due_chunks(db, now)
+            any_due = select(BATCHES.c.epoch).where(BATCHES.c.received_at < now - DUE_AFTER)
+            if db.execute(any_due.limit(1)).first() is None:
+                return []
+        return self.encoder.due_chunks(now)
+
+
+_DELETE = delete(BATCHES).where(
+    *(BATCHES.c[name] == bindparam(f"key_{name}") for name in KEY),
+    BATCHES.c.seq_first >= bindparam("seq_from"),
+    BATCHES.c.seq_first < bindparam("seq_end"),
+)
+
+
+def _replace(db: Session, chunks: Chunks) -> None:
+    """Store chunks and delete the batches they hold; nothing, if these are no longer there.
+
+    A backup may have been restored since they were read.
+    """
+    columns = CHUNKS.c.keys()
+    insert_rows(db, CHUNKS, [{name: chunk[name] for name in columns} for chunk in chunks])
+    deleted = db.connection().execute(
+        _DELETE,
+        [
+            {
+                **{f"key_{name}": chunk[name] for name in KEY},
+                "seq_from": chunk["seq_first"],
+                "seq_end": chunk["seq_first"] + chunk["frame_count"],
+            }
+            for chunk in chunks
+        ],
+    )
+    expected = sum(chunk["batches"] for chunk in chunks)
+    if deleted.rowcount != expected:
+        raise BatchesChanged(f"{deleted.rowcount} of {expected} batches were there to be folded")

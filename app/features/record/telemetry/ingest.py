@@ -1,0 +1,190 @@
+"""Storing messages inside the writer's transaction.
+
+In every stream seqs are consecutive. What is stored already is acknowledged again, what overlaps is
+cut to its new part, what skips ahead is asked for again: so resending is always safe and a hole can
+never come about in silence.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from datetime import datetime
+from typing import Any, cast
+
+from sqlalchemy import Table, select
+from sqlalchemy.orm import Session
+
+from app.features.context import AppContext
+from app.features.record.alarms.alarm import Change
+from app.features.record.alarms.service import store_change
+from app.features.record.sessions.engine.commands import HeadsetLost
+from app.features.record.sessions.service import (
+    apply_command,
+    protocol_of_session,
+    session_by_id,
+    state_of,
+)
+from app.features.record.telemetry.outcome import Outcome
+from app.features.record.telemetry.positions import Positions, certain_active_s
+from app.models import ClockProbe, Phase, TelemetryBatch
+from app.models.types import new_id
+from app.rows import insert_rows
+from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
+from app.wire.messages import Flag, Probed, Produced, Resend
+
+BATCHES = cast("Table", TelemetryBatch.__table__)
+PROBES = cast("Table", ClockProbe.__table__)
+
+
+@dataclass
+class Intake:
+    """What one transaction takes in. Rows gather here and are written together by `flush`.
+
+    Whoever reads the tables within the transaction flushes first.
+    """
+
+    db: Session
+    context: AppContext
+    now: datetime
+    positions: Positions = field(init=False)
+    _rows: dict[Table, list[dict[str, Any]]] = field(default_factory=dict)
+    _phases: dict[str, set[int]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.positions = Positions(self.db, self.now)
+
+    def flush(self) -> None:
+        """Write what has gathered."""
+        self.positions.flush()
+        for table, rows in self._rows.items():
+            insert_rows(self.db, table, rows)
+        self._rows.clear()
+
+    def gather(self, table: Table, row: dict[str, Any]) -> None:
+        """Insert a row with the others of its table."""
+        self._rows.setdefault(table, []).append(row)
+
+    def fetch_phases(self, session_ids: Iterable[str]) -> None:
+        """Read the phases of these sessions, once a transaction: none begins in it."""
+        asked = sorted(set(session_ids) - self._phases.keys())
+        if not asked:
+            return
+        self._phases.update({session_id: set() for session_id in asked})
+        known = select(Phase.session_id, Phase.phase_id).where(Phase.session_id.in_(asked))
+        for session_id, phase_id in self.db.execute(known):
+            self._phases[session_id].add(phase_id)
+
+    def has_phase(self, session_id: str, phase_id: int) -> bool:
+        """Whether the session has this phase."""
+        self.fetch_phases([session_id])
+        return phase_id in self._phases[session_id]
+
+    def store_batch(
+        self, session_id: str, header: BatchHeader, message: bytes, flags: FrameFlags, told: Outcome
+    ) -> None:
+        """Store a batch as it came, with its flags counted beside it."""
+        at = self.positions.at(session_id, header.stream, header.epoch)
+        if header.seq_first > at.next_seq:
+            told.notices.append(Resend(**at.as_told.model_dump()))
+            return
+        skip = at.next_seq - header.seq_first
+        if skip < header.frame_count:
+            self.gather(
+                BATCHES,
+                {
+                    "session_id": session_id,
+                    "stream": str(header.stream),
+                    "epoch": header.epoch,
+                    "seq_first": at.next_seq,
+                    "frame_count": header.frame_count - skip,
+                    "phase_id": header.phase_id,
+                    "received_at": self.now,
+                    "message": message if skip == 0 else _without_first(message, skip),
+                },
+            )
+            bad = int(flags.bad[skip:].sum())
+            at.stored(header.frame_count - skip)
+            at.frames_flagged += bad
+            at.phase_id, at.active_s = header.phase_id, header.active_s
+            if bad:
+                told.frames_flagged += bad
+                told.notices.append(_flag(header, flags, skip))
+        told.stored_up_to(at)
+
+    def store_probe(self, session_id: str, epoch: int, probe: Probed) -> None:
+        """Keep one raw reading of the clocks."""
+        times = probe.model_dump(exclude={"type"})
+        self.gather(
+            PROBES,
+            {
+                "id": new_id(),
+                "session_id": session_id,
+                "epoch": epoch,
+                "server_utc": self.now,
+                **times,
+            },
+        )
+
+    def store_produced(self, session_id: str, produced: Produced) -> None:
+        """Take note of how far the client itself has come."""
+        for stream, count in produced.streams.items():
+            at = self.positions.at(session_id, stream, produced.epoch)
+            if count > at.produced:
+                at.produced, at.is_changed = count, True
+
+    def store_loss(self, session_id: str, cause: str) -> None:
+        """The headset is gone: a running clock stops at the last active time that is on disk.
+
+        Where the study says `on_disconnect: continue`, the headset goes on by its journal.
+        """
+        self.flush()
+        session = session_by_id(self.db, session_id, lock=True)
+        state = state_of(session)
+        if state.status != "active" or state.phase is None:
+            return
+        if protocol_of_session(self.db, session).on_disconnect == "continue":
+            return
+        active_s = certain_active_s(self.db, session_id, state.phase.phase_id)
+        lost = HeadsetLost(active_s=active_s, cause=cause)
+        apply_command(self.db, self.context, session, lost, actor="system")
+
+    def store_alarm(self, session_id: str, change: Change) -> None:
+        """Put an alarm on the record, and let the pages draw themselves anew.
+
+        A session that has ended raises none: its end has cleared them all.
+        """
+        raised = change.state == "raised"
+        if raised and session_by_id(self.db, session_id, lock=True).ended_at is not None:
+            return
+        if store_change(self.db, session_id, change):
+            self.context.hub.publish_after_commit(self.db, session_id)
+
+
+def _without_first(message: bytes, count: int) -> bytes:
+    batch = decode_batch(message)
+    header = batch.header
+    return encode_batch(
+        header.stream,
+        epoch=header.epoch,
+        phase_id=header.phase_id,
+        seq_first=header.seq_first + count,
+        times_s=batch.times_s[count:],
+        flags=batch.flags[count:],
+        values=batch.values[count:],
+        active_s=header.active_s,
+        closed_at_s=header.closed_at_s,
+    )
+
+
+def _flag(header: BatchHeader, flags: FrameFlags, skip: int) -> Flag:
+    bad = flags.bad[skip:]
+    first = int(bad.argmax()) + skip
+    broken = bool(flags.non_finite[skip:].any())
+    what = "a value that is not a number" if broken else "a rotation that is not of unit length"
+    return Flag(
+        code="non_finite" if broken else "non_unit",
+        stream=header.stream,
+        epoch=header.epoch,
+        seq=header.seq_first + first,
+        frames=int(bad.sum()),
+        message=f"{int(bad.sum())} frame(s) hold {what}; stored, left out of summaries",
+    )

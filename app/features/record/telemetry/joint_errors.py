@@ -1,0 +1,111 @@
+"""Joint error of a phase from its stored frames, over active time only: summed up, and its course.
+
+Stored twice: against what the avatar was asked for at that moment (`present`, what the latency
+costs) and against the delayed command (`command`, how good the controller is). What a physics
+avatar is asked for is what its hinges can make of the participant's pose, before their limits; how
+often these took something away is stored with it. Both can be computed again at any time.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.features.record.telemetry.movement import Run
+from app.models import JointErrorCourseRow, JointErrorRow, Phase
+from app.science.active_time import active_times
+from app.science.joint_error import JointErrorSummary
+from app.science.joint_error_course import joint_error_course
+from app.science.recorded_error import Recorded, recorded_errors
+from app.science.rotations import FloatArray
+
+Indices = NDArray[np.int64]
+
+
+def joint_error_rows(
+    phase: Phase, runs: Sequence[Run]
+) -> list[JointErrorRow | JointErrorCourseRow]:
+    """The rows of a phase in both tables; none where it has no frames."""
+    if not runs:
+        return []
+    pairs = [_counted(run) for run in runs]
+    recorded = [_recorded(run, *own) for run, own in zip(runs, pairs, strict=True)]
+    errors = recorded_errors(recorded, phase.latency_ms / 1000.0)
+    active_s = _active_times(runs, [frames for _, frames in pairs])
+    return [
+        *_rows(phase, "present", errors.present),
+        *_rows(phase, "command", errors.command),
+        _course(phase, "present", errors.present_rad, active_s),
+        _course(phase, "command", errors.command_rad, active_s),
+    ]
+
+
+def _counted(run: Run) -> tuple[Indices, Indices]:
+    """The active frames of the avatar that have a partner of the same seq: (partners, frames)."""
+    _, at_target, at_actual = np.intersect1d(
+        run.target.seq, run.actual.seq, assume_unique=True, return_indices=True
+    )
+    counted = run.actual.active[at_actual]
+    return at_target[counted], at_actual[counted]
+
+
+def _recorded(run: Run, partners: Indices, frames: Indices) -> Recorded:
+    return Recorded(
+        run.target.times_s,
+        run.asked,
+        partners,
+        run.actual.times_s[frames],
+        run.actual.rotations[frames],
+    )
+
+
+def _active_times(runs: Sequence[Run], frames: Sequence[Indices]) -> FloatArray:
+    """Active time of the phase, s, at these frames of each run; one goes on as another ended."""
+    spent_s, found = 0.0, []
+    for run, own in zip(runs, frames, strict=True):
+        passed_s = spent_s + active_times(run.actual.times_s, run.actual.active)
+        found.append(passed_s[own])
+        spent_s = float(passed_s[-1])
+    return np.concatenate(found)
+
+
+def _course(
+    phase: Phase, reference: str, angles_rad: FloatArray, active_s: FloatArray
+) -> JointErrorCourseRow:
+    course = joint_error_course(angles_rad, active_s, phase.active_s)
+    return JointErrorCourseRow(
+        session_id=phase.session_id,
+        phase_id=phase.phase_id,
+        reference=reference,
+        bin_s=course.bin_s,
+        mean_rad=[None if np.isnan(one) else float(one) for one in course.mean_rad],
+        samples=course.samples.tolist(),
+    )
+
+
+def _rows(phase: Phase, reference: str, summary: JointErrorSummary) -> Iterator[JointErrorRow]:
+    for joint_index, joint in enumerate(summary.joints):
+        for axis_index, axis in enumerate(summary.axes):
+            yield JointErrorRow(
+                session_id=phase.session_id,
+                phase_id=phase.phase_id,
+                reference=reference,
+                joint=joint,
+                axis=axis,
+                **_figures(summary, (joint_index, axis_index)),
+                samples=int(summary.count[joint_index]),
+                excluded=int(summary.left_out[joint_index]),
+            )
+
+
+def _figures(summary: JointErrorSummary, at: tuple[int, int]) -> dict[str, float | None]:
+    return {
+        name: None if np.isnan(values[at]) else float(values[at])
+        for name, values in (
+            ("mean_rad", summary.mean_rad),
+            ("rms_rad", summary.rms_rad),
+            ("p95_rad", summary.p95_rad),
+            ("max_rad", summary.max_rad),
+            ("clipped_share", summary.clipped_share),
+        )
+    }

@@ -1,0 +1,74 @@
+"""The latency that a phase really had, from its stored frames."""
+
+from collections.abc import Sequence
+
+from sqlalchemy.orm import Session
+
+from app.features.record.telemetry.movement import Run, phase_runs
+from app.models import Phase, PhaseLatency
+from app.science.achieved_latency import (
+    HIGHEST_S,
+    AchievedLatency,
+    StreamPair,
+    is_off,
+    latency_of_runs,
+)
+
+MS_PER_S = 1000.0
+# Lags that are looked at beyond the ordered one, where that is long.
+_BEYOND_S = 0.5
+
+
+def phase_latency(db: Session, session_id: str, phase_id: int) -> AchievedLatency:
+    """Measure a phase's latency again; see `app.science.achieved_latency` for what it means.
+
+    Raises NoResultFound where there is no such phase.
+    """
+    phase = db.get_one(Phase, (session_id, phase_id))
+    return measure(phase, phase_runs(db, session_id, phase_id, history_s=history_s(phase)))
+
+
+def history_s(phase: Phase) -> float:
+    """How much of the target's movement before a phase is needed: the longest lag, and a second."""
+    return longest_lag_s(phase) + 1.0
+
+
+def longest_lag_s(phase: Phase) -> float:
+    """The longest latency that is looked for: well beyond the ordered one."""
+    return max(HIGHEST_S, phase.latency_ms / MS_PER_S + _BEYOND_S)
+
+
+def measure(phase: Phase, runs: Sequence[Run]) -> AchievedLatency:
+    """Measure the latency of frames that were read already."""
+    pairs = [
+        StreamPair(
+            run.target.times_s,
+            run.asked.rotations,
+            run.actual.times_s,
+            run.actual.rotations,
+            run.actual.active,
+        )
+        for run in runs
+    ]
+    return latency_of_runs(pairs, highest_s=longest_lag_s(phase))
+
+
+def latency_rows(phase: Phase, runs: Sequence[Run]) -> list[PhaseLatency]:
+    """The one row of a phase; there is one also where no latency could be found."""
+    achieved = measure(phase, runs)
+    ordered_s = phase.latency_ms / MS_PER_S
+    return [
+        PhaseLatency(
+            session_id=phase.session_id,
+            phase_id=phase.phase_id,
+            ordered_s=ordered_s,
+            achieved_s=achieved.latency_s,
+            low_s=achieved.low_s,
+            high_s=achieved.high_s,
+            movement_s=achieved.movement_s,
+            frame_s=achieved.frame_s,
+            samples=achieved.samples,
+            flagged=is_off(achieved, ordered_s),
+            reason=achieved.reason,
+        )
+    ]

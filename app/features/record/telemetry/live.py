@@ -1,0 +1,135 @@
+"""What the console shows of the movement right now, from the newest messages, before any commit."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from sqlalchemy.orm import Session
+
+from app.features.record.telemetry.hinges import hinges_of
+from app.science.avatar.hinge_reference import HingeReference
+from app.science.rotations import identity
+from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
+from app.science.tasks import side_unit
+from app.wire import Batch, StreamName
+from app.wire.messages import CompletionReport, ContactReport, Report
+
+PERIOD_S = 0.2
+
+
+@dataclass
+class LiveTelemetry:
+    """Folds the messages of one connection into a few figures, at most five times a second.
+
+    Counting costs next to nothing and always goes on; figures are made only for somebody who looks.
+
+    `hinges` of an avatar that is moved by physics: its errors are then those that are stored, from
+    what the hinges are asked for. None for a delayed copy.
+    """
+
+    hinges: HingeReference | None = None
+    _newest: dict[StreamName, Batch] = field(default_factory=dict)
+    _told_at_s: float = 0.0
+    _frames: int = 0
+    _flagged: int = 0
+    _counted_until_s: float = float("nan")
+    _phase_id: int = 0
+    _completions: int = 0
+    _side_contacts: int = 0
+    _red_until_s: dict[str, float] = field(default_factory=dict)
+
+    def count(self, report: Report) -> None:
+        """Take note of a completion or a side contact."""
+        if isinstance(report.body, CompletionReport):
+            self._completions = report.body.number
+        elif isinstance(report.body, ContactReport) and report.body.surface_kind == "side":
+            self._count_side(report.body)
+
+    def _count_side(self, contact: ContactReport) -> None:
+        """A side that several parts touch at once turns red once."""
+        side = side_unit(contact.surface) or contact.surface
+        if contact.begin_active_s > self._red_until_s.get(side, -1.0):
+            self._side_contacts += 1
+        self._red_until_s[side] = max(self._red_until_s.get(side, -1.0), contact.end_active_s)
+
+    def flagged(self, frames: int) -> None:
+        """So many frames that were stored hold something broken."""
+        self._flagged += frames
+
+    def take(self, batch: Batch) -> None:
+        """Take note of frames."""
+        header = batch.header
+        if header.phase_id != self._phase_id:
+            self._phase_id, self._completions, self._side_contacts = header.phase_id, 0, 0
+            self._red_until_s = {}
+        self._newest[header.stream] = batch
+        if header.stream is StreamName.TARGET:
+            self._frames += header.frame_count
+
+    def figures(self, now_s: float) -> dict[str, Any] | None:
+        """The figures, when it is time to tell them again."""
+        if now_s - self._told_at_s < PERIOD_S or StreamName.ACTUAL not in self._newest:
+            return None
+        self._told_at_s = now_s
+        return self._figures()
+
+    def _frame_rate(self, target: Batch | None) -> float | None:
+        """Target frames per second of the client's clock since the last figures."""
+        until_s = float("nan") if target is None else float(target.times_s[-1])
+        spanned_s = until_s - self._counted_until_s
+        frames, self._frames, self._counted_until_s = self._frames, 0, until_s
+        return frames / spanned_s if spanned_s > 0 else None
+
+    def _figures(self) -> dict[str, Any]:
+        actual = self._newest[StreamName.ACTUAL]
+        target = self._newest.get(StreamName.TARGET)
+        fps = self._frame_rate(target)
+        return {
+            "phase_id": self._phase_id,
+            "active_s": actual.header.active_s,
+            "client_t_s": _number(actual.times_s[-1]),
+            "fps": None if fps is None else round(fps, 1),
+            "completions": self._completions,
+            "side_contacts": self._side_contacts,
+            "frames_flagged": self._flagged,
+            "joint_error_deg": {} if target is None else _errors_deg(target, actual, self.hinges),
+        }
+
+
+def live_telemetry(db: Session, session_id: str) -> LiveTelemetry:
+    """For a session's connection.
+
+    What a physics avatar needs is loaded here, which can take a second: not on the event loop.
+    Raises NotFound where there is no such session.
+    """
+    hinges = hinges_of(db, session_id)
+    if hinges is not None:
+        hinges.pose(identity(JOINT_COUNT))
+    return LiveTelemetry(hinges)
+
+
+def _errors_deg(
+    target: Batch, actual: Batch, hinges: HingeReference | None
+) -> dict[str, float | None]:
+    """The angle between both poses at the newest seq that both have, per joint but the hips."""
+    end = min(target.header.seq_end, actual.header.seq_end)
+    first = max(target.header.seq_first, actual.header.seq_first)
+    if end <= first:
+        return {}
+    is_ = actual.values[end - 1 - actual.header.seq_first, 3:].reshape(-1, 4)
+    with np.errstate(invalid="ignore"):
+        wanted = target.values[end - 1 - target.header.seq_first, 3:].reshape(-1, 4).astype(float)
+        if hinges is not None:
+            wanted = hinges.pose(wanted)
+        cosine = np.abs(np.einsum("jk,jk->j", wanted, is_.astype(float)))
+        angle_deg = np.degrees(2.0 * np.arccos(np.clip(cosine, 0.0, 1.0)))
+    return {
+        name: _number(angle)
+        for name, angle in zip(JOINT_NAMES, angle_deg, strict=True)
+        if name != "Hips"
+    }
+
+
+def _number(value: np.floating[Any]) -> float | None:
+    """A number for JSON; what is not finite becomes null."""
+    return round(float(value), 3) if np.isfinite(value) else None

@@ -1,0 +1,81 @@
+"""A phase's movement as it is summarised: what the avatar did, and what it was asked to before.
+
+A phase has one run for each run of the client that took part in it; every run has a clock of its
+own. The actual body's frames are those of the phase. The target's begin earlier, since what the
+avatar does at the start of a phase was asked for before it.
+"""
+
+import logging
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from sqlalchemy.orm import Session
+
+from app.features.record.telemetry.encoding import DamagedChunkError, Frames
+from app.features.record.telemetry.frames import (
+    concatenate,
+    decode_piece,
+    iter_pieces,
+    phase_frames,
+)
+from app.features.record.telemetry.hinges import hinges_of
+from app.models import TelemetryChunk
+from app.science.avatar.hinge_reference import HingeReference
+from app.science.recorded_error import Asked
+from app.wire import StreamName
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Run:
+    """Both streams of one run of the client; times in s of its clock.
+
+    `hinges` of an avatar that is moved by physics; None for a delayed copy.
+    """
+
+    epoch: int
+    target: Frames
+    actual: Frames
+    hinges: HingeReference | None = None
+
+    @cached_property
+    def asked(self) -> Asked:
+        """What the avatar was asked for in each target frame."""
+        rotations = self.target.rotations
+        if self.hinges is None:
+            return Asked(rotations)
+        return self.hinges.recording(self.target.times_s, rotations)
+
+
+def phase_runs(db: Session, session_id: str, phase_id: int, *, history_s: float) -> list[Run]:
+    """The runs of a phase, with target frames from `history_s` before its first frame on."""
+    hinges = hinges_of(db, session_id)
+    return [
+        Run(epoch, _target(db, session_id, epoch, actual, history_s), actual, hinges)
+        for epoch, actual in phase_frames(db, session_id, StreamName.ACTUAL, phase_id)
+    ]
+
+
+def _target(db: Session, session_id: str, epoch: int, actual: Frames, history_s: float) -> Frames:
+    finite = actual.times_s[np.isfinite(actual.times_s)]
+    if not len(finite):
+        return concatenate([])
+    since_s, until_s = float(finite.min()) - history_s, float(finite.max()) + 1.0
+    return concatenate(list(_between(db, session_id, epoch, since_s, until_s)))
+
+
+def _between(
+    db: Session, session_id: str, epoch: int, since_s: float, until_s: float
+) -> Iterator[Frames]:
+    """Target frames of a stretch of the client's time; pieces are whole, so that some are more."""
+    for piece in iter_pieces(db, session_id, StreamName.TARGET, epoch, since_s=since_s):
+        # To the end even so: PostgreSQL's cursor would stay open behind a loop that is left.
+        if isinstance(piece, TelemetryChunk) and piece.t_first_s > until_s:
+            continue
+        try:
+            yield decode_piece(piece)
+        except DamagedChunkError as error:
+            log.warning("target of %s, seq %d: %s", session_id, piece.seq_first, error)

@@ -1,0 +1,70 @@
+"""What is wrong with the frames of a phase, counted over its active time, one row a stream.
+
+The same judgement as the one that raises alarms while the phase runs, made again from what was
+stored. Faults in pauses and on walks back are no faults of the data that are analysed.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from sqlalchemy.orm import Session
+
+from app.features.record.telemetry.encoding import Frames
+from app.features.record.telemetry.movement import Run, phase_runs
+from app.models import Phase, PhaseQuality
+from app.science.skeleton import JOINT_COUNT
+from app.science.stream_quality import StreamQuality, assess, together
+from app.wire import StreamName
+
+HISTORY_S = 10.0
+"""What is known of the target before the phase: a joint may have frozen already."""
+
+
+def phase_quality(db: Session, session_id: str, phase_id: int) -> list[PhaseQuality]:
+    """Judge a phase again; the rows are not stored.
+
+    Raises NoResultFound where there is no such phase, ValueError where a stored chunk is damaged.
+    """
+    phase = db.get_one(Phase, (session_id, phase_id))
+    return quality_rows(phase, phase_runs(db, session_id, phase_id, history_s=HISTORY_S))
+
+
+def quality_rows(phase: Phase, runs: Sequence[Run]) -> list[PhaseQuality]:
+    """The rows of both streams, from frames that were read already; also where there are none."""
+    target = together([_quality(run.target, _in_phase(run)) for run in runs])
+    actual = together([_quality(run.actual, run.actual.active) for run in runs])
+    return [_row(phase, StreamName.TARGET, target), _row(phase, StreamName.ACTUAL, actual)]
+
+
+def _in_phase(run: Run) -> NDArray[np.bool_]:
+    """Active target frames of the phase itself: those that share seqs with the actual body's."""
+    seq = run.actual.seq
+    of_phase = (run.target.seq >= seq[0]) & (run.target.seq <= seq[-1])
+    return np.asarray(run.target.active & of_phase)
+
+
+def _quality(frames: Frames, counted: NDArray[np.bool_]) -> StreamQuality:
+    values = frames.values
+    rotations = values[:, 3:].reshape(len(frames), JOINT_COUNT, 4)
+    return assess(frames.times_s, rotations, values[:, :3], counted=counted)
+
+
+def _row(phase: Phase, stream: StreamName, quality: StreamQuality) -> PhaseQuality:
+    return PhaseQuality(
+        session_id=phase.session_id,
+        phase_id=phase.phase_id,
+        stream=str(stream),
+        frames=quality.frames,
+        span_s=quality.span_s,
+        frame_rate_hz=quality.frame_rate_hz,
+        gaps=quality.gaps,
+        gap_s=quality.gap_s,
+        longest_gap_s=quality.longest_gap_s,
+        jumps=quality.jumps,
+        frozen_s=max(quality.frozen_s),
+        frozen_joints=list(quality.frozen_joints),
+        non_unit=quality.non_unit,
+        non_finite=quality.non_finite,
+        backwards=quality.backwards,
+    )

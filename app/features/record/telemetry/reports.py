@@ -1,0 +1,161 @@
+"""Storing a headset's report and acting on it; one that does not fit is kept with the reason."""
+
+from datetime import datetime
+from typing import Any, cast
+
+from sqlalchemy import Table, func, select
+from sqlalchemy.orm import Session
+
+from app.errors import ReembodyError
+from app.features.context import AppContext
+from app.features.record.sessions.engine.commands import Materialise, Report
+from app.features.record.sessions.service import (
+    apply_command,
+    session_by_id,
+)
+from app.features.record.telemetry.ingest import Intake
+from app.features.record.telemetry.outcome import Outcome
+from app.models import ClientReport, Completion, Contact
+from app.models.types import new_id
+from app.wire.messages import (
+    REPORT_STREAM,
+    CompletionReport,
+    ContactReport,
+    MaterialisedReport,
+    PhaseReport,
+    RefusedReport,
+    Resend,
+)
+from app.wire.messages import Report as ReportMessage
+
+REPORTS = cast("Table", ClientReport.__table__)
+CONTACTS = cast("Table", Contact.__table__)
+
+
+def store_report(intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome) -> None:
+    """Store a report and act on it; one that does not fit is kept with the reason."""
+    at = intake.positions.at(session_id, REPORT_STREAM, message.epoch)
+    if message.seq > at.next_seq:
+        outcome.notices.append(Resend(**at.as_told.model_dump()))
+        return
+    if message.seq == at.next_seq:
+        refusal = _take(intake, session_id, message, outcome)
+        intake.gather(REPORTS, _row(session_id, message, refusal, intake.now))
+        at.stored(1)
+        if refusal is not None:
+            outcome.notices.append(
+                RefusedReport(
+                    epoch=message.epoch,
+                    seq=message.seq,
+                    message=refusal.message,
+                    remedy=refusal.remedy,
+                )
+            )
+    outcome.stored_up_to(at)
+
+
+def _row(
+    session_id: str, message: ReportMessage, refusal: ReembodyError | None, now: datetime
+) -> dict[str, Any]:
+    return {
+        "session_id": session_id,
+        "epoch": message.epoch,
+        "seq": message.seq,
+        "type": message.body.kind,
+        "payload": message.body.model_dump(),
+        "accepted": refusal is None,
+        "refusal": None if refusal is None else refusal.message[:400],
+        "received_at": now,
+    }
+
+
+def _take(
+    intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome
+) -> ReembodyError | None:
+    """Do what a report says; the refusal if it does not fit."""
+    body = message.body
+    try:
+        if isinstance(body, ContactReport | CompletionReport):
+            _require_phase(intake, session_id, body.phase_id)
+        if isinstance(body, ContactReport):
+            # By far the most frequent: it changes no state, so it is stored with the others.
+            values = body.model_dump(exclude={"kind"})
+            own = {"id": new_id(), "session_id": session_id, "epoch": message.epoch}
+            intake.gather(CONTACTS, {**own, **values})
+        else:
+            # Acting looks at what is stored, so what came before it must be.
+            intake.flush()
+            with intake.db.begin_nested():
+                _act(intake, session_id, message, outcome)
+    except ReembodyError as refusal:
+        return refusal
+    return None
+
+
+def _act(intake: Intake, session_id: str, message: ReportMessage, outcome: Outcome) -> None:
+    db, body = intake.db, message.body
+    match body:
+        case PhaseReport():
+            _act_on_phase(db, intake.context, session_id, body, outcome)
+        case MaterialisedReport():
+            session = session_by_id(db, session_id, lock=True)
+            command = Materialise(by="headset", client_t_s=body.t_s)
+            apply_command(db, intake.context, session, command, actor="headset")
+        case CompletionReport():
+            _require_new(db, session_id, body)
+            db.add(_completion(session_id, message.epoch, body))
+
+
+def _act_on_phase(
+    db: Session, context: AppContext, session_id: str, body: PhaseReport, outcome: Outcome
+) -> None:
+    session = session_by_id(db, session_id, lock=True)
+    command = Report(
+        what=body.what,
+        phase_id=body.phase_id,
+        client_t_s=body.t_s,
+        active_s=body.active_s,
+        cause=body.cause,
+        completions=_completions(db, session_id, body.phase_id) if body.what == "time_up" else 0,
+    )
+    apply_command(db, context, session, command, actor="headset")
+    if body.what == "ended":
+        outcome.phases_ended.append(body.phase_id)
+
+
+def _completions(db: Session, session_id: str, phase_id: int) -> int:
+    count = select(func.count()).select_from(Completion)
+    of_phase = count.where(Completion.session_id == session_id, Completion.phase_id == phase_id)
+    return db.scalar(of_phase) or 0
+
+
+def _completion(session_id: str, epoch: int, body: CompletionReport) -> Completion:
+    return Completion(
+        session_id=session_id,
+        epoch=epoch,
+        phase_id=body.phase_id,
+        number=body.number,
+        at_s=body.t_s,
+        active_s=body.active_s,
+        duration_s=body.duration_s,
+        order=list(body.order),
+        out_of_order_touches=body.out_of_order_touches,
+    )
+
+
+def _require_phase(intake: Intake, session_id: str, phase_id: int) -> None:
+    if not intake.has_phase(session_id, phase_id):
+        raise ReembodyError(
+            f"there is no phase {phase_id}",
+            value=phase_id,
+            remedy="Use the phase_id of the newest state message.",
+        )
+
+
+def _require_new(db: Session, session_id: str, body: CompletionReport) -> None:
+    if db.get(Completion, (session_id, body.phase_id, body.number)) is not None:
+        raise ReembodyError(
+            f"completion {body.number} of phase {body.phase_id} was reported before",
+            value=body.number,
+            remedy="Count on from the completions in the newest state message.",
+        )

@@ -1,0 +1,147 @@
+"""What is computed of a phase once its frames are on disk, in the background.
+
+The summaries of a phase are stored together, in place of older ones, and all can be computed again
+from the stored frames at any time.
+"""
+
+import logging
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+from sqlalchemy import ColumnElement, and_, delete, or_, select
+from sqlalchemy.orm import Session
+
+from app.features.context import AppContext
+from app.features.record.sessions.capture import erased_session, not_erased
+from app.features.record.sessions.service import session_by_id
+from app.features.record.telemetry.joint_errors import joint_error_rows
+from app.features.record.telemetry.latencies import history_s, latency_rows
+from app.features.record.telemetry.movement import Run, phase_runs
+from app.features.record.telemetry.quality_rows import quality_rows
+from app.models import (
+    JointErrorCourseRow,
+    JointErrorRow,
+    Phase,
+    PhaseLatency,
+    PhaseQuality,
+    TelemetryBatch,
+    TelemetryChunk,
+)
+
+log = logging.getLogger(__name__)
+Row = JointErrorRow | JointErrorCourseRow | PhaseLatency | PhaseQuality
+Tables = tuple[type[Row], ...]
+Summary = Callable[[Phase, Sequence[Run]], Sequence[Row]]
+
+JOINT_ERRORS: Tables = (JointErrorRow, JointErrorCourseRow)
+SUMMARIES: dict[Tables, Summary] = {
+    JOINT_ERRORS: joint_error_rows,
+    (PhaseLatency,): latency_rows,
+    (PhaseQuality,): quality_rows,
+}
+"""Tables with what fills them."""
+
+
+@dataclass
+class Summariser:
+    """Computes summaries in the background, one phase at a time."""
+
+    context: AppContext
+    _pool: ThreadPoolExecutor = field(
+        default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="summaries")
+    )
+    _older: deque[tuple[str, int]] = field(default_factory=deque)
+
+    def phase_ended(self, session_id: str, phase_id: int) -> None:
+        """Queue a phase whose last frame is on disk."""
+        self._pool.submit(self._run, session_id, phase_id, tuple(SUMMARIES))
+
+    def catch_up(self) -> None:
+        """Queue every phase that ended without summaries, as after a crash.
+
+        Every phase gets rows of its streams' quality, if only to say that it has no frames: where
+        they are missing, all is. Phases of a version that computed no courses of joint errors get
+        these, too, one after the other whenever nothing else waits.
+        """
+        with self.context.database.reading() as db:
+            missing = _ended(db, ~_has(PhaseQuality))
+            self._older.extend(_ended(db, and_(_has(PhaseQuality), _lacks_its_course())))
+        for session_id, phase_id in missing:
+            self.phase_ended(session_id, phase_id)
+        self._take_older()
+
+    def stop(self) -> None:
+        """Finish the phase under way and end; what waits is caught up at the next start."""
+        self._older.clear()
+        self._pool.shutdown(wait=True, cancel_futures=True)
+
+    def _take_older(self) -> None:
+        """Queue only the next: whoever ends a phase now waits for one of them, not for all."""
+        if self._older:
+            self._pool.submit(self._run_older, *self._older.popleft())
+
+    def _run_older(self, session_id: str, phase_id: int) -> None:
+        self._run(session_id, phase_id, (JOINT_ERRORS,))
+        self._take_older()
+
+    def _run(self, session_id: str, phase_id: int, wanted: Sequence[Tables]) -> None:
+        try:
+            with self.context.database.reading() as db:
+                rows = summary_rows(db, session_id, phase_id, wanted)
+            with self.context.database.writing() as db:
+                session_by_id(db, session_id, lock=True)
+                if erased_session(db, session_id):
+                    return
+                replace_rows(db, session_id, phase_id, rows, wanted)
+        except Exception:
+            log.exception("summaries of phase %s of %s failed", phase_id, session_id)
+        else:
+            self.context.hub.publish(session_id, "session")
+
+
+def _ended(db: Session, condition: ColumnElement[bool]) -> list[tuple[str, int]]:
+    """The phases that ended and are like that, in order."""
+    query = (
+        select(Phase.session_id, Phase.phase_id)
+        .where(Phase.status == "done", condition, not_erased(Phase.session_id))
+        .order_by(Phase.session_id, Phase.phase_id)
+    )
+    return [(session_id, phase_id) for session_id, phase_id in db.execute(query)]
+
+
+def _has(table: type[Row | TelemetryBatch | TelemetryChunk]) -> ColumnElement[bool]:
+    """Whether a phase has a row there."""
+    own = select(table.phase_id).where(
+        table.session_id == Phase.session_id, table.phase_id == Phase.phase_id
+    )
+    return own.exists()
+
+
+def _lacks_its_course() -> ColumnElement[bool]:
+    """Whether a phase has joint errors alone, and movement that their course can be told from."""
+    recorded = or_(_has(TelemetryChunk), _has(TelemetryBatch))
+    return and_(_has(JointErrorRow), ~_has(JointErrorCourseRow), recorded)
+
+
+def summary_rows(
+    db: Session, session_id: str, phase_id: int, wanted: Sequence[Tables] = tuple(SUMMARIES)
+) -> list[Row]:
+    """Summaries of a phase from its stored frames, which are read once; all unless named."""
+    phase = db.get_one(Phase, (session_id, phase_id))
+    runs = phase_runs(db, session_id, phase_id, history_s=history_s(phase))
+    return [row for tables in wanted for row in SUMMARIES[tables](phase, runs)]
+
+
+def replace_rows(
+    db: Session,
+    session_id: str,
+    phase_id: int,
+    rows: Sequence[Row],
+    wanted: Sequence[Tables] = tuple(SUMMARIES),
+) -> None:
+    """Store these summaries of a phase in place of older ones."""
+    for table in (one for tables in wanted for one in tables):
+        db.execute(delete(table).where(table.session_id == session_id, table.phase_id == phase_id))
+    db.add_all(rows)

@@ -1,0 +1,239 @@
+"""One thread commits the messages of all sessions together, every 50 ms, and only then acks.
+
+So the number of flushes to disk does not grow with the number of headsets, and an acknowledgement
+always means "on disk". A message that cannot be stored fails its own session only; when the
+database itself cannot write, nothing is acknowledged and everything waits.
+"""
+
+import logging
+import threading
+import time
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+from sqlalchemy.exc import DBAPIError
+
+from app.features.context import AppContext
+from app.features.record.alarms.alarm import Change, Condition
+from app.features.record.sessions.capture import closed_sessions, refusal
+from app.features.record.telemetry.ingest import Intake
+from app.features.record.telemetry.outcome import Outcome
+from app.features.record.telemetry.reports import store_report
+from app.features.trouble import explain
+from app.wire import Batch, FrameFlags, flag_batches
+from app.wire.messages import Probed, Produced, Report
+
+log = logging.getLogger(__name__)
+RETRY_S = 0.5
+
+
+class Sender(Protocol):
+    """Where the answer to a message goes, from any thread."""
+
+    def deliver(self, outcome: Outcome) -> None:
+        """The message is on disk."""
+
+    def fail(self, error: Exception) -> None:
+        """The message cannot be stored, ever; close."""
+
+
+class Nobody:
+    """The sender of what the server itself puts on record."""
+
+    def deliver(self, outcome: Outcome) -> None:
+        """Nobody waits for it."""
+
+    def fail(self, error: Exception) -> None:
+        """It was logged."""
+
+
+class Arrival(NamedTuple):
+    """A message of a session waiting to be stored."""
+
+    session_id: str
+    sender: Sender
+    content: "Content"
+
+
+class BatchContent(NamedTuple):
+    """A decoded batch and its raw bytes."""
+
+    batch: Batch
+    message: bytes
+
+
+@dataclass(frozen=True)
+class ProbeContent:
+    """A raw clock reading."""
+
+    epoch: int
+    probe: Probed
+
+
+@dataclass(frozen=True)
+class LossContent:
+    """The headset's connection broke."""
+
+    cause: str
+
+
+@dataclass(frozen=True)
+class AlarmContent:
+    """An alarm was raised or cleared. Nobody waits for it."""
+
+    change: Change
+
+
+Content = BatchContent | Report | ProbeContent | Produced | LossContent | AlarmContent
+
+
+@dataclass
+class TelemetryWriter:
+    """The single writer of telemetry. `start` it once, `stop` it after the last connection."""
+
+    context: AppContext
+    on_phase_ended: Callable[[str, int], None]
+    _waiting: list[Arrival] = field(default_factory=list)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _wake: threading.Event = field(default_factory=threading.Event)
+    _stopping: bool = False
+    _thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begin to commit."""
+        self._thread = threading.Thread(target=self._run, name="telemetry-writer", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Commit what waits and end."""
+        self._stopping = True
+        self._wake.set()
+        if self._thread is not None:
+            self._thread.join(timeout=10.0)
+
+    def submit(self, arrival: Arrival) -> None:
+        """Queue a message; its sender limits how many are in flight."""
+        with self._lock:
+            self._waiting.append(arrival)
+        self._wake.set()
+
+    def _run(self) -> None:
+        while True:
+            self._wake.wait(timeout=1.0)
+            self._wake.clear()
+            # Wait a little for others to join the same flush.
+            if not self._stopping:
+                time.sleep(self.context.settings.commit_interval_s)
+            with self._lock:
+                arrivals, self._waiting = self._waiting, []
+            if arrivals:
+                self._store_or_wait(arrivals)
+            if self._stopping and not self._waiting:
+                return
+
+    def _store_or_wait(self, arrivals: Sequence[Arrival]) -> None:
+        while True:
+            try:
+                self._store(arrivals)
+            except DBAPIError:
+                # The database's observer has told of it already.
+                if self._stopping:
+                    return
+                time.sleep(RETRY_S)
+            else:
+                self._record_outages()
+                return
+
+    def _record_outages(self) -> None:
+        """Put on record, afterwards, that nothing could be stored: an alarm that came and went."""
+        for outage in self.context.storage.take_outages():
+            condition = Condition("storage", outage.reason)
+            raised = Change("raised", condition, outage.since)
+            cleared = Change("cleared", condition, outage.until)
+            for session_id in self.context.hub.sessions_with_headsets():
+                for change in (raised, cleared):
+                    self.submit(Arrival(session_id, Nobody(), AlarmContent(change)))
+
+    def _store(self, arrivals: Sequence[Arrival]) -> None:
+        """Commit all together; if a message is at fault, session by session."""
+        try:
+            self._commit(arrivals)
+        except Exception as error:
+            if explain(error) is not None:
+                raise  # the storage is at fault, not a message
+            sessions = {arrival.session_id for arrival in arrivals}
+            if len(sessions) > 1:
+                for session_id in sorted(sessions):
+                    self._store([a for a in arrivals if a.session_id == session_id])
+                return
+            log.error("telemetry of one session cannot be stored", exc_info=error)
+            for arrival in arrivals:
+                arrival.sender.fail(error)
+
+    def _commit(self, arrivals: Sequence[Arrival]) -> None:
+        outcomes: dict[int, tuple[Sender, Outcome]] = {}
+        flags = flag_batches(
+            [one.content.batch for one in arrivals if isinstance(one.content, BatchContent)]
+        )
+        ended: list[tuple[str, int]] = []
+        with self.context.database.writing() as db:
+            closed = closed_sessions(db, {arrival.session_id for arrival in arrivals})
+            intake = Intake(db, self.context, self.context.clock.utc_now())
+            intake.positions.fetch(arrival.session_id for arrival in arrivals)
+            intake.fetch_phases(
+                arrival.session_id for arrival in arrivals if isinstance(arrival.content, Report)
+            )
+            for arrival in arrivals:
+                if arrival.session_id in closed:
+                    _leave_out(arrival, flags)
+                    continue
+                _, outcome = outcomes.setdefault(id(arrival.sender), (arrival.sender, Outcome()))
+                _store_one(intake, arrival, flags, outcome)
+                outcome.messages += not isinstance(arrival.content, LossContent | AlarmContent)
+                ended += [(arrival.session_id, phase) for phase in outcome.phases_ended]
+                outcome.phases_ended.clear()
+            intake.flush()
+        for sender, outcome in outcomes.values():
+            sender.deliver(outcome)
+        for session_id, phase_id in ended:
+            self.on_phase_ended(session_id, phase_id)
+        _refuse(arrivals, closed)
+
+
+def _leave_out(arrival: Arrival, flags: Iterator[FrameFlags]) -> None:
+    """A batch that is not stored has its flags among those of the others all the same."""
+    if isinstance(arrival.content, BatchContent):
+        next(flags)
+
+
+def _refuse(arrivals: Sequence[Arrival], closed: Collection[str]) -> None:
+    """Tell each headset that sent something for a session that takes no more data."""
+    own = (LossContent, AlarmContent)
+    senders = {
+        id(one.sender): one.sender
+        for one in arrivals
+        if one.session_id in closed and not isinstance(one.content, own)
+    }
+    for sender in senders.values():
+        sender.fail(refusal())
+
+
+def _store_one(
+    intake: Intake, arrival: Arrival, flags: Iterator[FrameFlags], outcome: Outcome
+) -> None:
+    """Store a message; `flags` gives those of the batches, in their order."""
+    session_id = arrival.session_id
+    match arrival.content:
+        case BatchContent(batch, message):
+            intake.store_batch(session_id, batch.header, message, next(flags), outcome)
+        case Report() as report:
+            store_report(intake, session_id, report, outcome)
+        case ProbeContent(epoch, probe):
+            intake.store_probe(session_id, epoch, probe)
+        case Produced() as produced:
+            intake.store_produced(session_id, produced)
+        case LossContent(cause):
+            intake.store_loss(session_id, cause)
+        case AlarmContent(change):
+            intake.store_alarm(session_id, change)

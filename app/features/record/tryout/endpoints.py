@@ -1,0 +1,58 @@
+"""A scripted participant, started and stopped over HTTP."""
+
+from fastapi import APIRouter
+
+from app.errors import InvalidInput, NotFound
+from app.features.access import Caller, require_object
+from app.features.context import AppContext
+from app.features.dependencies import Context, Reading, SignedIn
+from app.features.record.tryout.schemas import TryoutView, TryoutWish
+from app.features.studies.service import newest_version, protocol_of, require_open, study_by_key
+
+router = APIRouter(tags=["tryout"])
+
+
+@router.post("/studies/{key}/tryout", status_code=202)
+def post_tryout(
+    key: str, wish: TryoutWish, db: Reading, context: Context, caller: SignedIn
+) -> TryoutView:
+    """Send a scripted participant through the study, in a session marked as simulated."""
+    study = study_by_key(db, key)
+    require_open(study)
+    context.storage.require_storage()
+    languages = protocol_of(newest_version(db, study)).languages
+    if wish.language not in languages:
+        raise InvalidInput(
+            f"this study is not in the language {wish.language!r}",
+            value=wish.language,
+            valid=list(languages),
+            remedy="Choose one of the study's languages.",
+        )
+    url = context.network.reach.local_url
+    return context.tryout.start(caller, study.key, wish.language, url)
+
+
+@router.get("/tryout")
+def get_tryout(context: Context, caller: SignedIn) -> TryoutView | None:
+    """How the newest one is doing; null where there was none since the server was started."""
+    newest = context.tryout.newest(caller)
+    return newest if newest is not None and _sees(context, caller, newest) else None
+
+
+@router.delete("/tryout")
+def delete_tryout(context: Context, caller: SignedIn) -> TryoutView:
+    """Stop the one that is running, and end its session."""
+    newest = context.tryout.newest(caller)
+    if newest is None or not _sees(context, caller, newest):
+        raise NotFound("no scripted participant is here", remedy="Begin another.")
+    return context.tryout.stop(caller)
+
+
+def _sees(context: AppContext, caller: Caller, tryout: TryoutView) -> bool:
+    """Whether its study is one of the caller's."""
+    with context.database.reading() as db:
+        try:
+            require_object(db, caller, "/api/studies/{key}", {"key": tryout.study_key})
+        except NotFound:
+            return False
+    return True

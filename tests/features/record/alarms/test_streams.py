@@ -1,0 +1,160 @@
+"""What is found in the frames while they come."""
+
+import json
+
+import numpy as np
+import pytest
+
+from app.science import rotations as rot
+from app.science.skeleton import JOINT_INDEX
+from app.wire import StreamName
+from tests.features.record.alarms.watched import TREMBLING, Watched, at, batch, there_and_back
+from tests.science.stream_quality.recordings import Recording, generated
+
+HEAD = JOINT_INDEX["Head"]
+MINUTE = there_and_back(TREMBLING)
+UPSIDE_DOWN = np.array((0.0, 1.0, 0.0, 0.0))
+
+
+def told(recording: Recording, time_scale: float = 1.0) -> set[tuple[str, str | None]]:
+    """The alarms that were raised: (code, stream), but for those of the clock."""
+    watched = Watched(time_scale)
+    watched.play(recording)
+    raised = {change.condition.key for change in watched.changes if change.state == "raised"}
+    return {key for key in raised if not key[0].startswith("clock")}
+
+
+@pytest.mark.parametrize("time_scale", [1.0, 20.0, 100.0])
+@pytest.mark.parametrize("sound", [generated(1), generated(2), MINUTE])
+def test_sound_movement_raises_nothing_at_any_speed(sound: Recording, time_scale: float) -> None:
+    """Generated and trembling, in real time and a hundred times faster."""
+    assert told(sound, time_scale) == set()
+
+
+@pytest.mark.parametrize("time_scale", [1.0, 20.0])
+def test_each_fault_raises_its_alarm_and_no_other(time_scale: float) -> None:
+    """In both streams, as the frames of both were spoilt."""
+    both = set(StreamName)
+
+    def raised_by(bad: Recording) -> set[str]:
+        found = told(bad, time_scale)
+        assert {stream for _, stream in found} == both
+        return {code for code, _ in found}
+
+    gap = MINUTE.copy()
+    gap.times_s[2000:] += 0.5
+    frozen = MINUTE.copy()
+    frozen.rotations[2000:2600, HEAD] = frozen.rotations[2000, HEAD]
+    jump = MINUTE.copy()
+    jump.positions_m[2000:] += 1.0
+    broken = MINUTE.copy()
+    broken.rotations[2000, HEAD] = np.nan
+    slow = MINUTE.copy()
+    slow.times_s[2000:] = slow.times_s[2000] + np.arange(len(slow) - 2000) / 60.0
+    assert raised_by(gap) == {"gap"}
+    assert raised_by(frozen) == {"frozen"}
+    assert raised_by(jump) == {"jump"}
+    assert raised_by(broken) == {"bad_values"}
+    assert raised_by(slow) == {"low_frame_rate"}
+
+
+def test_an_alarm_says_what_and_where() -> None:
+    """The joint by its name, for how long, and when on the client's clock."""
+    frozen = MINUTE.copy()
+    frozen.rotations[2000:2600, HEAD] = frozen.rotations[2000, HEAD]
+    watched = Watched()
+    watched.play(frozen)
+    raised = next(one for one in watched.changes if one.condition.code == "frozen")
+    cleared = [one for one in watched.changes if one.state == "cleared"]
+    condition = raised.condition
+    assert (condition.joints, condition.unit) == (("Head",), "s")
+    assert condition.message.startswith("Head of the target stream frozen for")
+    assert condition.client_t_s == pytest.approx(2090 / 90, abs=1.5)
+    assert {one.condition.code for one in cleared} == {"frozen"}
+    assert cleared[0].condition.value == pytest.approx(600 / 90, abs=1.5)
+
+
+@pytest.mark.parametrize(("from_hz", "to_hz", "raised"), [(90, 72, False), (90, 60, True)])
+def test_a_display_rate_is_not_a_low_frame_rate(from_hz: int, to_hz: int, raised: bool) -> None:  # noqa: FBT001 - by name
+    """72 of 90 Hz may be meant; 60 of 90 Hz is not what the study began with."""
+    slow = MINUTE.copy()
+    slow.times_s[:2000] = np.arange(2000) / from_hz
+    slow.times_s[2000:] = slow.times_s[1999] + (1.0 + np.arange(len(slow) - 2000)) / to_hz
+    assert (("low_frame_rate", StreamName.TARGET) in told(slow)) is raised
+
+
+def test_small_gaps_are_counted_and_raise_nothing() -> None:
+    """An operator is not called for 60 ms; the card shows them."""
+    stuttering = MINUTE.copy()
+    for first in range(1000, 1500, 100):
+        stuttering.times_s[first:] += 0.05
+    watched = Watched()
+    watched.play(stuttering)
+    assert {code for code, _ in watched.told} <= {"clock_unknown"}
+    signal = watched.watch.signal(at(60.0))
+    assert signal["gaps"] == 5
+    assert signal["gap_s"] == pytest.approx(5 * (0.05 + 1 / 90), abs=0.02)
+
+
+def test_counts_begin_anew_with_each_phase() -> None:
+    """The card tells of the phase that is on."""
+    gap = MINUTE.copy()
+    gap.times_s[500:] += 0.5
+    watched = Watched()
+    watched.play(gap.part(slice(0, 900)))
+    assert watched.watch.signal(at(10.0))["gaps"] == 1
+    for first in range(900, 1080, 9):
+        watched.watch.batch(batch(gap, first, phase_id=2), at(10.0))
+        watched.watch.batch(batch(gap, first, phase_id=2, stream=StreamName.ACTUAL), at(10.0))
+    assert watched.watch.signal(at(12.0))["gaps"] == 0
+
+
+def test_what_is_sent_again_is_judged_once() -> None:
+    """Neither an overlap nor a batch behind a hole makes time run backwards."""
+    watched = Watched()
+    for first in range(0, 900, 9):
+        for _ in range(2):
+            watched.changes += watched.watch.batch(batch(MINUTE, first, 9), at(first / 90))
+        watched.changes += watched.watch.batch(batch(MINUTE, first + 50, 9), at(first / 90))
+    assert watched.told == []
+    assert watched.watch.signal(at(10.0))["frame_rate_hz"] == pytest.approx(90.0, abs=0.5)
+
+
+def test_an_avatar_whose_delay_is_set_anew_does_not_jump() -> None:
+    """Between phases the actual pose may change at once; the participant's may not."""
+    for stream, raised in ((StreamName.TARGET, ["jump"]), (StreamName.ACTUAL, [])):
+        moved = MINUTE.copy()
+        moved.rotations[450:, HEAD] = rot.multiply(
+            UPSIDE_DOWN, moved.rotations[450:, HEAD].astype(float)
+        )
+        watched = Watched()
+        for first in range(0, 900, 9):
+            phase_id = 1 if first < 450 else 2
+            sent = batch(moved, first, stream=stream, phase_id=phase_id)
+            watched.changes += watched.watch.batch(sent, at(first / 90))
+        assert [change.condition.code for change in watched.changes][:1] == raised
+
+
+def test_a_run_that_went_before_does_not_mix_with_the_newer_one() -> None:
+    """Late frames of an earlier epoch have a clock of their own."""
+    watched = Watched()
+    for first in range(0, 450, 9):
+        watched.changes += watched.watch.batch(
+            batch(MINUTE, 900 + first, epoch=2, seq_first=first), at(0)
+        )
+        watched.changes += watched.watch.batch(batch(MINUTE, first, epoch=1), at(0))
+    assert watched.told == []
+
+
+def test_whatever_comes_is_told_in_numbers() -> None:
+    """Frames may hold anything; what the console hears is valid JSON."""
+    rng = np.random.default_rng(3)
+    odd = MINUTE.part(slice(0, 900)).copy()
+    late = rng.random(len(odd)) < 0.2
+    odd.times_s[late] = rng.choice([1e308, -1e308, np.nan, np.inf], int(late.sum()))
+    odd.positions_m[rng.random(len(odd)) < 0.1] = 3e38
+    watched = Watched()
+    watched.play(odd)
+    told = [(one.condition.value, one.condition.client_t_s) for one in watched.changes]
+    json.dumps([watched.watch.signal(at(10.0)), told], allow_nan=False)
+    assert told

@@ -1,0 +1,159 @@
+"""What a headset's reports do, and that they do it once."""
+
+import time
+
+import pytest
+from sqlalchemy import select
+
+from app.models import ClientReport, Completion, Contact, JointErrorRow, Phase, StudySession
+from tests.features.lab import Json
+from tests.features.record.headset.site import Headset, Site
+from tests.wire.samples import message, standing
+
+CONTACT: Json = {
+    "kind": "contact",
+    "surface": "hand/2/left",
+    "surface_kind": "side",
+    "box": 2,
+    "side": "left",
+    "body_part": "RightHand",
+    "begin_s": 1.0,
+    "end_s": 2.0,
+    "begin_active_s": 0.5,
+    "end_active_s": 1.5,
+    "effect": "side",
+}
+COMPLETION: Json = {
+    "kind": "completion",
+    "number": 1,
+    "t_s": 2.0,
+    "active_s": 2.0,
+    "duration_s": 2.0,
+    "order": [4, 3, 2, 1],
+    "out_of_order_touches": 0,
+}
+
+
+def running(site: Site) -> tuple[str, str]:
+    """A session whose free movement can be called, and its headset's token."""
+    session_id = site.join()
+    site.skip_to(session_id, "free_roam")
+    return session_id, site.token(session_id)
+
+
+def begin(site: Site, session_id: str, headset: Headset) -> int:
+    """Call the phase; the headset starts its clock. The phase's id."""
+    site.command(session_id, "begin_phase")
+    state = headset.hear("state", lambda state: state["phase"] is not None)
+    phase_id = int(state["phase"]["phase_id"])
+    headset.reported(kind="phase", phase_id=phase_id, what="started", t_s=1.0, active_s=0.0)
+    return phase_id
+
+
+def test_a_report_that_does_not_fit_is_kept_and_does_not_count(site: Site) -> None:
+    """It is stored with the refusal, told back, acknowledged, and changes nothing."""
+    session_id, token = running(site)
+    with site.headset(token) as headset:
+        headset.report(kind="phase", phase_id=1, what="ended", t_s=1.0, active_s=0.0)
+        refused = headset.hear("refused")
+    assert "phase 1 is not under way" in refused["message"]
+    with site.database.reading() as db:
+        (row,) = db.scalars(select(ClientReport).where(ClientReport.session_id == session_id))
+    assert (row.accepted, row.refusal) == (False, refused["message"])
+    assert row.payload["what"] == "ended"
+    assert site.view(session_id)["current"]["status"] == "ready"
+
+
+def test_contacts_and_completions_of_a_phase_are_counted(site: Site) -> None:
+    """They are in the phase's row of the cockpit."""
+    session_id, token = running(site)
+    with site.headset(token) as headset:
+        phase_id = begin(site, session_id, headset)
+        headset.reported(**CONTACT, phase_id=phase_id)
+        headset.reported(**COMPLETION, phase_id=phase_id)
+    (phase,) = site.view(session_id)["phases"]
+    assert (phase["side_contacts"], phase["side_contact_s"]) == (1, 1.0)
+    assert phase["completions"] == 1
+
+
+@pytest.mark.parametrize("body", [CONTACT, COMPLETION])
+def test_nothing_is_counted_for_a_phase_that_is_not_there(site: Site, body: Json) -> None:
+    """A contact or completion of an unknown phase is refused and kept as a report."""
+    session_id = site.join()
+    with site.headset(site.token(session_id)) as headset:
+        headset.report(**body, phase_id=7)
+        assert headset.hear("refused")["message"] == "there is no phase 7"
+    with site.database.reading() as db:
+        assert not list(db.scalars(select(Contact).where(Contact.session_id == session_id)))
+        assert not list(db.scalars(select(Completion).where(Completion.session_id == session_id)))
+
+
+def test_a_completion_reported_twice_counts_once(site: Site) -> None:
+    """The second under the same number is refused, and the session goes on."""
+    session_id, token = running(site)
+    with site.headset(token) as headset:
+        phase_id = begin(site, session_id, headset)
+        headset.reported(**COMPLETION, phase_id=phase_id)
+        headset.report(**{**COMPLETION, "duration_s": 9.0}, phase_id=phase_id)
+        assert "was reported before" in headset.hear("refused")["message"]
+        headset.reported(**{**COMPLETION, "number": 2}, phase_id=phase_id)
+    assert site.view(session_id)["phases"][0]["completions"] == 2
+
+
+def test_the_same_report_sent_again_is_acknowledged_and_nothing_else(site: Site) -> None:
+    """Reports are idempotent by seq, like frames."""
+    session_id, token = running(site)
+    with site.headset(token) as headset:
+        phase_id = begin(site, session_id, headset)
+        headset.reported(**CONTACT, phase_id=phase_id)
+        headset.next_report -= 1
+        headset.reported(**CONTACT, phase_id=phase_id)
+    assert site.view(session_id)["phases"][0]["side_contacts"] == 1
+
+
+def test_losing_the_headset_pauses_at_the_last_time_on_disk(site: Site) -> None:
+    """The clock stops where the telemetry ends."""
+    session_id, token = running(site)
+    with site.headset(token) as headset:
+        phase_id = begin(site, session_id, headset)
+        headset.say(message(standing(9), phase_id=phase_id, active=True, active_s=3.25))
+        headset.acknowledged("target", 9)
+    with site.headset(token) as headset:
+        state = headset.welcome["state"]
+        if state["phase"]["status"] != "paused":
+            state = headset.hear("state", lambda state: state["phase"]["status"] == "paused")
+    assert state["phase"]["active_s"] == 3.25
+    assert site.view(session_id)["current"]["pause_reason"] == "headset_lost"
+
+
+def test_a_whole_phase_ends_with_its_joint_errors(site: Site) -> None:
+    """When the freeze is over the phase counts and its summary is computed."""
+    from app.wire import StreamName
+
+    session_id, token = running(site)
+    with site.headset(token) as headset:
+        phase_id = begin(site, session_id, headset)
+        for stream in StreamName:
+            headset.say(
+                message(standing(90), stream=stream, phase_id=phase_id, active=True, active_s=120)
+            )
+        for what in ("time_up", "ended"):
+            headset.reported(kind="phase", phase_id=phase_id, what=what, t_s=2.0, active_s=120.0)
+    with site.database.reading() as db:
+        session = db.get_one(StudySession, session_id)
+        phase = db.get_one(Phase, (session_id, phase_id))
+    assert (phase.status, phase.active_s, session.status) == ("done", 120.0, "active")
+    errors = joint_errors(site, session_id)
+    deadline_s = time.monotonic() + 20.0
+    while not errors and time.monotonic() < deadline_s:
+        time.sleep(0.05)
+        errors = joint_errors(site, session_id)
+    assert {error.samples for error in errors} == {90}
+    assert {error.mean_rad for error in errors if error.reference == "present"} == {0.0}
+
+
+def joint_errors(site: Site, session_id: str) -> list[JointErrorRow]:
+    """The summary rows of a session."""
+    with site.database.reading() as db:
+        query = select(JointErrorRow).where(JointErrorRow.session_id == session_id)
+        return list(db.scalars(query))

@@ -1,0 +1,125 @@
+"""From batches to what consoles draw: the newest frame, not too often, only if somebody looks."""
+
+import asyncio
+import struct
+
+import numpy as np
+
+from app.features.live import Hub
+from app.features.record.poses.service import (
+    HEADER,
+    MAGIC,
+    TOUCHES,
+    TOUCHES_KEPT,
+    PoseFeed,
+    encode_pose,
+)
+from app.features.record.poses.socket import visible
+from app.wire import Batch, StreamName, decode_batch
+from app.wire.messages import CompletionReport, ContactReport, Report
+from tests.wire.samples import message, standing
+
+
+def batch(seq: int, stream: StreamName = StreamName.TARGET) -> Batch:
+    """Six frames; the hips' x is the frame's seq."""
+    values = standing(6)
+    values[:, 0] = seq + np.arange(6)
+    return decode_batch(message(values, stream=stream, seq_first=seq, phase_id=3, active=True))
+
+
+def contact(seq: int) -> Report:
+    """A touched panel."""
+    body = ContactReport(
+        phase_id=3,
+        surface="hand/1/panel",
+        surface_kind="panel",
+        box=1,
+        body_part="RightHand",
+        begin_s=1.0,
+        end_s=1.1,
+        begin_active_s=1.0,
+        end_active_s=1.1,
+        effect="green",
+    )
+    return Report(epoch=1, seq=seq, body=body)
+
+
+def test_a_pose_is_the_newest_frame_of_its_batch() -> None:
+    """As the layout of the message says, to the bit."""
+    told = encode_pose(batch(12, StreamName.ACTUAL))
+    assert len(told) == HEADER.size + 4 * 91
+    magic, stream, flags, count, phase_id, seq, t_s = struct.unpack_from("<4sBBHIQd", told)
+    assert (magic, stream, flags, count, phase_id, seq) == (MAGIC, 2, 1, 91, 3, 17)
+    assert t_s == 17 / 90.0
+    assert np.array_equal(np.frombuffer(told, "<f4", 91, HEADER.size), batch(12).values[-1])
+
+
+def test_a_slow_console_finds_the_newest_pose_alone() -> None:
+    """What it did not take in time is gone; the feed never waits for it."""
+
+    async def run() -> dict[str, bytes]:
+        hub = Hub()
+        feed = PoseFeed(hub, "s")
+        feed.take(batch(0), 1.0)
+        with hub.subscribe("s", "pose_target", TOUCHES) as slow:
+            for turn in range(50):
+                feed.take(batch(6 * turn), 2.0 + 0.1 * turn)
+            await asyncio.sleep(0)
+            return await slow.next(1.0)
+
+    news = asyncio.run(run())
+    assert list(news) == ["pose_target"]
+    assert HEADER.unpack_from(news["pose_target"])[5] == 6 * 49 + 5
+
+
+def test_poses_come_thirty_times_a_second_at_most() -> None:
+    """Each stream by itself."""
+
+    async def run() -> int:
+        hub = Hub()
+        feed = PoseFeed(hub, "s")
+        drawn = 0
+        with hub.subscribe("s", "pose_target") as console:
+            for turn in range(100):
+                feed.take(batch(6 * turn), 0.01 * turn)
+                await asyncio.sleep(0)
+                drawn += len(await console.next(0.001))
+        return drawn
+
+    assert 20 <= asyncio.run(run()) <= 31
+
+
+def test_touches_are_told_together_so_that_none_is_missed() -> None:
+    """The last few, the oldest first, each with a number of its own; also completed tasks."""
+
+    async def run() -> list[tuple[int, int]]:
+        hub = Hub()
+        feed = PoseFeed(hub, "s")
+        with hub.subscribe("s", TOUCHES) as console:
+            for seq in range(20):
+                feed.report(contact(seq))
+            done = CompletionReport(
+                phase_id=3,
+                number=1,
+                t_s=2.0,
+                active_s=2.0,
+                duration_s=2.0,
+                order=(1,),
+                out_of_order_touches=0,
+            )
+            feed.report(Report(epoch=1, seq=20, body=done))
+            await asyncio.sleep(0)
+            touches = (await console.next(1.0))[TOUCHES]
+            assert touches[-1].kind == "completion"
+            return [touch.number for touch in touches]
+
+    assert asyncio.run(run()) == [(1, seq) for seq in range(21 - TOUCHES_KEPT, 21)]
+
+
+def test_a_blinded_console_gets_the_participant_alone() -> None:
+    """Neither the avatar nor its contacts: beside the participant both tell the latency."""
+    feed_news = {"pose_target": b"t", "pose_actual": b"a", TOUCHES: ()}
+    assert list(visible(feed_news, blinded=True)) == [b"t"]
+    shown = list(visible(feed_news, blinded=False))
+    assert shown[:2] == [b"t", b"a"]
+    assert len(shown) == 3

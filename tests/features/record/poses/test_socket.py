@@ -1,0 +1,145 @@
+"""A console watches a session's movement over its socket."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import pytest
+from starlette.testclient import WebSocketTestSession
+from starlette.websockets import WebSocketDisconnect
+
+from app.features.record.poses.service import HEADER, PoseFeed
+from app.features.record.poses.socket import MOST_UNDRAWN
+from app.science.skeleton import JOINT_NAMES, build_skeleton
+from app.wire import Batch, StreamName, decode_batch
+from tests.features.lab import STUDY, Json, Lab, ok
+from tests.features.record.poses.test_feed import contact
+from tests.wire.samples import message, standing
+
+PATIENCE_S = 10.0
+
+
+@contextmanager
+def watching(lab: Lab, session_id: str) -> Iterator[WebSocketTestSession]:
+    """A console's open socket."""
+    with lab.operator.websocket_connect(f"/api/sessions/{session_id}/pose") as socket:
+        yield socket
+
+
+def feed_of(lab: Lab, session_id: str) -> PoseFeed:
+    """The feed of a headset, as soon as a console listens."""
+    until_s = time.monotonic() + PATIENCE_S
+    while not lab.context.hub.has_listeners(session_id, "pose_target"):
+        assert time.monotonic() < until_s
+        time.sleep(0.005)
+    return PoseFeed(lab.context.hub, session_id)
+
+
+def batch(seq: int, stream: StreamName = StreamName.TARGET) -> Batch:
+    """One frame."""
+    return decode_batch(message(standing(1), stream=stream, seq_first=seq))
+
+
+def seq_of(told: bytes) -> int:
+    """Which frame a message shows."""
+    return int(HEADER.unpack_from(told)[5])
+
+
+def blinded_session(lab: Lab) -> str:
+    """A running session of a study whose operators are blinded."""
+    yaml = ok(lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    blinded = yaml.replace("operator: false", "operator: true")
+    ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
+    return str(lab.skip_to(lab.join(), "block1.hand")["id"])
+
+
+def test_a_console_is_told_the_body_and_the_boxes_of_the_present_task(lab: Lab) -> None:
+    """First nothing to touch; in the hand task its surfaces; the body is the participant's."""
+    view = lab.join()
+    with watching(lab, view["id"]) as socket:
+        setup: Json = socket.receive_json()
+        assert (setup["limb"], setup["surfaces"], setup["recording"]) == (None, [], False)
+        assert tuple(setup["joints"]) == JOINT_NAMES
+        assert np.allclose(setup["offsets_m"], build_skeleton(1.72).offsets_m)
+        assert setup["stature_known"] is False
+        view = lab.skip_to(view, "height")
+        lab.command(view, "complete_step", height_m={"stated": 1.8, "matched": 1.81})
+        while not setup["stature_known"]:
+            setup = socket.receive_json()
+        assert np.allclose(setup["offsets_m"], build_skeleton(1.81).offsets_m)
+        lab.skip_to(lab.view(view["id"]), "block1.hand")
+        while setup["limb"] is None:
+            setup = socket.receive_json()
+        kinds = [surface["kind"] for surface in setup["surfaces"]]
+        assert {"panel", "side", "target"} == set(kinds)
+        assert all(surface["key"].startswith("hand/") for surface in setup["surfaces"])
+
+
+def test_both_figures_and_the_touches_reach_an_open_console(lab: Lab) -> None:
+    """As they come, each under its stream."""
+    session_id = lab.join()["id"]
+    with watching(lab, session_id) as socket:
+        socket.receive_json()
+        feed = feed_of(lab, session_id)
+        feed.take(batch(5), 1.0)
+        assert seq_of(socket.receive_bytes()) == 5
+        feed.take(batch(6, StreamName.ACTUAL), 1.0)
+        told = socket.receive_bytes()
+        assert (seq_of(told), HEADER.unpack_from(told)[1]) == (6, 2)
+        feed.report(contact(3))
+        touches = socket.receive_json()
+        assert touches["type"] == "touches"
+        assert touches["touches"][0]["surface"] == "hand/1/panel"
+
+
+def test_a_blinded_console_gets_one_figure_until_the_condition_is_shown(fresh_lab: Lab) -> None:
+    """Neither the avatar nor a contact passes before; both do after."""
+    session_id = blinded_session(fresh_lab)
+    with watching(fresh_lab, session_id) as socket:
+        assert socket.receive_json()["blinded"] is True
+        feed = feed_of(fresh_lab, session_id)
+        feed.take(batch(1, StreamName.ACTUAL), 1.0)
+        feed.report(contact(1))
+        feed.take(batch(2), 1.0)
+        assert seq_of(socket.receive_bytes()) == 2
+        path = f"/api/sessions/{session_id}/reveal"
+        ok(fresh_lab.operator.post(path, json={"reason": "the participant is unwell"}))
+        assert socket.receive_json()["blinded"] is False
+        feed.take(batch(3, StreamName.ACTUAL), 2.0)
+        assert seq_of(socket.receive_bytes()) == 3
+
+
+def test_a_console_that_does_not_draw_gets_the_newest_afterwards(lab: Lab) -> None:
+    """No more than a few are on the way; what lies between is never sent."""
+    session_id = lab.join()["id"]
+    with watching(lab, session_id) as socket:
+        socket.receive_json()
+        feed = feed_of(lab, session_id)
+        last = MOST_UNDRAWN - 1
+        for seq in range(last):
+            feed.take(batch(seq), float(seq))
+            assert seq_of(socket.receive_bytes()) == seq
+        for seq in range(last, 200):
+            feed.take(batch(seq), float(seq))
+        for _ in range(last):
+            socket.send_text("")
+        assert seq_of(socket.receive_bytes()) == 199
+
+
+@pytest.mark.parametrize(
+    ("client", "code"), [("stranger", 4401), ("elsewhere", 4403), ("unknown", 4403)]
+)
+def test_who_may_not_look_is_told_so(lab: Lab, client: str, code: int) -> None:
+    """Nobody without a login, no page of another site, nothing of a session that is none."""
+    session_id = "nobody" if client == "unknown" else lab.join()["id"]
+    caller: Any = lab.stranger() if client == "stranger" else lab.operator
+    headers = {"origin": "http://elsewhere.example"} if client == "elsewhere" else {}
+    path = f"/api/sessions/{session_id}/pose"
+    with (
+        pytest.raises(WebSocketDisconnect) as closed,
+        caller.websocket_connect(path, headers=headers) as socket,
+    ):
+        socket.receive_json()
+    assert closed.value.code == code

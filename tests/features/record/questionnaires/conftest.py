@@ -1,0 +1,19 @@
+"""A session with a form due, and its tablet."""
+
+import pytest
+from fastapi.testclient import TestClient
+
+from tests.features.lab import Lab
+from tests.features.record.questionnaires.forms import FORM
+
+
+@pytest.fixture
+def session_id(lab: Lab) -> str:
+    """A session whose first embodiment questionnaire is due."""
+    return str(lab.skip_to(lab.join(), FORM)["id"])
+
+
+@pytest.fixture
+def tablet(lab: Lab, session_id: str) -> TestClient:
+    """Its tablet."""
+    return lab.tablet(session_id)

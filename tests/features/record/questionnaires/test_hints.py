@@ -1,0 +1,115 @@
+"""Hints on how a form was filled in: for the operator, and only where they are worth a look."""
+
+import json
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from pandas import isna
+
+from app.features.record.questionnaires.hints import hints_of
+from app.features.results.analysis.tables.questionnaires import answers_table
+from app.features.studies.service import instrument_of, newest_instruments
+from app.models import Submission
+from app.science.instruments import Instrument
+from tests.features.lab import STUDY, Json, Lab, ok
+from tests.features.record.questionnaires.forms import ANSWERS, due, enter, filled, send
+
+RATED = [f"q{number}" for number in range(1, 15)]
+ALL_FOUR: Json = {**dict.fromkeys(RATED, 4), "problems": None}
+
+
+def traces(*times_s: float) -> Json:
+    """The rated items in their order, each answered in its time and never changed."""
+    return {
+        item: {"response_s": time_s, "changes": 0}
+        for item, time_s in zip(RATED, times_s, strict=False)
+    }
+
+
+def hints(lab: Lab, session_id: str) -> list[Json]:
+    """What the cockpit shows below the scores of the first form."""
+    view = lab.view(session_id)
+    found: list[Json] = view["scores"][0]["hints"]
+    return [{name: value for name, value in one.items() if value is not None} for one in found]
+
+
+def test_an_ordinary_form_has_no_hint(lab: Lab, session_id: str, tablet: TestClient) -> None:
+    """The published answers at an ordinary pace; the open question may be empty."""
+    answers = {**ANSWERS, "problems": None}
+    ok(send(tablet, filled(due(tablet), answers, item_traces=traces(*[3.0] * 14))))
+    assert hints(lab, session_id) == []
+
+
+def test_answers_all_alike_are_told_to_the_operator_alone(
+    lab: Lab, session_id: str, tablet: TestClient
+) -> None:
+    """Straight-lining: the form is stored and scored, and neither receipt nor screen tells."""
+    receipt = ok(send(tablet, filled(due(tablet), ALL_FOUR)))
+    assert hints(lab, session_id) == [{"kind": "alike", "items": 14, "value": 4.0}]
+    assert lab.view(session_id)["scores"][0]["scores"]["ownership"] is not None
+    told = json.dumps([receipt, ok(tablet.get("/api/tablet/state"))])
+    assert "hint" not in told
+    assert "alike" not in told
+
+
+@pytest.mark.parametrize(
+    ("times_s", "kinds"),
+    [
+        ([0.9] * 14, ["fast"]),
+        ([0.9] * 8 + [30.0] * 6, ["fast"]),
+        ([1.0] * 14, []),
+        ([0.2] * 4, []),
+    ],
+)
+def test_half_of_the_ratings_below_a_second_are_implausibly_fast(
+    lab: Lab, session_id: str, tablet: TestClient, times_s: list[float], kinds: list[str]
+) -> None:
+    """The median decides, from five ratings on; a second is not below a second."""
+    ok(send(tablet, filled(due(tablet), item_traces=traces(*times_s))))
+    assert hints(lab, session_id) == [{"kind": kind, "items": 14, "seconds": 1.0} for kind in kinds]
+
+
+def test_what_an_operator_enters_is_not_fast_but_may_be_incomplete(
+    lab: Lab, session_id: str
+) -> None:
+    """An operator types what was said; what was not said is counted, the open question is not."""
+    ok(enter(lab, session_id, {**ANSWERS, "q3": None, "q9": None, "problems": None}))
+    assert hints(lab, session_id) == [{"kind": "left_out", "items": 2}]
+
+
+def hints_on(instrument: Instrument, value: float) -> list[str]:
+    """The kinds of hints on a form with one answer throughout."""
+    submission = Submission(mode="tablet", item_traces=None)
+    answers: dict[str, Any] = {
+        item.key: value if item.type == "likert" else "" for item in instrument.items
+    }
+    return [hint.kind for hint in hints_of(instrument, submission, answers)]
+
+
+def test_no_symptom_at_all_is_no_straight_line(lab: Lab) -> None:
+    """The lowest step throughout: usual in a list of symptoms, a contradiction in Karas 2020."""
+    with lab.database.reading() as db:
+        known = {key: instrument_of(row) for key, row in newest_instruments(db).items()}
+    assert hints_on(known["ssq"], 0.0) == []
+    assert hints_on(known["ssq"], 3.0) == ["alike"]
+    assert hints_on(known["karas2020"], 1.0) == ["alike"]
+
+
+def test_times_and_changes_are_exported_by_item(
+    lab: Lab, session_id: str, tablet: TestClient
+) -> None:
+    """As they were sent; empty for an item of which nothing is known."""
+    body = filled(
+        due(tablet),
+        timings={"q1": 4.5, "q2": 9.0},
+        item_traces={"q1": {"response_s": 2.25, "changes": 3}},
+    )
+    ok(send(tablet, body))
+    with lab.database.reading() as db:
+        frame = answers_table(db, STUDY, "people")
+    rows = frame[frame["session_id"] == session_id].to_dict("records")
+    names = ("response_s", "changes", "answered_after_s")
+    told = {row["item"]: [row[name] for name in names] for row in rows}
+    assert told["q1"] == [2.25, 3, 4.5]
+    assert [isna(value) for value in told["q2"]] == [True, True, False]

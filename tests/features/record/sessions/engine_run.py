@@ -1,0 +1,89 @@
+"""The engine driven by hand: a plan, the events so far, and the state they fold to."""
+
+from dataclasses import dataclass, field
+
+from app.features.record.sessions.engine import (
+    Command,
+    ContentRef,
+    Event,
+    SessionState,
+    decide,
+    evolve,
+    initial_state,
+)
+from app.features.record.sessions.engine import commands as c
+from app.protocol.plan import Step, compile_plan
+from tests.protocol.helpers import study
+
+PLAN: tuple[Step, ...] = compile_plan(study(), ("latency_125", "latency_0", "latency_350"))
+WORDS = ContentRef("content", "hash")
+REPORTS = (
+    "started",
+    "paused",
+    "resumed",
+    "walk_back_started",
+    "walk_back_ended",
+    "time_up",
+    "ended",
+)
+
+
+def index_of(key: str) -> int:
+    """Where the step of that key stands in the plan."""
+    return next(step.index for step in PLAN if step.key == key)
+
+
+@dataclass
+class Run:
+    """A session without a database."""
+
+    state: SessionState = field(default_factory=lambda: initial_state(len(PLAN)))
+    events: list[Event] = field(default_factory=list)
+
+    def do(self, command: Command) -> list[Event]:
+        """Decide a command and fold what it gave; Refused leaves everything as it was."""
+        decided = decide(PLAN, self.state, command)
+        for event in decided:
+            self.state = evolve(self.state, event)
+        self.events += decided
+        return decided
+
+    @property
+    def step(self) -> Step:
+        """The current step."""
+        assert self.state.current is not None
+        return PLAN[self.state.current]
+
+    def go_to(self, key: str) -> "Run":
+        """Start, and skip every step before `key`."""
+        if self.state.current is None:
+            self.do(c.Start())
+        while self.step.key != key:
+            self.do(c.Skip(content=WORDS))
+        return self
+
+    def report(self, what: str, active_s: float, client_t_s: float = 1.0) -> list[Event]:
+        """What the headset did to the phase under way."""
+        assert self.state.phase is not None
+        return self.do(
+            c.Report(
+                what=what,
+                phase_id=self.state.phase.phase_id,
+                client_t_s=client_t_s,
+                active_s=active_s,
+            )
+        )
+
+    def begin(self, key: str) -> "Run":
+        """Begin the phase of step `key`; its clock runs."""
+        self.go_to(key)
+        self.do(c.BeginPhase(headset_connected=True))
+        self.report("started", 0.0)
+        return self
+
+    def finish(self) -> "Run":
+        """Use the running phase's time up and end its freeze."""
+        duration_s = self.step.duration_s or 0.0
+        self.report("time_up", duration_s)
+        self.report("ended", duration_s)
+        return self

@@ -1,0 +1,241 @@
+"""Commands over HTTP: one of two operators wins, repetition is harmless, refusals help."""
+
+import uuid
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import pytest
+from sqlalchemy import func, select
+
+from app.features.record.sessions.engine.commands import Report
+from app.features.record.sessions.service import apply_command, session_by_id
+from app.features.record.sessions.watching import live_figures
+from app.models import SessionContent, StudySession
+from tests.features.lab import STUDY, Json, Lab, error, ok
+
+BOTH = range(2)
+
+
+@pytest.fixture
+def planned(lab: Lab) -> Json:
+    """A session that has joined and not begun."""
+    return lab.join()
+
+
+def started(lab: Lab, session_id: str) -> list[Json]:
+    """The events that say the session was started."""
+    return [event for event in lab.events(session_id) if event["type"] == "session_started"]
+
+
+def contents(lab: Lab, session_id: str, kind: str) -> int:
+    """How many notes or reasons are stored."""
+    with lab.database.reading() as db:
+        return int(
+            db.scalar(
+                select(func.count())
+                .select_from(SessionContent)
+                .where(SessionContent.session_id == session_id, SessionContent.kind == kind)
+            )
+            or 0
+        )
+
+
+def test_of_two_operators_pressing_start_one_wins(lab: Lab, planned: Json) -> None:
+    """The other gets 409 "stale" with what changed, and there is one start."""
+    with ThreadPoolExecutor(2) as pool:
+        answers = list(pool.map(lambda _: lab.try_command(planned, "start"), BOTH))
+    assert sorted(answer.status_code for answer in answers) == [200, 409]
+    (loser,) = [answer for answer in answers if answer.status_code == 409]
+    refusal = error(loser, 409, "stale")
+    assert (refusal["value"], refusal["valid"]) == (0, 1)
+    (change,) = refusal["details"]
+    assert {"seq": 1, "type": "session_started", "actor": "account:admin"}.items() <= change.items()
+    assert len(started(lab, planned["id"])) == 1
+
+
+def test_a_version_from_the_future_is_stale_too(lab: Lab, planned: Json) -> None:
+    """Whoever decides on a state that is not the present one has to look again."""
+    error(lab.try_command({**planned, "version": 5}, "start"), 409, "stale")
+
+
+@pytest.mark.parametrize(("kind", "words"), [("start", {}), ("note", {"text": "hello"})])
+def test_a_repeated_command_changes_nothing(
+    lab: Lab, planned: Json, kind: str, words: dict[str, str]
+) -> None:
+    """The same command_id answers as the first time, with one event and one row of words."""
+    command_id = str(uuid.uuid4())
+    first = lab.command(planned, kind, command_id=command_id, **words)
+    again = lab.command(planned, kind, command_id=command_id, **words)
+    assert again == first
+    assert len(lab.events(planned["id"])) == 1
+    assert contents(lab, planned["id"], "note") == (kind == "note")
+
+
+def test_a_repetition_at_the_same_moment_changes_nothing(lab: Lab, planned: Json) -> None:
+    """Eight requests under one command_id give one event, and nobody is refused."""
+    command_id = str(uuid.uuid4())
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(
+            pool.map(lambda _: lab.try_command(planned, "start", command_id=command_id), range(8))
+        )
+    assert {answer.status_code for answer in answers} == {200}
+    assert len(lab.events(planned["id"])) == 1
+
+
+def test_notes_never_clash(lab: Lab, planned: Json) -> None:
+    """A note is taken though the session has moved on."""
+    lab.command(planned, "start")
+    view = lab.command(planned, "note", text="  they asked about the boxes  ")
+    assert [note["text"] for note in view["notes"]] == ["they asked about the boxes"]
+    assert view["notes"][0]["by"] == "account:admin"
+
+
+@pytest.mark.parametrize("kind", ["redo", "skip", "abort", "withdraw"])
+@pytest.mark.parametrize("reason", [None, "", "   "])
+def test_what_changes_the_record_needs_a_reason(lab: Lab, kind: str, reason: str | None) -> None:
+    """Without one the command is refused by name and nothing is stored."""
+    view = lab.command(lab.join(), "start")
+    refusal = error(lab.try_command(view, kind, reason=reason), 422, "invalid_input")
+    assert refusal["message"] == f"{kind} needs a reason"
+    assert lab.view(view["id"])["version"] == view["version"]
+    assert contents(lab, view["id"], "reason") == 0
+
+
+def test_an_empty_note_is_refused(lab: Lab, planned: Json) -> None:
+    """A note needs some text."""
+    error(lab.try_command(planned, "note", text=" "), 422, "invalid_input")
+
+
+def test_a_phase_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
+    """The operator hears to pair or wake the headset, or to skip."""
+    view = lab.skip_to(lab.join(), "free_roam")
+    refusal = error(lab.try_command(view, "begin_phase"), 409, "not_now")
+    assert refusal["value"] == "headset not connected"
+    assert "Pair or wake the headset" in refusal["remedy"]
+
+
+def test_a_refused_command_leaves_no_words_behind(lab: Lab, planned: Json) -> None:
+    """The reason of a command that cannot be done now is not stored."""
+    error(lab.try_command(planned, "skip", reason="too early"), 409, "not_now")
+    assert contents(lab, planned["id"], "reason") == 0
+
+
+def test_a_pause_that_was_asked_for_already_stores_no_second_reason(lab: Lab) -> None:
+    """Words are kept only where an event points at them."""
+    view = lab.skip_to(lab.join(), "free_roam")
+    lab.context.hub.headset_joined(view["id"])
+    lab.command(view, "begin_phase")
+    _report_started(lab, view["id"])
+    before = contents(lab, view["id"], "reason")
+    for reason in ("dizzy", "still dizzy"):
+        view = lab.command(lab.view(view["id"]), "pause", reason=reason)
+    assert contents(lab, view["id"], "reason") == before + 1
+
+
+def test_the_view_offers_what_can_be_done(lab: Lab, planned: Json) -> None:
+    """`allowed` leads with the next action of the present state."""
+    assert planned["allowed"] == ["start", "note"]
+    view = lab.command(planned, "start")
+    assert view["allowed"][0] == "complete_step"
+    view = lab.command(view, "abort", reason="fire alarm")
+    assert (view["allowed"], view["status"]) == (["note"], "aborted")
+
+
+def test_a_reason_is_shown_at_its_step(lab: Lab, planned: Json) -> None:
+    """A skipped step tells why it was skipped."""
+    view = lab.command(lab.command(planned, "start"), "skip", reason="consent on paper")
+    assert (view["steps"][0]["status"], view["steps"][0]["reason"]) == (
+        "skipped",
+        "consent on paper",
+    )
+
+
+def test_an_unknown_session_is_not_found(lab: Lab, planned: Json) -> None:
+    """A command to nobody is answered with 404."""
+    error(lab.try_command({**planned, "id": "nobody"}, "start"), 404, "not_found")
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"type": "explode"},
+        {"command_id": "short"},
+        {"expected_version": -1},
+        {"expected_version": 2**70},
+        {"step_index": 2**70},
+        {"surprise": 1},
+        {"height_m": {"stated": 17.5}},
+        {"reason": "x" * 2001},
+    ],
+)
+def test_a_command_that_does_not_fit_is_refused_by_field(
+    lab: Lab, planned: Json, fields: dict[str, Any]
+) -> None:
+    """The answer is 422 and names the field."""
+    body = {"command_id": str(uuid.uuid4()), "expected_version": 0, "type": "start", **fields}
+    answer = lab.operator.post(f"/api/sessions/{planned['id']}/commands", json=body)
+    refusal = error(answer, 422, "invalid_input")
+    assert any(next(iter(fields)) in detail["path"] for detail in refusal["details"])
+
+
+def test_readers_hear_of_a_change_only_once_it_is_on_disk(
+    lab: Lab, planned: Json, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """News are published behind the commit, also where a savepoint was released before it."""
+    heard: list[str] = []
+    with lab.database.writing() as db:
+        session = db.get_one(StudySession, planned["id"])
+        with db.begin_nested():
+            session.language = "de"
+            monkeypatch.setattr(
+                lab.context.hub, "publish", lambda *_: heard.append(_stored(lab, planned["id"]))
+            )
+            lab.context.hub.publish_after_commit(db, planned["id"])
+        assert heard == []
+    assert heard == ["de"]
+
+
+def test_nothing_is_published_when_the_transaction_fails(
+    lab: Lab, planned: Json, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A rolled-back change is no news."""
+    heard: list[str] = []
+    monkeypatch.setattr(lab.context.hub, "publish", lambda *_: heard.append("news"))
+    with lab.database._writer() as db:
+        lab.context.hub.publish_after_commit(db, planned["id"])
+        db.rollback()
+    assert heard == []
+
+
+def test_a_blinded_operator_sees_no_latency_anywhere(fresh_lab: Lab) -> None:
+    """Neither order, step, phase, event nor ledger tells the condition."""
+    yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    blinded = yaml.replace("operator: false", "operator: true")
+    ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
+    view = fresh_lab.skip_to(fresh_lab.join(), "block1.hand")
+    fresh_lab.context.hub.headset_joined(view["id"])
+    view = fresh_lab.command(view, "begin_phase")
+    assert view["sequence"] is None
+    assert {step["latency_ms"] for step in view["steps"]} == {None}
+    assert {phase["latency_ms"] for phase in view["phases"]} == {None}
+    assert not any("latency_ms" in event["data"] for event in fresh_lab.events(view["id"]))
+    ledger = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/ledger"))
+    assert ledger["sequences"] is None
+    assert {slot["sequence"] for slot in ledger["slots"]} == {None}
+    receipt = ok(fresh_lab.operator.get(f"/api/sessions/{view['id']}/receipt"))
+    assert receipt["achieved_latency"] == []
+    figures = {"fps": 90.0, "joint_error_deg": {"Head": 5.0}}
+    assert live_figures(figures, blinded=True) == {"fps": 90.0}
+    assert live_figures(figures, blinded=False) == figures
+
+
+def _stored(lab: Lab, session_id: str) -> str:
+    with lab.database.reading() as db:
+        return db.get_one(StudySession, session_id).language
+
+
+def _report_started(lab: Lab, session_id: str) -> None:
+    with lab.database.writing() as db:
+        session = session_by_id(db, session_id, lock=True)
+        report = Report(what="started", phase_id=1, client_t_s=1.0, active_s=0.0)
+        apply_command(db, lab.context, session, report, actor="headset")

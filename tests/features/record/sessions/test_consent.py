@@ -1,0 +1,174 @@
+"""Consent: what is wanted, what is stored, what is shown, and what never leaves the lab."""
+
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from sqlalchemy import select
+
+from app.features.record.sessions.contents import salted_hash
+from app.features.results.exports.service import export_study
+from app.models import SessionContent
+from tests.features.lab import Json, Lab, error, ok
+from tests.features.record.sessions.options_lab import joined
+from tests.protocol.options import KEY
+
+PATH = "M10.5 20L100 30.5L200 25M300 100L320 140"
+GIVEN: Json = {"step_index": 0, "ticked": [0, 1], "signature": PATH}
+
+
+@pytest.fixture
+def view(lab: Lab) -> Json:
+    """A session that waits for its consent."""
+    return lab.command(joined(lab), "start")
+
+
+@pytest.fixture
+def tablet(lab: Lab, view: Json) -> TestClient:
+    """Its tablet."""
+    return lab.tablet(view["id"])
+
+
+def record(lab: Lab, view: Json) -> Json:
+    """The record as the printable page reads it."""
+    told: Json = ok(lab.operator.get(f"/api/sessions/{view['id']}/consent"))
+    return told
+
+
+def test_the_tablet_is_told_what_to_ask_for(tablet: TestClient) -> None:
+    """Lines to tick in the participant's language, and how to sign."""
+    state = ok(tablet.get("/api/tablet/state"))
+    assert state["screen"] == "consent"
+    assert state["consent"]["signature"] == "drawn"
+    assert [one["optional"] for one in state["consent"]["statements"]] == [False, False, True]
+    german = ok(tablet.put("/api/tablet/language", json={"language": "de"}))
+    assert german["consent"]["statements"][0]["text"] == "Ich habe die Seite oben gelesen."
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"ticked": [0]}, "not ticked"),
+        ({"ticked": []}, "not ticked"),
+        ({"ticked": [0, 1, 7]}, "no such statement"),
+        ({"signature": None}, "signature is missing"),
+        ({"signature": None, "name": "  "}, None),
+        ({"signature": "M0 0L10 10<script>"}, None),
+        ({"signature": "M0 0L" + "1" * 60_000}, None),
+        ({"surprise": 1}, None),
+    ],
+)
+def test_what_is_not_complete_is_refused(
+    lab: Lab, view: Json, tablet: TestClient, change: Json, said: str | None
+) -> None:
+    """Nothing is stored and the session stands where it was."""
+    answer = tablet.post("/api/tablet/consent", json={**GIVEN, **change})
+    assert answer.status_code == 422
+    if said is not None:
+        assert said in error(answer, 422, "invalid_input")["message"]
+    assert record(lab, view) is None
+    assert lab.view(view["id"])["version"] == view["version"]
+
+
+def test_a_consent_is_stored_once_with_everything_it_was_given_to(
+    lab: Lab, view: Json, tablet: TestClient
+) -> None:
+    """Sending it again after a lost answer changes nothing."""
+    for _ in range(2):
+        assert ok(tablet.post("/api/tablet/consent", json=GIVEN))["screen"] == "form"
+    told = record(lab, view)
+    study = ok(lab.operator.get(f"/api/studies/{KEY}"))
+    assert (told["study_version"], told["content_hash"]) == (1, study["content_hash"])
+    assert told["text"].startswith("Thank you for coming.")
+    assert told["text_matches"] is True
+    assert [one["ticked"] for one in told["statements"]] == [True, True, False]
+    assert (told["signature"], told["name"], told["mode"]) == (PATH, None, "tablet")
+    assert (told["records"], told["erased"], told["simulated"]) == (1, False, False)
+    assert told["by"].startswith("tablet:")
+
+
+def test_the_log_holds_its_hash_and_no_word_of_it(lab: Lab, view: Json, tablet: TestClient) -> None:
+    """Erasing the content leaves a chain that still verifies."""
+    ok(tablet.post("/api/tablet/consent", json={**GIVEN, "signature": None, "name": "Ada L."}))
+    (event,) = [one for one in lab.events(view["id"]) if one["type"] == "step_completed"]
+    with lab.database.reading() as db:
+        row = db.scalars(
+            select(SessionContent).where(
+                SessionContent.session_id == view["id"], SessionContent.kind == "consent"
+            )
+        ).one()
+        assert row.salt is not None
+        assert row.body is not None
+        assert "Ada L." in row.body
+        assert event["data"]["content_id"] == row.id
+        assert event["data"]["content_hash"] == salted_hash(row.salt, row.body)
+    assert "Ada" not in str(lab.events(view["id"]))
+
+
+def test_a_typed_name_stands_for_a_drawing(lab: Lab, view: Json, tablet: TestClient) -> None:
+    """Whoever cannot draw types; the language of what was read is part of the record."""
+    ok(tablet.put("/api/tablet/language", json={"language": "de"}))
+    ok(tablet.post("/api/tablet/consent", json={**GIVEN, "signature": None, "name": " Ada L. "}))
+    told = record(lab, view)
+    assert (told["name"], told["signature"], told["language"]) == ("Ada L.", None, "de")
+    assert told["text"].startswith("Danke, dass Sie")
+
+
+def test_one_press_is_not_enough_where_a_signature_is_wanted(
+    lab: Lab, view: Json, tablet: TestClient
+) -> None:
+    """Neither the tablet's plain acknowledgement nor the operator's click goes past it."""
+    answer = tablet.post("/api/tablet/acknowledge", json={"step_index": 0})
+    assert "not ticked" in error(answer, 422, "invalid_input")["message"]
+    refusal = error(lab.try_command(view, "complete_step", step_index=0), 422, "invalid_input")
+    assert "signed on paper" in refusal["remedy"]
+
+
+def test_a_consent_on_paper_says_where_the_sheet_is(lab: Lab, view: Json) -> None:
+    """The operator records it; the lines are on the sheet."""
+    sheet = {"place": "Folder A, sheet 12", "reason": "The tablet was empty"}
+    error(
+        lab.try_command(view, "complete_step", paper_consent={"place": "A"}), 422, "invalid_input"
+    )
+    after = lab.command(view, "complete_step", step_index=0, paper_consent=sheet)
+    assert after["current"]["index"] == 1
+    told = record(lab, after)
+    assert (told["mode"], told["paper"], told["by"]) == ("paper", sheet, "account:admin")
+    assert {one["ticked"] for one in told["statements"]} == {None}
+
+
+def test_a_plain_consent_has_a_record_too(lab: Lab) -> None:
+    """Of the shipped study: one press on the tablet, or said aloud to the operator."""
+    pressed = lab.command(lab.join(), "start")
+    ok(lab.tablet(pressed["id"]).post("/api/tablet/acknowledge", json={"step_index": 0}))
+    said = lab.command(lab.command(lab.join(), "start"), "complete_step", step_index=0)
+    assert [record(lab, one)["mode"] for one in (pressed, said)] == ["tablet", "operator"]
+
+
+def test_an_erased_consent_leaves_its_time_only(lab: Lab, view: Json, tablet: TestClient) -> None:
+    """What erasure does to every content of a session."""
+    ok(tablet.post("/api/tablet/consent", json=GIVEN))
+    with lab.database.writing() as db:
+        query = select(SessionContent).where(SessionContent.session_id == view["id"])
+        for row in db.scalars(query):
+            row.body = row.salt = None
+    told = record(lab, view)
+    assert (told["erased"], told["signature"], told["name"]) == (True, None, None)
+
+
+def test_no_export_holds_a_name_or_a_signature(
+    lab: Lab, view: Json, tablet: TestClient, tmp_path: Path
+) -> None:
+    """It says that and when consent was given."""
+    given = {**GIVEN, "signature": None, "name": "Ada Unmistakable"}
+    ok(tablet.post("/api/tablet/consent", json=given))
+    with lab.database.reading() as db:
+        export_study(db, KEY, "people", tmp_path / "out", now=lab.context.clock.utc_now())
+    files = [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+    assert files
+    assert [path.name for path in files if "Unmistakable" in path.read_text("utf-8")] == []
+    lines = (tmp_path / "out" / "sessions.csv").read_text("utf-8").splitlines()
+    column = lines[0].split(",").index("consent_given")
+    own = next(line for line in lines if view["id"] in line).split(",")
+    assert own[column] == "true"
+    assert own[column + 1].startswith("20")

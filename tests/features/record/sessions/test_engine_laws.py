@@ -1,0 +1,211 @@
+"""Laws that hold for every sequence of commands, sensible or not."""
+
+import contextlib
+import json
+from dataclasses import fields
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, invariant, precondition, rule
+
+from app.features.record.sessions.engine import (
+    EVENT_TYPES,
+    Command,
+    Event,
+    Refused,
+    SessionState,
+    allowed_commands,
+    decide,
+    event_from_json,
+    event_to_json,
+    evolve,
+    initial_state,
+    state_from_json,
+    state_to_json,
+)
+from app.features.record.sessions.engine import commands as c
+from app.features.record.sessions.engine.state import PhaseStatus
+from tests.features.record.sessions.engine_run import PLAN, REPORTS, WORDS, Run
+
+STEPS = st.none() | st.integers(-1, len(PLAN))
+TIMES = st.one_of(
+    st.floats(0, 121), st.sampled_from([0.0, 60.0, 120.0, -1.0, float("nan"), float("inf")])
+)
+ANYTHING: st.SearchStrategy[Command] = st.one_of(
+    st.just(c.Start()),
+    st.builds(c.CompleteStep, by=st.just("operator"), step=STEPS),
+    st.builds(
+        c.SubmitForm,
+        step=st.integers(-1, 30),
+        submission_id=st.just("s"),
+        content_hash=st.just(""),
+        rules_met=st.sampled_from([(), (), (0,), (1, 2)]),
+    ),
+    st.just(c.OverrideStop(content=WORDS)),
+    st.just(c.OverrideCheck(check="disk", content=WORDS)),
+    st.builds(c.Materialise, by=st.just("headset"), client_t_s=st.just(1.0)),
+    st.builds(c.BeginPhase, headset_connected=st.booleans()),
+    st.builds(c.Pause, content=st.none() | st.just(WORDS)),
+    st.builds(c.Resume, headset_connected=st.booleans()),
+    st.builds(c.Redo, content=st.just(WORDS), step=STEPS),
+    st.just(c.Skip(content=WORDS)),
+    st.just(c.AddNote(content=WORDS)),
+    st.builds(
+        c.Report,
+        what=st.sampled_from((*REPORTS, "nonsense")),
+        phase_id=st.integers(0, 6),
+        client_t_s=st.just(1.0),
+        active_s=TIMES,
+    ),
+    st.builds(c.HeadsetLost, active_s=TIMES, cause=st.just("headset_lost")),
+)
+
+
+def meant_by(name: str, state: SessionState) -> Command:
+    """The command that a page sends when it offers `name`."""
+    assert state.current is not None or name in ("start", "note")
+    current = state.current or 0
+    timed = PLAN[current].kind in ("task", "free_roam")
+    return {
+        "start": c.Start(),
+        "note": c.AddNote(content=WORDS),
+        "complete_step": c.CompleteStep(by="operator", step=current),
+        "enter_answers": c.SubmitForm(step=current, submission_id="s", content_hash="h"),
+        "materialise": c.Materialise(by="operator"),
+        "begin_phase": c.BeginPhase(headset_connected=True),
+        "pause": c.Pause(content=WORDS),
+        "resume": c.Resume(headset_connected=True),
+        "override_stop": c.OverrideStop(content=WORDS),
+        "redo": c.Redo(content=WORDS, step=None if timed else current - 1),
+        "skip": c.Skip(content=WORDS),
+        "abort": c.Stop(status="aborted", content=WORDS),
+        "withdraw": c.Stop(status="withdrawn", content=WORDS),
+    }[name]
+
+
+def fitting(state: SessionState, what: str, share: float) -> Command:
+    """A report of the phase under way, at some active time that is still possible."""
+    assert state.phase is not None
+    left_s = (PLAN[state.phase.step].duration_s or 0.0) - state.phase.active_s
+    whole = what in ("time_up", "ended")
+    active_s = 0.0 if what == "started" else state.phase.active_s + left_s * (whole or share)
+    return c.Report(what=what, phase_id=state.phase.phase_id, client_t_s=1.0, active_s=active_s)
+
+
+class AnySession(RuleBasedStateMachine):
+    """Commands in any order: what a page offers, what a headset reports, and nonsense."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.run = Run()
+        self.voided: set[int] = set()
+        self.active_s: dict[int, float] = {}
+
+    @rule(command=ANYTHING)
+    def ask_anything(self, command: Command) -> None:
+        """A command is followed or refused; nothing else ever happens."""
+        self._do(command)
+
+    @rule(data=st.data())
+    def do_what_is_offered(self, data: st.DataObject) -> None:
+        """A page sends what the session offers (ending it only rarely)."""
+        offered = allowed_commands(PLAN, self.run.state)
+        name = data.draw(st.sampled_from([one for one in offered if one != "withdraw"]))
+        if name != "abort" or data.draw(st.integers(0, 9)) == 0:
+            self._do(meant_by(name, self.run.state))
+
+    @precondition(lambda self: self.run.state.phase is not None)
+    @rule(what=st.sampled_from(REPORTS), share=st.floats(0, 1))
+    def report_what_fits(self, what: str, share: float) -> None:
+        """The headset reports about the phase under way."""
+        self._do(fitting(self.run.state, what, share))
+
+    def _do(self, command: Command) -> None:
+        before = self.run.state
+        decided: list[Event] = []
+        with contextlib.suppress(Refused):
+            decided = self.run.do(command)
+        assert self.run.state.version == before.version + len(decided)
+
+    @invariant()
+    def folding_all_events_gives_the_state(self) -> None:
+        """The state holds nothing that the events do not."""
+        state = initial_state(len(PLAN))
+        for event in self.run.events:
+            state = evolve(state, event)
+        assert state == self.run.state
+
+    @invariant()
+    def the_snapshot_is_the_state(self) -> None:
+        """The state survives being stored as JSON."""
+        stored = json.loads(json.dumps(state_to_json(self.run.state), allow_nan=False))
+        assert state_from_json(stored) == self.run.state
+
+    @invariant()
+    def active_time_never_decreases(self) -> None:
+        """Nor does it leave the phase's duration."""
+        state = self.run.state
+        for phase in (*state.ended_phases, *([state.phase] if state.phase else [])):
+            assert phase.active_s >= self.active_s.get(phase.phase_id, 0.0)
+            assert phase.active_s <= (PLAN[phase.step].duration_s or 0.0) + 0.05
+            self.active_s[phase.phase_id] = phase.active_s
+
+    @invariant()
+    def voided_is_for_ever(self) -> None:
+        """No phase that was voided counts again, and ids are never used twice."""
+        ended = self.run.state.ended_phases
+        assert [phase.phase_id for phase in ended] == list(range(1, len(ended) + 1))
+        voided = {phase.phase_id for phase in ended if phase.status is PhaseStatus.VOIDED}
+        assert self.voided <= voided
+        self.voided = voided
+
+    @invariant()
+    def one_step_is_current_while_active(self) -> None:
+        """An active session always stands somewhere, any other nowhere."""
+        assert (self.run.state.current is not None) == (self.run.state.status == "active")
+
+    @invariant()
+    def a_held_session_stands_still(self) -> None:
+        """Only an active session is held, and nothing in it is offered that moves on."""
+        if self.run.state.held is not None:
+            assert self.run.state.status == "active"
+            offered = allowed_commands(PLAN, self.run.state)
+            assert offered == ["abort", "withdraw", "override_stop", "note"]
+
+    @invariant()
+    def what_is_offered_is_accepted(self) -> None:
+        """Every command in `allowed` can be given."""
+        for name in allowed_commands(PLAN, self.run.state):
+            decide(PLAN, self.run.state, meant_by(name, self.run.state))
+
+
+TestAnySession = AnySession.TestCase
+TestAnySession.settings = settings(max_examples=40, stateful_step_count=50, deadline=None)
+
+
+def events(kind: type[Event]) -> st.SearchStrategy[Event]:
+    """Any event of a kind."""
+    values = {"str": st.text(), "int": st.integers(0), "float": st.floats(0, 1e6)}
+    strategies = {}
+    for one in fields(kind):
+        base, _, optional = str(one.type).partition(" |")
+        name = base.removeprefix("<class '").removesuffix("'>")
+        strategies[one.name] = values[name] | st.none() if optional else values[name]
+    return st.builds(kind, **strategies)
+
+
+@pytest.mark.parametrize("name", sorted(EVENT_TYPES))
+@given(data=st.data())
+@settings(max_examples=15)
+def test_every_event_survives_being_stored(name: str, data: st.DataObject) -> None:
+    """An event read back from its JSON is the event."""
+    event = data.draw(events(EVENT_TYPES[name]))
+    payload = json.loads(json.dumps(event_to_json(event)))
+    assert event_from_json(event.type, payload) == event
+
+
+def test_an_event_of_a_newer_version_is_not_guessed_at() -> None:
+    """An unknown type is an error, never skipped."""
+    with pytest.raises(KeyError):
+        event_from_json("teleported", {})

@@ -1,0 +1,113 @@
+"""Stop rules on both engines: what a form leads to, on the console, the tablet and the record."""
+
+from app.features.record.sessions.recovery import stop_running_clocks
+from tests.features.lab import Json, Lab, error, ok
+from tests.features.record.sessions.options_lab import FMS, answer_fms, joined
+
+
+def answered(lab: Lab, value: int | None, step: str = FMS) -> Json:
+    """A session whose participant feels that sick at the end of the first block."""
+    view = lab.skip_to(joined(lab), step)
+    ok(answer_fms(lab, view["id"], value))
+    return lab.view(view["id"])
+
+
+def alarms(view: Json) -> dict[str, str]:
+    """What is wrong now: severity by code."""
+    return {one["code"]: one["severity"] for one in view["alarms"]}
+
+
+def test_below_every_limit_nothing_happens(lab: Lab) -> None:
+    """The session goes on."""
+    view = answered(lab, 9)
+    assert (view["held"], alarms(view)) == (None, {})
+    assert "begin_phase" in view["allowed"]
+
+
+def test_at_the_warning_the_operator_is_told_and_it_goes_on(lab: Lab) -> None:
+    """At or above: 10 is enough. A later form below it clears the warning."""
+    view = answered(lab, 10)
+    assert (view["held"], alarms(view)) == (None, {"stop_rule_near": "warning"})
+    assert "begin_phase" in view["allowed"]
+    view = lab.skip_to(view, "block2.fms")
+    ok(answer_fms(lab, view["id"], 3))
+    assert alarms(lab.view(view["id"])) == {}
+
+
+def test_at_the_limit_the_session_is_held(lab: Lab) -> None:
+    """At or above: 15 is enough. A critical alarm, two ways on, and a calm tablet."""
+    view = answered(lab, 15)
+    assert view["held"] == {
+        "rule": 0,
+        "instrument": "How are you? (FMS)",
+        "score": "Motion sickness",
+        "stop_at": 15.0,
+        "is_rise": False,
+    }
+    assert alarms(view) == {"stop_rule_met": "critical"}
+    assert view["allowed"] == ["abort", "withdraw", "override_stop", "note"]
+    tablet = ok(lab.tablet(view["id"]).get("/api/tablet/state"))
+    assert (tablet["screen"], tablet["text"], tablet["next"]) == ("held", None, None)
+    assert tablet["administration"] is None
+
+
+def test_a_held_session_refuses_to_go_on_and_says_what_to_do(lab: Lab) -> None:
+    """Begin, complete, resume and skip wait for the operator's decision."""
+    view = answered(lab, 20)
+    for kind in ("begin_phase", "complete_step", "resume", "materialise", "skip", "redo"):
+        refusal = error(lab.try_command(view, kind, reason="go"), 409, "not_now")
+        assert "stop rule" in refusal["message"]
+        assert "Then end the session, or go on with a reason." in refusal["remedy"]
+    assert lab.view(view["id"])["version"] == view["version"]
+
+
+def test_going_on_needs_a_reason_and_is_on_record(lab: Lab) -> None:
+    """The alarm ends; the reason is content, and the log says nothing of the answer."""
+    view = answered(lab, 17)
+    error(lab.try_command(view, "override_stop"), 422, "invalid_input")
+    view = lab.command(view, "override_stop", reason="Sat down, feels well again")
+    assert (view["held"], alarms(view)) == (None, {})
+    assert "begin_phase" in view["allowed"]
+    events = lab.events(view["id"])
+    met = next(one for one in events if one["type"] == "stop_rule_met")
+    assert set(met["data"]) == {"rule", "submission_id"}
+    assert events[-1]["type"] == "stop_rule_overridden"
+    assert events[-1]["data"]["content_id"]
+    assert 17 not in [value for one in events for value in one["data"].values()]
+    history = ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))
+    assert [(one["code"], one["outcome"]) for one in history] == [
+        ("stop_rule_met", "the operator went on, with a reason on record")
+    ]
+
+
+def test_ending_a_held_session_frees_its_slot(lab: Lab) -> None:
+    """As any session that was aborted."""
+    view = answered(lab, 15)
+    ended = lab.command(view, "abort", reason="Stop rule: sickness")
+    assert (ended["status"], ended["held"], alarms(ended)) == ("aborted", None, {})
+
+
+def test_a_missing_score_never_passes_silently(lab: Lab) -> None:
+    """The operator left the item out: a warning, until a later form tells."""
+    view = answered(lab, None)
+    assert (view["held"], alarms(view)) == (None, {"stop_rule_unknown": "warning"})
+    view = lab.skip_to(view, "block2.fms")
+    ok(answer_fms(lab, view["id"], 15))
+    assert alarms(lab.view(view["id"])) == {"stop_rule_met": "critical"}
+
+
+def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
+    """Alarms of the equipment are cleared then; those of the participant stay."""
+    view = answered(fresh_lab, 15)
+    stop_running_clocks(fresh_lab.context)
+    after = fresh_lab.view(view["id"])
+    assert after["held"] is not None
+    assert alarms(after) == {"stop_rule_met": "critical"}
+
+
+def test_no_alarm_tells_the_answer(lab: Lab) -> None:
+    """The value stays with the answers, where it can be erased."""
+    view = answered(lab, 19)
+    (alarm,) = view["alarms"]
+    assert (alarm["value"], "19" in alarm["message"]) == (None, False)
+    assert alarm["message"] == "sickness_score of fms is at or above 15"

@@ -1,0 +1,107 @@
+"""Streams as a body driven by motors would send them: the actual follows the target, filtered.
+
+Each number of the actual stream goes through a critically damped second-order filter, as a joint
+under proportional-derivative control does, behind the study's delay; then the quaternions are
+normalised and get a noise of their own. So no frame of it is a copy of a target frame.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from app.features.record.telemetry.encodings.columns import Columns
+from app.rehearsal.body import FRAME_RATE_HZ
+from app.rehearsal.captured import captured_movement as on_skeleton
+from app.science.rotations import normalise
+from app.science.skeleton import build_skeleton
+from app.science.skeleton.movement import Movement, continuous, resample
+
+RATE_HZ = FRAME_RATE_HZ
+LATENCY_S = 0.125
+NATURAL_HZ = 4.0
+OWN_NOISE_DEG, TRACKING_NOISE_DEG = 0.01, 0.05
+NOISE_MM_PER_DEG = 10.0
+TIME_JITTER_S = 20e-6
+CHUNK_FRAMES = 90
+STATURE_M = 1.72
+
+
+@dataclass(frozen=True)
+class Streams:
+    """`times_s` (n,) and the values (n, 91) of both streams at 90 Hz."""
+
+    times_s: NDArray[np.float64]
+    target: NDArray[np.float32]
+    actual: NDArray[np.float32]
+
+    def chunks(self, frames: int = CHUNK_FRAMES) -> Iterator[tuple[Columns, Columns]]:
+        """Whole chunks of target and actual, as they are folded."""
+        for begin in range(0, len(self.times_s) - frames + 1, frames):
+            at = slice(begin, begin + frames)
+            flags = np.ones(frames, np.uint8)
+            yield (
+                Columns(self.times_s[at], flags, self.target[at]),
+                Columns(self.times_s[at], flags, self.actual[at]),
+            )
+
+
+def followed(
+    movement: Movement, rng: np.random.Generator, *, noise_deg: float = OWN_NOISE_DEG
+) -> Streams:
+    """Both streams of a movement at 90 Hz, the actual one with `noise_deg` of its own."""
+    count = movement.frame_count
+    times_s = 1000.0 + np.arange(count) / RATE_HZ + rng.normal(0.0, TIME_JITTER_S, count)
+    turns = continuous(movement.rotations).reshape(count, -1)
+    target = np.concatenate((movement.root_positions_m, turns), axis=1)
+    late = np.maximum(np.arange(count) - round(LATENCY_S * RATE_HZ), 0)
+    actual = noisy(_filtered(target[late]), rng, noise_deg)
+    return Streams(times_s, target.astype(np.float32), actual.astype(np.float32))
+
+
+def made_movement(
+    duration_s: float, rng: np.random.Generator, *, noise_deg: float = TRACKING_NOISE_DEG
+) -> Movement:
+    """All 22 joints swinging at 0.1 to 2 Hz, tracked with noise."""
+    count = round(duration_s * RATE_HZ)
+    time_s = np.arange(count)[:, np.newaxis, np.newaxis] / RATE_HZ
+    values = np.zeros((count, 91))
+    values[:, 1] = 1.0
+    for _ in range(4):
+        hertz, phase, size = (
+            rng.uniform(low, high, (91, 1)) for low, high in ((0.1, 2.0), (0.0, 6.3), (0.0, 0.1))
+        )
+        values += (size * np.sin(2.0 * np.pi * hertz * time_s + phase))[..., 0]
+    values[:, 3::4] += 1.0
+    values = noisy(values, rng, noise_deg)
+    return Movement(RATE_HZ, values[:, :3], values[:, 3:].reshape(count, 22, 4))
+
+
+def captured_movement(capture: Path) -> Movement:
+    """A capture on our skeleton at 90 Hz, as the rehearsal takes it, but not looped."""
+    return resample(on_skeleton(capture, build_skeleton(STATURE_M)), RATE_HZ)
+
+
+def noisy(
+    values: NDArray[np.float64], rng: np.random.Generator, noise_deg: float
+) -> NDArray[np.float64]:
+    """Values (n, 91) with white noise: `noise_deg` about each axis of a joint, and the root's."""
+    count = len(values)
+    move_m = NOISE_MM_PER_DEG * noise_deg / 1000.0
+    root = values[:, :3] + rng.normal(0.0, move_m, (count, 3))
+    turns = normalise(values[:, 3:].reshape(count, 22, 4))
+    # A turn by a small angle moves a unit quaternion by half of it, across its own direction.
+    turned = normalise(turns + rng.normal(0.0, np.radians(noise_deg) / 2.0, turns.shape))
+    return np.concatenate((root, turned.reshape(count, -1)), axis=1)
+
+
+def _filtered(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values (n, 91) behind two equal one-pole filters: critical damping, at rest at first."""
+    keep = np.exp(-2.0 * np.pi * NATURAL_HZ / RATE_HZ)
+    for _ in range(2):
+        change = lfilter([1.0 - keep], [1.0, -keep], values - values[0], axis=0)
+        values = values[0] + np.asarray(change)
+    return values

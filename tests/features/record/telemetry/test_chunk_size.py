@@ -1,0 +1,54 @@
+"""A session-minute of real movement stays within its limit, whatever the avatar does with it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.features.record.telemetry.encoding import encode_frames
+from tests.features.record.telemetry.followed_movement import (
+    CHUNK_FRAMES,
+    RATE_HZ,
+    Streams,
+    captured_movement,
+    followed,
+    made_movement,
+)
+
+LIMIT_MB = 3.0
+CAPTURES = ("02_01", "05_06", "06_01", "12_02")
+
+
+def session_minute_mb(streams: Streams) -> float:
+    """What 60 s of both streams take in chunks of a second, in 10^6 bytes."""
+    sizes = [
+        len(encode_frames(one.times_s, one.flags, one.values))
+        for pair in streams.chunks()
+        for one in pair
+    ]
+    seconds = len(sizes) / 2 * CHUNK_FRAMES / RATE_HZ
+    return sum(sizes) * 60.0 / seconds / 1e6
+
+
+@pytest.mark.parametrize("noise_deg", [0.0, 0.01, 0.1, 1.0])
+def test_a_made_up_session_minute_stays_within_the_limit(noise_deg: float) -> None:
+    """All 22 joints moving, the actual stream filtered, both with noise: at most 3 MB a minute."""
+    rng = np.random.default_rng(1)
+    movement = made_movement(10.0, rng, noise_deg=noise_deg)
+    assert session_minute_mb(followed(movement, rng, noise_deg=noise_deg)) <= LIMIT_MB
+
+
+@pytest.mark.parametrize("capture", CAPTURES)
+def test_a_captured_session_minute_stays_within_the_limit(shared_data: Path, capture: str) -> None:
+    """A person's movement and a body that follows it: at most 3 MB a minute."""
+    movement = captured_movement(shared_data / "motion" / "cmu_bvh" / f"{capture}.bvh")
+    assert session_minute_mb(followed(movement, np.random.default_rng(2))) <= LIMIT_MB
+
+
+def test_the_followed_stream_is_no_copy() -> None:
+    """No joint of any actual frame is a target frame's, or the limit would be met by repetition."""
+    rng = np.random.default_rng(3)
+    streams = followed(made_movement(3.0, rng), rng)
+    target = {row.tobytes() for row in streams.target[:, 3:].reshape(-1, 4)}
+    actual = {row.tobytes() for row in streams.actual[:, 3:].reshape(-1, 4)}
+    assert target & actual == set()

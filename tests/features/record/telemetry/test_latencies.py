@@ -1,0 +1,187 @@
+"""The achieved latency of a phase, from its stored frames into its row and its view."""
+
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sqlalchemy import select
+
+from app.features.record.telemetry.latencies import phase_latency
+from app.features.record.telemetry.summaries import Summariser
+from app.models import JointErrorRow, Phase, PhaseLatency, StudySession
+from app.science.rotations import FloatArray
+from tests.api.people import sign_in
+from tests.features.builders import SessionSpec, build_session
+from tests.features.lab import STUDY, Json, Lab, ok
+from tests.features.latency_builders import measured, store_movement
+from tests.features.session_filler import stable_id
+from tests.science.moving_bodies import made_movement
+
+MS = 0.001
+NUMBERS = ("achieved_latency_ms", "achieved_low_ms", "achieved_high_ms")
+
+
+@pytest.fixture
+def session_id(lab: Lab, request: pytest.FixtureRequest) -> str:
+    """A session whose phases are over, and were never summarised."""
+    with lab.database.writing() as db:
+        return build_session(db, SessionSpec(stable_id(request.node.name)[:12])).id
+
+
+def phases(lab: Lab, session_id: str) -> dict[float, Phase]:
+    """One phase for each latency that was ordered."""
+    with lab.database.reading() as db:
+        found = db.scalars(
+            select(Phase).where(Phase.session_id == session_id, Phase.kind == "task")
+        )
+        return {phase.latency_ms: phase for phase in found}
+
+
+def summarise(lab: Lab, *expected: Phase) -> dict[int, PhaseLatency]:
+    """Start as after a crash, wait for the rows of these phases, and give them back."""
+    summariser = Summariser(lab.context)
+    summariser.catch_up()
+    wanted = {phase.phase_id for phase in expected}
+    rows: dict[int, PhaseLatency] = {}
+    deadline_s = time.monotonic() + 30.0
+    while time.monotonic() < deadline_s and not wanted <= set(rows):
+        time.sleep(0.05)
+        with lab.database.reading() as db:
+            query = select(PhaseLatency).where(PhaseLatency.session_id == expected[0].session_id)
+            rows = {row.phase_id: row for row in db.scalars(query)}
+    summariser.stop()
+    return rows
+
+
+def view_of(lab: Lab, phase: Phase) -> Json:
+    """The phase in the cockpit's session view."""
+    (own,) = (
+        one for one in lab.view(phase.session_id)["phases"] if one["phase_id"] == phase.phase_id
+    )
+    return dict(own)
+
+
+@pytest.mark.parametrize("latency_ms", [0.0, 125.0, 350.0])
+def test_the_stored_frames_tell_the_latency(lab: Lab, session_id: str, latency_ms: float) -> None:
+    """What the avatar's buffer delayed is found again in what was stored of it."""
+    phase = phases(lab, session_id)[latency_ms]
+    with lab.database.writing() as db:
+        store_movement(db, phase, latency_ms / 1000.0)
+    with lab.database.reading() as db:
+        achieved = phase_latency(db, session_id, phase.phase_id)
+    assert achieved.latency_s == pytest.approx(latency_ms / 1000.0, abs=0.1 * MS)
+    # Frames before the phase are history, and are not counted.
+    assert achieved.samples == 720
+
+
+def test_catching_up_stores_a_row_for_every_phase_that_ended(lab: Lab, session_id: str) -> None:
+    """With the joint errors, and also where there is nothing to measure; once is enough."""
+    by_latency = phases(lab, session_id)
+    good, late, empty = (by_latency[latency_ms] for latency_ms in (125.0, 350.0, 0.0))
+    with lab.database.writing() as db:
+        store_movement(db, good, 0.125)
+        store_movement(db, late, 0.370, epoch=2, clock_s=500.0)
+    rows = summarise(lab, good, late, empty)
+    assert rows[good.phase_id].achieved_s == pytest.approx(0.125, abs=0.1 * MS)
+    assert (rows[good.phase_id].flagged, rows[good.phase_id].reason) == (False, None)
+    assert rows[late.phase_id].achieved_s == pytest.approx(0.370, abs=0.1 * MS)
+    assert rows[late.phase_id].flagged
+    assert rows[late.phase_id].ordered_s == 0.350
+    assert rows[empty.phase_id].achieved_s is None
+    assert rows[empty.phase_id].reason == "There are no active frames of both bodies."
+    with lab.database.reading() as db:
+        errors = select(JointErrorRow.samples).where(
+            JointErrorRow.session_id == session_id, JointErrorRow.phase_id == good.phase_id
+        )
+        assert set(db.scalars(errors)) == {720}
+    assert list(summarise(lab, good)) == list(rows)
+
+
+def test_runs_of_the_client_are_measured_together(lab: Lab, session_id: str) -> None:
+    """Four seconds before and four after a restart of the headset are eight of movement."""
+    phase = phases(lab, session_id)[125.0]
+    with lab.database.writing() as db:
+        for epoch, clock_s in ((1, 3000.0), (2, 0.5)):
+            store_movement(db, phase, 0.125, duration_s=4.0, epoch=epoch, clock_s=clock_s)
+    row = summarise(lab, phase)[phase.phase_id]
+    assert row.achieved_s == pytest.approx(0.125, abs=0.2 * MS)
+    assert row.movement_s == pytest.approx(8.0, abs=0.2)
+    assert row.samples == 720
+
+
+def test_a_body_that_stands_has_no_latency_but_a_reason(lab: Lab, session_id: str) -> None:
+    """The row says how little movement there was."""
+    phase = phases(lab, session_id)[125.0]
+    movement = made_movement(np.random.default_rng(0))
+
+    def stops(times_s: FloatArray) -> FloatArray:
+        return movement(np.minimum(times_s, 4.0))
+
+    with lab.database.writing() as db:
+        store_movement(db, phase, 0.125, movement=stops)
+    row = summarise(lab, phase)[phase.phase_id]
+    assert (row.achieved_s, row.low_s, row.high_s, row.flagged) == (None, None, None, False)
+    assert row.movement_s == pytest.approx(2.0, abs=0.1)
+    assert row.reason == "2.0 s of movement above 20 deg/s; 5 s are needed."
+
+
+def test_the_cockpit_shows_the_achieved_beside_the_ordered(lab: Lab, session_id: str) -> None:
+    """In ms with the interval; whether it is off; and why there is none."""
+    by_latency = phases(lab, session_id)
+    fine, off, still = (by_latency[latency_ms] for latency_ms in (125.0, 350.0, 0.0))
+    assert view_of(lab, fine)["movement_s"] is None
+    with lab.database.writing() as db:
+        db.add_all([measured(fine, 0.1251), measured(off, 0.370, flagged=True)])
+        db.add(measured(still, None))
+    shown = view_of(lab, fine)
+    assert [shown[name] for name in NUMBERS] == [125.1, 124.7, 125.5]
+    assert (shown["latency_ms"], shown["latency_off"]) == (125.0, False)
+    assert view_of(lab, off)["latency_off"] is True
+    shown = view_of(lab, still)
+    assert [shown[name] for name in (*NUMBERS, "latency_off")] == [None] * 4
+    assert (shown["latency_reason"], shown["movement_s"]) == ("3.2 s of movement.", 3.25)
+
+
+def test_a_blinded_operator_is_told_only_whether_it_is_off(fresh_lab: Lab) -> None:
+    """In or out of tolerance, and nothing that would tell the condition."""
+    yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    blinded = yaml.replace("operator: false", "operator: true")
+    ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
+    with fresh_lab.database.writing() as db:
+        session_id = build_session(db, SessionSpec("P-0001")).id
+    by_latency = phases(fresh_lab, session_id)
+    off, still = by_latency[350.0], by_latency[0.0]
+    with fresh_lab.database.writing() as db:
+        row = measured(off, 0.370, flagged=True)
+        row.reason = "The movement repeats itself: 1370 ms would fit as well."
+        db.add_all([row, measured(still, None)])
+    fresh_lab = replace(fresh_lab, operator=sign_in(fresh_lab, "operator"))
+    shown = view_of(fresh_lab, off)
+    assert shown["latency_off"] is True
+    assert [shown[name] for name in (*NUMBERS, "latency_ms", "latency_reason")] == [None] * 5
+    assert view_of(fresh_lab, still)["latency_off"] is None
+
+
+def test_news_are_told_when_a_latency_is_there(
+    lab: Lab, session_id: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The cockpit is told to look again."""
+    heard: list[tuple[str, str]] = []
+    monkeypatch.setattr(lab.context.hub, "publish", lambda *news: heard.append(news))
+    summarise(lab, *phases(lab, session_id).values())
+    assert (session_id, "session") in heard
+
+
+def test_a_phase_that_was_voided_is_left_alone(lab: Lab) -> None:
+    """Only what was carried through is measured."""
+    with lab.database.writing() as db:
+        spec = SessionSpec("P-voided", redone=("block1.hand",))
+        session = build_session(db, spec)
+    assert isinstance(session, StudySession)
+    with lab.database.reading() as db:
+        found = list(db.scalars(select(Phase).where(Phase.session_id == session.id)))
+    done = [phase for phase in found if phase.status == "done"]
+    rows = summarise(lab, *done)
+    assert set(rows) == {phase.phase_id for phase in done}
+    assert len(done) < len(found)

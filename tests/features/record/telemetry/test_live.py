@@ -1,0 +1,84 @@
+"""The figures that the cockpit shows while a phase runs."""
+
+import math
+
+import numpy as np
+import pytest
+
+from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
+from app.science.avatar.hinge_reference import HingeReference
+from app.science.avatar.limits import ANATOMIC
+from app.science.avatar.targets import TargetAngles, joint_rotations
+from app.science.rotations import FloatArray, from_rotation_vector, identity
+from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX
+from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, encode_batch
+from tests.features.builders import SessionSpec, as_physics, build_session
+from tests.features.lab import Lab
+
+
+def live_errors_deg(
+    live: LiveTelemetry, target: FloatArray, actual: FloatArray
+) -> dict[str, float]:
+    """What is told of one frame of both streams."""
+    for stream, rotations in ((StreamName.TARGET, target), (StreamName.ACTUAL, actual)):
+        values = np.zeros((1, VALUES_PER_FRAME), np.float32)
+        values[0, 3:] = rotations.reshape(-1)
+        message = encode_batch(
+            stream,
+            epoch=1,
+            phase_id=1,
+            seq_first=0,
+            times_s=np.array([0.5]),
+            flags=np.ones(1, np.uint8),
+            values=values,
+            active_s=0.5,
+            closed_at_s=0.6,
+        )
+        live.take(decode_batch(message))
+    figures = live.figures(1.0)
+    assert figures is not None
+    return dict(figures["joint_error_deg"])
+
+
+def shrug() -> FloatArray:
+    """A left shoulder raised by 20 degrees."""
+    pose = identity(JOINT_COUNT)
+    raised = np.array((0.0, 0.0, -math.radians(20.0)))
+    pose[JOINT_INDEX["LeftShoulder"]] = from_rotation_vector(raised)
+    return pose
+
+
+def test_live_errors_are_of_the_raw_rotations_of_a_delayed_copy() -> None:
+    """An avatar that does not raise its shoulder is wrong there, and nowhere else."""
+    told = live_errors_deg(LiveTelemetry(), shrug(), identity(JOINT_COUNT))
+    assert told.pop("LeftShoulder") == pytest.approx(20.0, abs=0.01)
+    assert max(told.values()) < 0.1
+
+
+def test_live_errors_of_a_physics_avatar_are_of_what_its_hinges_are_asked_for() -> None:
+    """Its upper arm is asked for the shrug, as in what is stored; a shoulder tells nothing."""
+    pose = shrug()
+    live = LiveTelemetry(hinges=HingeReference(ANATOMIC))
+    wanted = TargetAngles(ANATOMIC).follow(pose).wanted_rad
+    told = live_errors_deg(live, pose, joint_rotations(wanted, pose[0]))
+    assert {joint for joint, error in told.items() if error is None} == {
+        "LeftShoulder",
+        "RightShoulder",
+    }
+    assert max(error for error in told.values() if error is not None) < 0.1
+    late = live_errors_deg(
+        LiveTelemetry(hinges=HingeReference(ANATOMIC)), pose, identity(JOINT_COUNT)
+    )
+    assert late["LeftUpperArm"] == pytest.approx(20.0, abs=0.01)
+
+
+def test_a_connection_gets_the_hinges_of_its_session(lab: Lab) -> None:
+    """Of the configuration that the session names; a delayed copy has none."""
+    with lab.database.writing() as db:
+        copy = build_session(db, SessionSpec("P-live-copy")).id
+        physics = build_session(db, SessionSpec("P-live-physics"))
+        as_physics(db, physics)
+        moved = physics.id
+    with lab.database.reading() as db:
+        assert live_telemetry(db, copy).hinges is None
+        assert live_telemetry(db, moved).hinges is not None

@@ -1,0 +1,77 @@
+"""Many rows in few statements, on both databases."""
+
+from typing import Any
+
+import pytest
+from sqlalchemy import event, select
+from sqlalchemy.exc import IntegrityError
+
+from app.features.record.telemetry.positions import TABLE
+from app.rows import insert_rows
+from tests.features.lab import Lab
+
+
+def rows(lab: Lab, session_id: str, count: int, next_seq: int) -> list[dict[str, Any]]:
+    """Positions of as many runs."""
+    now = lab.context.clock.utc_now()
+    numbers = dict.fromkeys(("produced", "frames_stored", "frames_flagged", "phase_id"), 3)
+    return [
+        {
+            "epoch": epoch,  # in another order than the table's
+            "stream": "target",
+            "session_id": session_id,
+            "next_seq": next_seq,
+            "active_s": 0.1 * epoch,
+            "first_at": now,
+            "last_at": now,
+            **numbers,
+        }
+        for epoch in range(1, count + 1)
+    ]
+
+
+@pytest.mark.parametrize("count", [1, 2, 63, 64, 65, 200])
+def test_every_row_is_there_as_it_was_given(lab: Lab, count: int) -> None:
+    """Whatever their number, and in whichever order their columns come."""
+    session_id = str(lab.join()["id"])
+    given = rows(lab, session_id, count, 7)
+    with lab.database.writing() as db:
+        insert_rows(db, TABLE, given)
+    of_session = select(TABLE).where(TABLE.c.session_id == session_id)
+    with lab.database.reading() as db:
+        stored = db.execute(of_session.order_by(TABLE.c.epoch)).mappings().all()
+    assert [dict(row) for row in stored] == given
+
+
+def test_only_what_moves_is_taken_of_rows_that_are_there(lab: Lab) -> None:
+    """New rows join, known ones move, and their other columns stay."""
+    session_id = str(lab.join()["id"])
+    first, again = rows(lab, session_id, 3, 7), rows(lab, session_id, 5, 9)
+    with lab.database.writing() as db:
+        insert_rows(db, TABLE, first)
+        insert_rows(db, TABLE, [{**row, "produced": 8} for row in again], moving=("next_seq",))
+    columns = select(TABLE.c.next_seq, TABLE.c.produced).where(TABLE.c.session_id == session_id)
+    with lab.database.reading() as db:
+        found = db.execute(columns.order_by(TABLE.c.epoch)).all()
+    assert found == [(9, 3)] * 3 + [(9, 8)] * 2
+
+
+def test_a_row_that_is_there_is_an_error_otherwise(lab: Lab) -> None:
+    """Nothing is replaced in silence."""
+    given = rows(lab, str(lab.join()["id"]), 2, 7)
+    with pytest.raises(IntegrityError), lab.database.writing() as db:
+        insert_rows(db, TABLE, [*given, given[0]])
+
+
+def test_few_statements_suffice(lab: Lab) -> None:
+    """A hundred rows go to SQLite in 64 + 32 + 4, and to PostgreSQL as columns."""
+    sent: list[int] = []
+    given = rows(lab, str(lab.join()["id"]), 100, 7)
+
+    def note(_connection: Any, _cursor: Any, _text: str, values: Any, *_: Any) -> None:
+        sent.append(len(values) // len(given[0]))
+
+    with lab.database.writing() as db:
+        event.listen(db.connection(), "before_cursor_execute", note)
+        insert_rows(db, TABLE, given)
+    assert sent == ([64, 32, 4] if lab.database.is_sqlite else [1])

@@ -1,0 +1,213 @@
+"""Batches, chunks and reading them back, without a network."""
+
+import threading
+from dataclasses import replace
+from datetime import timedelta
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.typing import NDArray
+from sqlalchemy import func, select
+
+from app.clock import Clock
+from app.database import Database
+from app.features.record.telemetry.encoding import ENCODING, Frames, decode_frames, encode_frames
+from app.features.record.telemetry.fold import Folder
+from app.features.record.telemetry.frames import concatenate, iter_frames, phase_frames
+from app.features.record.telemetry.ingest import Intake
+from app.features.record.telemetry.outcome import Outcome
+from app.models import TelemetryBatch, TelemetryChunk
+from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, flag_frames
+from tests.features.lab import Lab
+from tests.wire.samples import bits, every_odd_float, message, standing
+
+# Batches are stamped ahead of the clock, so that the application's own folder leaves them alone.
+AHEAD_S = 600.0
+LATER = timedelta(seconds=AHEAD_S + 60)
+
+
+@given(raw=arrays(np.uint32, st.tuples(st.integers(1, 30), st.just(VALUES_PER_FRAME))))
+@settings(max_examples=50)
+def test_a_chunk_comes_out_as_it_went_in(
+    raw: np.ndarray[tuple[int, int], np.dtype[np.uint32]],
+) -> None:
+    """Any bits survive compression: NaN payloads, denormals and signed zeros."""
+    count = len(raw)
+    times_s = np.linspace(5.0, 6.0, count)
+    flags = np.arange(count, dtype=np.uint8)
+    data = encode_frames(times_s, flags, raw.view(np.float32))
+    frames = decode_frames(
+        data, encoding=ENCODING, seq_first=7, frame_count=count, values_per_frame=VALUES_PER_FRAME
+    )
+    assert np.array_equal(bits(frames.values), raw)
+    assert np.array_equal(frames.times_s, times_s)
+    assert np.array_equal(frames.flags, flags)
+    assert frames.seq.tolist() == list(range(7, 7 + count))
+
+
+def test_an_unknown_encoding_is_refused() -> None:
+    """A chunk of a later version is not guessed at."""
+    with pytest.raises(ValueError, match="unknown encoding 'later/2'"):
+        decode_frames(b"", encoding="later/2", seq_first=0, frame_count=1, values_per_frame=91)
+
+
+def store(
+    lab: Lab,
+    session_id: str,
+    first: int,
+    values: NDArray[np.float32],
+    *,
+    ahead_s: float = AHEAD_S,
+    phase_id: int = 0,
+    times_s: NDArray[np.float64] | None = None,
+) -> Outcome:
+    """Store one batch as if it came `ahead_s` from now."""
+    sent = message(values, seq_first=first, phase_id=phase_id, times_s=times_s)
+    batch = decode_batch(sent)
+    outcome = Outcome()
+    now = lab.context.clock.utc_now() + timedelta(seconds=ahead_s)
+    flags = flag_frames(batch.times_s, batch.values)
+    with lab.database.writing() as db:
+        intake = Intake(db, lab.context, now)
+        intake.store_batch(session_id, batch.header, sent, flags, outcome)
+        intake.flush()
+    return outcome
+
+
+def fold(lab: Lab) -> int:
+    """Fold everything that is due a minute after the batches came."""
+    clock = Clock(utc_now=lambda: lab.context.clock.utc_now() + LATER)
+    folder = Folder(replace(lab.context, clock=clock))
+    folded = 0
+    while turn := folder.fold_once():
+        folded += turn
+    return folded
+
+
+def read(database: Database, session_id: str, phase_id: int | None = None) -> Frames:
+    """The target stream as a reader gets it."""
+    with database.reading() as db:
+        pieces = iter_frames(db, session_id, StreamName.TARGET, 1, phase_id)
+        return concatenate([frames for _, frames in pieces])
+
+
+def batches(lab: Lab, session_id: str) -> int:
+    """How many batches of a session are not folded yet."""
+    with lab.database.reading() as db:
+        query = select(func.count()).select_from(TelemetryBatch)
+        return db.scalar(query.where(TelemetryBatch.session_id == session_id)) or 0
+
+
+def numbered(first: int, count: int) -> NDArray[np.float32]:
+    """Frames that tell their own seq."""
+    values = standing(count)
+    values[:, 1] = np.arange(first, first + count)
+    return values
+
+
+@pytest.fixture
+def session_id(lab: Lab) -> str:
+    """A session with nothing in it."""
+    return str(lab.join()["id"])
+
+
+def test_folding_changes_nothing_that_is_read(lab: Lab, session_id: str) -> None:
+    """The frames are the same before and after, bit by bit, and no batch is left."""
+    for first in range(0, 300, 10):
+        store(lab, session_id, first, numbered(first, 10))
+    store(lab, session_id, 300, every_odd_float())
+    before = read(lab.database, session_id)
+    fold(lab)
+    after = read(lab.database, session_id)
+    assert np.array_equal(bits(after.values), bits(before.values))
+    assert np.array_equal(after.seq, np.arange(311))
+    assert batches(lab, session_id) == 0
+
+
+def test_young_batches_are_left_alone(lab: Lab, session_id: str) -> None:
+    """Only what is older than a second is folded."""
+    store(lab, session_id, 0, numbered(0, 10), ahead_s=6000)
+    fold(lab)
+    assert batches(lab, session_id) == 1
+
+
+def test_a_chunk_never_spans_two_phases(lab: Lab, session_id: str) -> None:
+    """A reader of one phase gets that phase and no frame of another."""
+    for first, phase_id in ((0, 0), (10, 1), (20, 1), (30, 2)):
+        store(lab, session_id, first, numbered(first, 10), phase_id=phase_id)
+    fold(lab)
+    assert read(lab.database, session_id, 1).values[:, 1].tolist() == list(range(10, 30))
+    with lab.database.reading() as db:
+        ((epoch, frames),) = phase_frames(db, session_id, StreamName.TARGET, 2)
+    assert (epoch, len(frames)) == (1, 10)
+
+
+def test_readers_meet_every_frame_once_while_folding(lab: Lab, session_id: str) -> None:
+    """A reader that overlaps with the folder misses nothing and sees nothing twice."""
+    done = threading.Event()
+
+    def keep_folding() -> None:
+        while not done.is_set():
+            fold(lab)
+
+    folder = threading.Thread(target=keep_folding)
+    folder.start()
+    try:
+        for first in range(0, 200, 10):
+            store(lab, session_id, first, numbered(first, 10))
+            seen = read(lab.database, session_id).seq
+            assert seen.tolist() == list(range(first + 10))
+    finally:
+        done.set()
+        folder.join()
+
+
+def test_a_wall_clock_that_was_set_back_hides_nothing(lab: Lab, session_id: str) -> None:
+    """Batches stamped with a later time than those behind them are folded and read in order."""
+    for second, ahead_s in enumerate((6000.0, 6000.0, AHEAD_S, AHEAD_S)):
+        times_s = 2.0 * second + np.linspace(0.0, 0.1, 10)
+        store(lab, session_id, 10 * second, numbered(0, 10), ahead_s=ahead_s, times_s=times_s)
+    fold(lab)
+    assert batches(lab, session_id) == 0
+    assert read(lab.database, session_id).seq.tolist() == list(range(40))
+
+
+def test_a_chunk_waits_until_it_is_whole(lab: Lab, session_id: str) -> None:
+    """While a stream goes on, only whole seconds are folded; its rest follows when it is quiet."""
+    now = lab.context.clock.utc_now()
+    folder = Folder(replace(lab.context, clock=Clock(utc_now=lambda: now + LATER)))
+    for batch in range(16):
+        times_s = (10 * batch + np.arange(10)) / 90.0
+        newest_s = LATER.total_seconds() - (15 - batch) / 9.0
+        store(lab, session_id, 10 * batch, numbered(0, 10), ahead_s=newest_s, times_s=times_s)
+    while folder.fold_once():
+        pass
+    assert batches(lab, session_id) == 7
+    later = Folder(replace(lab.context, clock=Clock(utc_now=lambda: now + 2 * LATER)))
+    assert later.fold_once() == 7
+    assert read(lab.database, session_id).seq.tolist() == list(range(160))
+
+
+def test_a_chunk_is_found_by_its_sound_times(lab: Lab, session_id: str) -> None:
+    """A broken last time does not take the whole chunk out of a search by time."""
+    times_s = np.linspace(100.0, 100.5, 10)
+    times_s[[0, -1]] = np.nan
+    store(lab, session_id, 0, numbered(0, 10), times_s=times_s)
+    fold(lab)
+    with lab.database.reading() as db:
+        (chunk,) = db.scalars(select(TelemetryChunk).where(TelemetryChunk.session_id == session_id))
+        found = list(iter_frames(db, session_id, StreamName.TARGET, 1, since_s=100.2))
+    assert (chunk.t_first_s, chunk.t_last_s) == (times_s[1], times_s[-2])
+    assert len(found) == 1
+
+
+def test_a_cut_batch_counts_only_what_is_new(lab: Lab, session_id: str) -> None:
+    """Bad frames that were stored before are not counted or told again."""
+    bad = standing(10)
+    bad[:5, 3] = 2.0
+    assert len(store(lab, session_id, 0, bad).notices) == 1
+    assert store(lab, session_id, 0, np.concatenate([bad, standing(2)])).notices == []
+    assert len(read(lab.database, session_id)) == 12

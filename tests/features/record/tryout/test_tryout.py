@@ -1,0 +1,54 @@
+"""The scripted participant: refused where it must be, failing in words, never two at once."""
+
+import time
+
+from app.features.access import Caller
+from app.features.accounts.service import hash_token
+from app.features.record.tryout.desk import TryoutDesk
+from app.models import Account, LoginToken
+from tests.features.lab import STUDY, Json, Lab, error, ok
+
+WITHIN_S = 60.0
+NOBODY = "http://127.0.0.1:9"
+
+
+def _until_over(desk: TryoutDesk, caller: Caller) -> Json:
+    give_up_s = time.monotonic() + WITHIN_S
+    while True:
+        view = desk.newest(caller)
+        assert view is not None
+        if view.state not in ("starting", "running"):
+            return view.model_dump()
+        assert time.monotonic() < give_up_s, f"it is still {view.state}"
+        time.sleep(0.05)
+
+
+def test_it_fails_in_words_and_leaves_nothing_behind(fresh_lab: Lab) -> None:
+    """With nobody at the address: why, what to do; its login is revoked, a new one may begin."""
+    lab = fresh_lab
+    assert ok(lab.operator.get("/api/tryout")) is None
+    error(lab.operator.delete("/api/tryout"), 404, "not_found")
+    wish = {"language": "fr"}
+    error(lab.operator.post(f"/api/studies/{STUDY}/tryout", json=wish), 422, "invalid_input")
+    with lab.database.reading() as db:
+        account = db.query(Account).filter_by(username="admin").one()
+    caller = Caller(account.id, account.username, account.role)
+    desk = lab.context.tryout
+    desk.start(caller, STUDY, "en", NOBODY)
+    again = lab.operator.post(f"/api/studies/{STUDY}/tryout", json={"language": "en"})
+    refusal = error(again, 409, "conflict")
+    assert "one at a time" in refusal["valid"]
+    view = _until_over(desk, caller)
+    assert view["state"] == "failed"
+    assert NOBODY in view["trouble"]["message"]
+    assert view["trouble"]["remedy"]
+    assert ok(lab.operator.get("/api/tryout"))["state"] == "failed"
+    assert desk._newest is not None
+    token = hash_token(desk._newest.token)
+    give_up_s = time.monotonic() + WITHIN_S
+    while time.monotonic() < give_up_s:
+        with lab.database.reading() as db:
+            if db.get_one(LoginToken, token).revoked_at is not None:
+                return
+        time.sleep(0.05)
+    raise AssertionError("its login still opens the server")
