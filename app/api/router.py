@@ -20,8 +20,9 @@ from app.features.care.rights.endpoints import router as rights
 from app.features.care.storage.endpoints import router as storage
 from app.features.context import AppContext
 from app.features.dependencies import API_PREFIX, Context
+from app.features.design.instruments.endpoints import router as instruments
+from app.features.design.studies.endpoints import router as studies
 from app.features.humanoids.endpoints import router as humanoids
-from app.features.instruments.endpoints import router as instruments
 from app.features.record.alarms.endpoints import router as alarms
 from app.features.record.calibrations.endpoints import router as calibrations
 from app.features.record.devices.endpoints import router as devices
@@ -45,7 +46,6 @@ from app.features.results.exports.file_endpoints import router as export_files
 from app.features.results.imports.endpoints import router as imports
 from app.features.results.preregistration.endpoints import router as preregistrations
 from app.features.results.replay.endpoints import router as replays
-from app.features.studies.endpoints import router as studies
 from app.features.walking.endpoints import router as walks
 from app.features.walking.model_endpoints import router as walking_models
 

@@ -15,8 +15,8 @@ import numpy as np
 from app.clock import Clock
 from app.database import open_database
 from app.features.care.opening.service import bring_up_to_date
+from app.features.design.studies.service import add_shipped
 from app.features.policy import POLICY
-from app.features.studies.service import add_shipped
 from app.settings import Settings
 from tests.benchmarks.report import Figure, Report
 from tests.benchmarks.thousand import fill_thousand

@@ -20,7 +20,7 @@ from sqlalchemy import Table, insert, literal, select, update
 from app.clock import Clock
 from app.database import Base, Database, open_database
 from app.features.care.opening.service import bring_up_to_date
-from app.features.studies.service import add_shipped
+from app.features.design.studies.service import add_shipped
 from app.models import TelemetryStream
 from app.settings import Settings
 from app.wire import StreamName

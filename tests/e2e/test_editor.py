@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter
-from tests.features.instruments.test_library import OWN
+from tests.features.design.instruments.test_library import OWN
 from tests.support.browser import ColorScheme
 from tests.support.server import LiveServer
 from tests.support.traffic import Traffic

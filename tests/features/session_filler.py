@@ -9,7 +9,7 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.features.studies.service import instrument_for, instrument_of
+from app.features.design.studies.service import instrument_for, instrument_of
 from app.models import (
     Answer,
     Completion,

@@ -8,10 +8,10 @@ import pytest
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import protocol_of
 from app.features.record.headset.service import participant_info
 from app.features.record.sessions.journal import events_of, verify_chain
 from app.features.record.sessions.service import session_by_id
-from app.features.studies.service import protocol_of
 from app.models import (
     Completion,
     Contact,

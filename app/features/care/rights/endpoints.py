@@ -31,10 +31,10 @@ from app.features.care.rights.service import (
 )
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.design.studies.service import study_by_key
 from app.features.record.questionnaires.schemas import StoredAnswers
 from app.features.record.questionnaires.service import stored_answers
 from app.features.record.sessions.service import session_by_id
-from app.features.studies.service import study_by_key
 
 router = APIRouter(tags=["rights"])
 

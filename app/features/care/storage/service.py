@@ -15,7 +15,7 @@ from app.features.care.storage.schemas import (
     StudyRoom,
 )
 from app.features.context import AppContext
-from app.features.studies.service import newest_version, protocol_of
+from app.features.design.studies.service import newest_version, protocol_of
 from app.models import Study
 
 LARGEST = 12

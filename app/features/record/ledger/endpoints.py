@@ -8,11 +8,11 @@ from sqlalchemy.orm import Session
 
 from app.features.access import Caller, is_blind
 from app.features.dependencies import Reading, SignedIn
+from app.features.design.studies.schemas import AttemptView, LedgerView, SequenceRow, SlotRow
+from app.features.design.studies.service import newest_version, protocol_of, study_by_key
 from app.features.record.ledger.service import SlotView, ledger_of, planned_slots
 from app.features.record.sessions.schemas import Kind
 from app.features.record.sessions.service import end_reason
-from app.features.studies.schemas import AttemptView, LedgerView, SequenceRow, SlotRow
-from app.features.studies.service import newest_version, protocol_of, study_by_key
 
 router = APIRouter(tags=["participants"])
 GIVEN_UP = ("aborted", "withdrawn")

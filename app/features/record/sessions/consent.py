@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.context import AppContext
+from app.features.design.studies.service import protocol_of
 from app.features.record.sessions.consent_schemas import (
     ConsentForm,
     ConsentGiven,
@@ -24,7 +25,6 @@ from app.features.record.sessions.consent_schemas import (
 from app.features.record.sessions.contents import content_body, contents_of, store_content
 from app.features.record.sessions.engine import ContentRef
 from app.features.record.sessions.service import plan_of
-from app.features.studies.service import protocol_of
 from app.models import Participant, SessionContent, StudySession, StudyVersion
 from app.protocol import ConsentStep, Step, StudyProtocol, Text, sha256_of
 

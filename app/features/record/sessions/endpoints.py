@@ -5,6 +5,7 @@ from sqlalchemy import select
 
 from app.features.access import is_blind
 from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.design.studies.service import study_by_key
 from app.features.record.questionnaires.schemas import (
     Administration,
     Receipt,
@@ -37,7 +38,6 @@ from app.features.record.sessions.service import (
     session_by_id,
 )
 from app.features.record.sessions.view import event_views, list_sessions, session_view
-from app.features.studies.service import study_by_key
 from app.models import TelemetryStream
 
 router = APIRouter(tags=["sessions"])

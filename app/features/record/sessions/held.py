@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import instrument_for, instrument_of
 from app.features.record.sessions.engine import SessionState
 from app.features.record.sessions.schemas import HeldView
-from app.features.studies.service import instrument_for, instrument_of
 from app.models import StudyVersion
 from app.protocol import StudyProtocol
 

@@ -10,6 +10,13 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput, NotFound, NotNow, StaleVersion
 from app.features.avatar.service import version_of
 from app.features.context import AppContext
+from app.features.design.studies.service import (
+    newest_version,
+    protocol_of,
+    require_open,
+    study_by_key,
+    version_content,
+)
 from app.features.record.ledger.service import (
     find_or_add_participant,
     hold_slot,
@@ -28,13 +35,6 @@ from app.features.record.sessions.engine import (
 from app.features.record.sessions.journal import append_events
 from app.features.record.sessions.plans import plan_of as plan_of
 from app.features.record.sessions.projection import project
-from app.features.studies.service import (
-    newest_version,
-    protocol_of,
-    require_open,
-    study_by_key,
-    version_content,
-)
 from app.models import SessionContent, SessionEvent, StudySession
 from app.models.ledger import KINDS
 from app.models.types import new_id

@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput
 from app.features.context import AppContext
 from app.features.dependencies import Context, PairedTablet, Writing, tablet_in, write
+from app.features.design.studies.service import protocol_of
 from app.features.record.questionnaires.schemas import Receipt, SubmissionRequest
 from app.features.record.questionnaires.service import submit
 from app.features.record.sessions.consent import ConsentDesk
@@ -24,7 +25,6 @@ from app.features.record.tablet.schemas import (
     TabletState,
 )
 from app.features.record.tablet.service import tablet_state
-from app.features.studies.service import protocol_of
 from app.models import Device, StudySession, StudyVersion
 from app.protocol import Step
 

@@ -6,8 +6,13 @@ from app.errors import InvalidInput, NotFound
 from app.features.access import Caller, require_object
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn
+from app.features.design.studies.service import (
+    newest_version,
+    protocol_of,
+    require_open,
+    study_by_key,
+)
 from app.features.record.tryout.schemas import TryoutView, TryoutWish
-from app.features.studies.service import newest_version, protocol_of, require_open, study_by_key
 
 router = APIRouter(tags=["tryout"])
 

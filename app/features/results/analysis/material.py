@@ -13,6 +13,12 @@ import pandas as pd
 from sqlalchemy import URL, select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import (
+    instrument_of,
+    newest_version,
+    protocol_of,
+    study_by_key,
+)
 from app.features.results.analysis.filters import FigureFilter
 from app.features.results.analysis.schemas import DashboardKind
 from app.features.results.analysis.tables import (
@@ -27,12 +33,6 @@ from app.features.results.analysis.tables import (
     sessions_table,
 )
 from app.features.results.analysis.tables.context import Contexts, phase_limbs, shared_contexts
-from app.features.studies.service import (
-    instrument_of,
-    newest_version,
-    protocol_of,
-    study_by_key,
-)
 from app.models import InstrumentVersion
 from app.protocol import StudyProtocol
 from app.science.instruments import Instrument

@@ -14,6 +14,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import study_by_key
 from app.features.record.receipts.service import receipt_of
 from app.features.results.analysis.codebook import codebook_frame
 from app.features.results.analysis.tables import (
@@ -39,7 +40,6 @@ from app.features.results.exports.names import receipt_path, samples_path
 from app.features.results.exports.readme import FileCount, Origin, readme_text
 from app.features.results.exports.samples import SampleFile
 from app.features.results.imports.service import import_files
-from app.features.studies.service import study_by_key
 from app.models import StudyVersion
 
 TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {

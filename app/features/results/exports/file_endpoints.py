@@ -11,11 +11,11 @@ from app.features.audit.service import record
 from app.features.care.rights.service import in_browser_of, record_copy
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn
+from app.features.design.studies.service import study_by_key
 from app.features.record.sessions.service import session_by_id
 from app.features.results.exports.jobs import Job
 from app.features.results.exports.names import archive_name
 from app.features.results.exports.schemas import ExportView, ExportWish
-from app.features.studies.service import study_by_key
 from app.models import Participant
 
 router = APIRouter(tags=["exports"])

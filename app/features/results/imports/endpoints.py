@@ -17,6 +17,7 @@ from app.features.care.rights.service import (
 )
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.design.studies.service import study_by_key
 from app.features.results.imports.looking import check, look
 from app.features.results.imports.schemas import (
     CheckRequest,
@@ -39,7 +40,6 @@ from app.features.results.imports.stored import (
     imports_of,
     instrument_of_import,
 )
-from app.features.studies.service import study_by_key
 
 router = APIRouter(tags=["imports"], prefix="/studies/{key}/imports")
 

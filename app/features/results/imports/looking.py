@@ -4,7 +4,8 @@ from collections import Counter
 
 from sqlalchemy.orm import Session
 
-from app.features.instruments.service import parsed_instruments
+from app.features.design.instruments.service import parsed_instruments
+from app.features.design.studies.service import newest_version, protocol_of
 from app.features.results.imports.applying import Applied, Form, apply_mapping
 from app.features.results.imports.proposing import likely_instrument, propose
 from app.features.results.imports.reading import applied_to, known_instrument
@@ -21,7 +22,6 @@ from app.features.results.imports.schemas import (
 from app.features.results.imports.sheet import Sheet, read_sheet
 from app.features.results.imports.stored import import_view, imports_of, standing
 from app.features.results.imports.warnings import looks_turned, reversed_items, shift_of
-from app.features.studies.service import newest_version, protocol_of
 from app.models import Study
 from app.protocol.canonical import sha256_of
 from app.science.instruments import Instrument

@@ -3,11 +3,11 @@
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound
-from app.features.instruments.service import parsed_instruments
+from app.features.design.instruments.service import parsed_instruments
+from app.features.design.studies.service import newest_version, protocol_of
 from app.features.results.imports.applying import Applied, apply_mapping
 from app.features.results.imports.schemas import Mapping
 from app.features.results.imports.sheet import read_sheet
-from app.features.studies.service import newest_version, protocol_of
 from app.models import Study
 from app.science.instruments import Instrument
 

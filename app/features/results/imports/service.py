@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, NotFound
 from app.features.audit.service import record
-from app.features.instruments.service import newest_instruments
+from app.features.design.instruments.service import newest_instruments
 from app.features.results.imports.applying import Form
 from app.features.results.imports.reading import applied_to
 from app.features.results.imports.schemas import ImportRequest

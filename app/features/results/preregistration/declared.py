@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from app.features.design.studies.service import protocol_of
 from app.features.results.preregistration.schemas import DeclarationView
-from app.features.studies.service import protocol_of
 from app.models import StudyVersion
 from app.protocol import ExclusionRule, Preregistration, PrimaryTest
 

@@ -5,13 +5,13 @@ from typing import cast
 
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import newest_version, protocol_of, versions_of
 from app.features.results.analysis.tables import Kind, corrections_table
 from app.features.results.preregistration.declared import Declared, declared_in
 from app.features.results.preregistration.deviating import deviations_of
 from app.features.results.preregistration.excluding import BEGUN, Tables, exclude, read_tables
 from app.features.results.preregistration.schemas import PreregistrationView, PrimaryResult
 from app.features.results.preregistration.testing import Values, make_test, values_of
-from app.features.studies.service import newest_version, protocol_of, versions_of
 from app.models import Study, StudyVersion
 from app.science.statistics import StatisticsError
 

@@ -10,6 +10,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import instrument_of
 from app.features.results.analysis.tables import (
     Kind,
     answers_table,
@@ -18,7 +19,6 @@ from app.features.results.analysis.tables import (
     sessions_table,
 )
 from app.features.results.preregistration.schemas import ExclusionView
-from app.features.studies.service import instrument_of
 from app.models import InstrumentVersion
 from app.protocol import ExclusionRule
 

@@ -72,7 +72,7 @@ def test_scores_are_those_of_the_answers_that_count(site: Site) -> None:
     form = forms(site, visit)["karas2020"]
     item = "q1"
     after = correct(site, visit, form, item, 7)
-    from app.features.studies.service import instrument_of
+    from app.features.design.studies.service import instrument_of
     from app.models import InstrumentVersion, Submission
 
     with site.database.reading() as db:

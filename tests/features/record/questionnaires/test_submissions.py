@@ -6,9 +6,9 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
+from app.features.design.studies.service import instrument_of, newest_instruments
 from app.features.record.sessions.contents import content_body, contents_of
 from app.features.record.sessions.journal import events_of, verify_chain
-from app.features.studies.service import instrument_of, newest_instruments
 from app.models import StudySession, Submission
 from app.science.instruments import item_order
 from tests.features.lab import Lab, error, key, ok

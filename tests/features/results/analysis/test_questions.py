@@ -3,13 +3,13 @@
 import pytest
 
 from app.database import Database
+from app.features.design.studies.service import add_version, study_by_key
 from app.features.results.analysis.material import read_material
 from app.features.results.analysis.questions import answers_of
 from app.features.results.analysis.questions.answers import DECLARED
 from app.features.results.analysis.questions.relations import group_of
 from app.features.results.analysis.questions.words import bounded, p_words
 from app.features.results.analysis.schemas import MeasureView, ResultView, StatisticsResults
-from app.features.studies.service import add_version, study_by_key
 from app.protocol.plan import Step
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.protocol.helpers import STUDY as FILE

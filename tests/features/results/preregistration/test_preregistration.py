@@ -6,10 +6,10 @@ from datetime import timedelta
 import pytest
 
 from app.database import Database, open_database
+from app.features.design.studies.service import add_version, freeze, newest_version, study_by_key
 from app.features.results.preregistration.markdown import as_markdown, without_codes
 from app.features.results.preregistration.schemas import PreregistrationView
 from app.features.results.preregistration.service import preregistration_of
-from app.features.studies.service import add_version, freeze, newest_version, study_by_key
 from app.models import StudySession
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
 from tests.protocol.helpers import STUDY as FILE

@@ -11,10 +11,10 @@ import pandas as pd
 from sqlalchemy import ColumnElement, Select, and_, select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import study_by_key
 from app.features.record.sessions.service import plan_of, state_of
 from app.features.results.analysis.codebook import ColumnType, columns_of
 from app.features.results.analysis.schemas import Kind
-from app.features.studies.service import study_by_key
 from app.models import Participant, Phase, Study, StudySession, StudyVersion
 from app.protocol.plan import Step
 

@@ -8,9 +8,9 @@ import pandas as pd
 from sqlalchemy import ColumnElement, select, true
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import study_by_key
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import finished, of_kind, phases_context, read
-from app.features.studies.service import study_by_key
 from app.models import JointErrorCourseRow, StudySession
 
 _KEYS = ["session_id", "phase_id"]

@@ -4,10 +4,10 @@ import pandas as pd
 from sqlalchemy import case, func, select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import study_by_key
 from app.features.results.analysis.red_time import red_spans, total_s
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import finished, of_kind, phases_context, read
-from app.features.studies.service import study_by_key
 from app.models import Completion, Contact, Phase, PhaseLatency, Study, StudySession
 
 MS_PER_S = 1000.0

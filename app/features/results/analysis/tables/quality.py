@@ -4,6 +4,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import study_by_key
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
     finished,
@@ -12,7 +13,6 @@ from app.features.results.analysis.tables.context import (
     read,
     sessions_context,
 )
-from app.features.studies.service import study_by_key
 from app.models import AlarmRow, PhaseQuality, StudySession
 
 _KEYS = ("session_id", "phase_id")

@@ -6,6 +6,7 @@ import pandas as pd
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import instrument_of, study_by_key
 from app.features.record.questionnaires.service import newest_corrections
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
@@ -16,7 +17,6 @@ from app.features.results.analysis.tables.context import (
     sessions_context,
     steps_context,
 )
-from app.features.studies.service import instrument_of, study_by_key
 from app.models import (
     Answer,
     AnswerCorrection,

@@ -7,6 +7,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.features.design.studies.service import protocol_of, study_by_key, versions_of
 from app.features.record.sessions.contents import content_body
 from app.features.record.sessions.service import plan_of, state_of
 from app.features.results.analysis.schemas import Kind
@@ -17,7 +18,6 @@ from app.features.results.analysis.tables.context import (
     read,
     sessions_context,
 )
-from app.features.studies.service import protocol_of, study_by_key, versions_of
 from app.models import (
     LedgerSlot,
     SessionContent,

@@ -1,7 +1,7 @@
 """Filling in an instrument that is only looked at: scores with every step, nothing stored."""
 
 from app.errors import InvalidInput
-from app.features.instruments.schemas import (
+from app.features.design.instruments.schemas import (
     AnswerProblemView,
     ItemStep,
     ScoreStep,

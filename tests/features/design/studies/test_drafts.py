@@ -2,8 +2,8 @@
 
 import pytest
 
+from tests.features.design.studies.test_studies import edit
 from tests.features.lab import STUDY, Json, Lab, error, ok
-from tests.features.studies.test_studies import edit
 
 
 @pytest.fixture(scope="module")

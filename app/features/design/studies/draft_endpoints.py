@@ -5,8 +5,8 @@ from typing import Any
 from fastapi import APIRouter
 
 from app.features.dependencies import Reading, SignedIn
-from app.features.studies.comparing import compare_draft
-from app.features.studies.draft_schemas import (
+from app.features.design.studies.comparing import compare_draft
+from app.features.design.studies.draft_schemas import (
     CheckResult,
     DraftFile,
     EditedFile,
@@ -16,10 +16,10 @@ from app.features.studies.draft_schemas import (
     TimelineRequest,
     TimelineView,
 )
-from app.features.studies.drafts import check, dry_run, edit
-from app.features.studies.schemas import StudyFile
-from app.features.studies.service import study_by_key
-from app.features.studies.templates import templates
+from app.features.design.studies.drafts import check, dry_run, edit
+from app.features.design.studies.schemas import StudyFile
+from app.features.design.studies.service import study_by_key
+from app.features.design.studies.templates import templates
 from app.protocol.loading import study_schema
 
 router = APIRouter(tags=["studies"])

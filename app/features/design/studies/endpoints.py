@@ -12,17 +12,17 @@ from sqlalchemy.orm import Session
 from app.features.access import Caller, add_member, is_blind, is_theirs
 from app.features.audit.service import record
 from app.features.dependencies import Context, Reading, SignedIn, Writing
-from app.features.studies.comparing import compare_versions
-from app.features.studies.draft_endpoints import router as drafts
-from app.features.studies.draft_schemas import DuplicateRequest, StudyDiff, VersionDetail
-from app.features.studies.lifecycle import archive, duplicate, restore
-from app.features.studies.schemas import (
+from app.features.design.studies.comparing import compare_versions
+from app.features.design.studies.draft_endpoints import router as drafts
+from app.features.design.studies.draft_schemas import DuplicateRequest, StudyDiff, VersionDetail
+from app.features.design.studies.lifecycle import archive, duplicate, restore
+from app.features.design.studies.schemas import (
     StudyFile,
     StudySummary,
     StudyView,
     VersionView,
 )
-from app.features.studies.service import (
+from app.features.design.studies.service import (
     add_version,
     create_study,
     newest_version,

@@ -9,7 +9,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
-from app.features.instruments.service import instrument_of
+from app.features.design.instruments.service import instrument_of
 from app.features.unchanging import Unchanging
 from app.models import InstrumentVersion, StudyVersion
 from app.protocol import StudyProtocol, parse_study_json

@@ -9,7 +9,7 @@ from app.errors import InvalidInput
 from app.features.access import is_theirs
 from app.features.config_problems import problem_views
 from app.features.dependencies import Context, Reading, SignedIn, Writing
-from app.features.instruments.schemas import (
+from app.features.design.instruments.schemas import (
     InstrumentCheck,
     InstrumentDetail,
     InstrumentFile,
@@ -17,15 +17,15 @@ from app.features.instruments.schemas import (
     TryRequest,
     TryResult,
 )
-from app.features.instruments.service import (
+from app.features.design.instruments.service import (
     checked_instrument,
     instrument_of,
     save_instrument,
     uses,
     versions_of_instrument,
 )
-from app.features.instruments.trying import try_answers
-from app.features.instruments.views import detail_of, preview_of, summary_of
+from app.features.design.instruments.trying import try_answers
+from app.features.design.instruments.views import detail_of, preview_of, summary_of
 from app.models import InstrumentVersion
 from app.protocol import ConfigError, load_instrument
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.features.instruments.service import newest_instruments
-from app.features.studies.draft_schemas import DifferenceView, InstrumentChange, StudyDiff
-from app.features.studies.lifecycle import UNDER_WAY
-from app.features.studies.service import check_study, newest_version, version_by_number
+from app.features.design.instruments.service import newest_instruments
+from app.features.design.studies.draft_schemas import DifferenceView, InstrumentChange, StudyDiff
+from app.features.design.studies.lifecycle import UNDER_WAY
+from app.features.design.studies.service import check_study, newest_version, version_by_number
 from app.models import Study, StudySession, StudyVersion
 from app.protocol.difference import differences
 from app.protocol.source import path_text

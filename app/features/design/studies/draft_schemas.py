@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.features.config_problems import ProblemView
-from app.features.studies.schemas import MAX_YAML_CHARACTERS
+from app.features.design.studies.schemas import MAX_YAML_CHARACTERS
 from app.protocol.plan import StepKind
 
 MAX_CHANGES = 200

@@ -1,7 +1,7 @@
 """Versions compared, studies copied, put away and taken out again."""
 
+from tests.features.design.studies.test_studies import edit
 from tests.features.lab import STUDY, Json, Lab, error, ok
-from tests.features.studies.test_studies import edit
 
 PATH = f"/api/studies/{STUDY}"
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from sqlalchemy import ColumnElement
 from sqlalchemy.orm import Session
 
-from app.features.instruments.schemas import (
+from app.features.design.instruments.schemas import (
     FormulaView,
     InstrumentDetail,
     InstrumentSummary,
@@ -13,7 +13,7 @@ from app.features.instruments.schemas import (
     Preview,
     ProvenanceView,
 )
-from app.features.instruments.service import instrument_of, uses, versions_of_instrument
+from app.features.design.instruments.service import instrument_of, uses, versions_of_instrument
 from app.models import InstrumentVersion
 from app.protocol.loading import instrument_as_json
 from app.protocol.timeline import form_s

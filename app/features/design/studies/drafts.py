@@ -7,8 +7,8 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput
 from app.features.avatar.service import newest_numbers
 from app.features.config_problems import invalid_config, problem_views
-from app.features.instruments.service import parsed_instruments
-from app.features.studies.draft_schemas import (
+from app.features.design.instruments.service import parsed_instruments
+from app.features.design.studies.draft_schemas import (
     ChangeRequest,
     CheckResult,
     EstimateRule,
@@ -17,7 +17,7 @@ from app.features.studies.draft_schemas import (
     TimelineStep,
     TimelineView,
 )
-from app.features.studies.service import check_study
+from app.features.design.studies.service import check_study
 from app.protocol import ConfigError, LedgerRow, StudyProtocol, compile_plan, load_study, sequences
 from app.protocol.editing import Change, edit_text
 from app.protocol.orders import ledger_block
