@@ -14,13 +14,14 @@ from app.api.router import add_routes
 from app.clock import Clock
 from app.database import open_database
 from app.features.accounts.service import ensure_admin
-from app.features.avatar.service import add_shipped_avatar
 from app.features.care.opening.service import bring_up_to_date
 from app.features.care.rights.service import finish_erasures
 from app.features.care.storage.measuring import StorageDesk
 from app.features.context import AppContext
 from app.features.design.studies.service import add_shipped
 from app.features.live import Hub
+from app.features.movement.avatar.service import add_shipped_avatar
+from app.features.movement.walking.desk import FittingDesk
 from app.features.rate_limit import RateLimiter
 from app.features.record.sessions.recovery import stop_running_clocks
 from app.features.record.telemetry.encoder import Encoder
@@ -32,7 +33,6 @@ from app.features.results.analysis.drawing import Drawings
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.replay.desk import ReplayDesk
 from app.features.storage_health import StorageHealth
-from app.features.walking.desk import FittingDesk
 from app.lan.network import Network
 from app.resources import static_dir
 from app.settings import Settings

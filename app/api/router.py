@@ -12,9 +12,6 @@ from app import __version__
 from app.features.accounts.endpoints import router as accounts
 from app.features.accounts.people_endpoints import router as people
 from app.features.audit.endpoints import router as audit
-from app.features.avatar.endpoints import router as avatars
-from app.features.captures.avatar_endpoints import router as on_avatars
-from app.features.captures.endpoints import router as captures
 from app.features.care.network.endpoints import router as network
 from app.features.care.rights.endpoints import router as rights
 from app.features.care.storage.endpoints import router as storage
@@ -22,7 +19,12 @@ from app.features.context import AppContext
 from app.features.dependencies import API_PREFIX, Context
 from app.features.design.instruments.endpoints import router as instruments
 from app.features.design.studies.endpoints import router as studies
-from app.features.humanoids.endpoints import router as humanoids
+from app.features.movement.avatar.endpoints import router as avatars
+from app.features.movement.captures.avatar_endpoints import router as on_avatars
+from app.features.movement.captures.endpoints import router as captures
+from app.features.movement.humanoids.endpoints import router as humanoids
+from app.features.movement.walking.endpoints import router as walks
+from app.features.movement.walking.model_endpoints import router as walking_models
 from app.features.record.alarms.endpoints import router as alarms
 from app.features.record.calibrations.endpoints import router as calibrations
 from app.features.record.devices.endpoints import router as devices
@@ -46,8 +48,6 @@ from app.features.results.exports.file_endpoints import router as export_files
 from app.features.results.imports.endpoints import router as imports
 from app.features.results.preregistration.endpoints import router as preregistrations
 from app.features.results.replay.endpoints import router as replays
-from app.features.walking.endpoints import router as walks
-from app.features.walking.model_endpoints import router as walking_models
 
 
 class Health(BaseModel):

@@ -6,8 +6,9 @@ from sqlalchemy.orm import Session
 from app.cli.installation import opened_database
 from app.cli.tune_texts import report_json
 from app.clock import Clock
-from app.features.avatar.schemas import AvatarKey, NewAvatar, NewAvatarVersion
-from app.features.avatar.service import (
+from app.features.care.rights.service import COMMAND_LINE
+from app.features.movement.avatar.schemas import AvatarKey, NewAvatar, NewAvatarVersion
+from app.features.movement.avatar.service import (
     SHIPPED,
     add_avatar_version,
     add_shipped_avatar,
@@ -17,8 +18,7 @@ from app.features.avatar.service import (
     newest_version,
     typed,
 )
-from app.features.care.rights.service import COMMAND_LINE
-from app.features.humanoids.service import figure_by_hash
+from app.features.movement.humanoids.service import figure_by_hash
 from app.models import AvatarVersion
 from app.protocol.avatar import file_of
 from app.science.avatar.configuration import Configuration

@@ -22,8 +22,8 @@ from schemathesis.specs.openapi.checks import (
 )
 
 from tests.faults.figures import note
-from tests.features.captures.files import walk_bvh
 from tests.features.lab import STUDY
+from tests.features.movement.captures.files import walk_bvh
 from tests.support.humanoid_files import humanoid_file
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 

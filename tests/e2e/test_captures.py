@@ -10,7 +10,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from app.adapters.bvh import read_bvh
 from tests.e2e.people import PATIENCE_MS
-from tests.features.captures.files import walk_bvh
+from tests.features.movement.captures.files import walk_bvh
 from tests.support.browser import ColorScheme, ContextFactory, PageWatch
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS
-from tests.features.walking.walkers import FLOOR, SMALL
+from tests.features.movement.walking.walkers import FLOOR, SMALL
 from tests.support.browser import ContextFactory, PageWatch
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 

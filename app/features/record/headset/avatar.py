@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput
-from app.features.avatar.service import configuration_by_hash
 from app.features.context import AppContext
-from app.features.humanoids.service import figure_by_hash
+from app.features.movement.avatar.service import configuration_by_hash
+from app.features.movement.humanoids.service import figure_by_hash
 from app.features.record.headset.avatar_schemas import AvatarWish, SessionAvatar
 from app.features.record.sessions.capture import require_capture
 from app.features.record.sessions.contents import content_body, contents_of, store_content

@@ -8,7 +8,6 @@ from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound, NotNow, StaleVersion
-from app.features.avatar.service import version_of
 from app.features.context import AppContext
 from app.features.design.studies.service import (
     newest_version,
@@ -17,6 +16,7 @@ from app.features.design.studies.service import (
     study_by_key,
     version_content,
 )
+from app.features.movement.avatar.service import version_of
 from app.features.record.ledger.service import (
     find_or_add_participant,
     hold_slot,

@@ -4,8 +4,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Response
 
-from app.features.captures.binary import BYTES, binary
 from app.features.dependencies import Context, Reading, SignedIn
+from app.features.movement.captures.binary import BYTES, binary
 from app.features.results.replay.schemas import Replay
 from app.features.results.replay.service import movement_tag, replayable
 from app.features.results.replay.timeline import replay_of

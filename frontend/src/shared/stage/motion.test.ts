@@ -24,7 +24,7 @@ const HEADER = {
   recorded_rate_hz: 120,
 };
 
-/** As app/features/captures/preview.py writes it; `padded` as there, or not. */
+/** As app/features/movement/captures/preview.py writes it; `padded` as there, or not. */
 function encoded(values: readonly number[], padded = true): ArrayBuffer {
   const text = new TextEncoder().encode(JSON.stringify(HEADER));
   const length = padded ? text.length + ((4 - (text.length % 4)) % 4) : text.length;

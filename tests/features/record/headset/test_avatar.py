@@ -12,9 +12,9 @@ from app.features.record.sessions.contents import content_body, contents_of
 from app.protocol.avatar import AvatarFile, configuration_of, loaded
 from app.science.avatar.defaults import default_configuration
 from app.science.avatar.simulation import PhysicsAvatar
-from tests.features.avatar.test_avatars import CAST, new
-from tests.features.avatar.test_studies import KEY, study
 from tests.features.lab import Json, Lab, error, ok
+from tests.features.movement.avatar.test_avatars import CAST, new
+from tests.features.movement.avatar.test_studies import KEY, study
 from tests.protocol.helpers import study as shipped_study
 from tests.support.humanoid_files import humanoid_file
 from tests.support.humanoid_model import Model, without

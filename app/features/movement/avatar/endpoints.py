@@ -1,0 +1,116 @@
+"""Avatars' configurations over HTTP: listing, saving versions, and files to keep or bring in."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Path, Query, Response
+
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.movement.avatar.models import MEDIA_TYPE, model_of
+from app.features.movement.avatar.schemas import (
+    MAX_VERSION,
+    AvatarCheck,
+    AvatarSummary,
+    AvatarText,
+    AvatarVersionDetail,
+    AvatarView,
+    NewAvatar,
+    NewAvatarVersion,
+)
+from app.features.movement.avatar.service import (
+    add_avatar_version,
+    create_avatar,
+    typed,
+    version_of,
+)
+from app.features.movement.avatar.views import avatar_list, avatar_view, check_text, version_detail
+from app.protocol.avatar import avatar_text
+
+router = APIRouter(prefix="/avatars", tags=["avatars"])
+Number = Annotated[int, Path(ge=1, le=MAX_VERSION)]
+
+
+@router.get("")
+def get_avatars(db: Reading, caller: SignedIn) -> list[AvatarSummary]:
+    """Every avatar's configuration, as its newest version is."""
+    return avatar_list(db, caller)
+
+
+@router.post("", status_code=201)
+def post_avatar(wish: NewAvatar, db: Writing, context: Context, caller: SignedIn) -> AvatarView:
+    """Save a configuration under a new key."""
+    create_avatar(db, caller.actor, wish, context.clock.utc_now())
+    return avatar_view(db, caller, wish.key)
+
+
+@router.post("/check")
+def post_avatar_check(file: AvatarText, db: Reading, _: SignedIn) -> AvatarCheck:
+    """Read a file without storing it: its configuration, or every problem with its place."""
+    return check_text(db, file.text)
+
+
+@router.get("/{key}")
+def get_avatar(key: str, db: Reading, caller: SignedIn) -> AvatarView:
+    """One avatar with all its versions, and the newest in full."""
+    return avatar_view(db, caller, key)
+
+
+@router.post("/{key}/versions", status_code=201)
+def post_avatar_version(
+    key: str, wish: NewAvatarVersion, db: Writing, context: Context, caller: SignedIn
+) -> AvatarView:
+    """Append a version; the content of the newest gives the newest."""
+    add_avatar_version(db, caller.actor, key, wish, context.clock.utc_now())
+    return avatar_view(db, caller, key)
+
+
+@router.get("/{key}/versions/{number}")
+def get_avatar_version(
+    key: str, number: Number, db: Reading, caller: SignedIn
+) -> AvatarVersionDetail:
+    """One version in full."""
+    return version_detail(db, caller, key, number)
+
+
+@router.get(
+    "/{key}/versions/{number}/file",
+    response_class=Response,
+    responses={200: {"content": {"application/json": {}}, "description": "The file."}},
+)
+def get_avatar_file(key: str, number: Number, db: Reading, _: SignedIn) -> Response:
+    """A version as a JSON file to keep, which can be brought in again."""
+    version = version_of(db, key, number)
+    name = f"{version.key}-v{version.number}.json"
+    return Response(
+        avatar_text(typed(version)),
+        media_type="application/json",
+        headers={"content-disposition": f'attachment; filename="{name}"'},
+    )
+
+
+@router.get(
+    "/{key}/model",
+    response_class=Response,
+    responses={
+        200: {
+            "content": {MEDIA_TYPE: {"schema": {"type": "string"}}},
+            "description": "The model as MJCF; its ETag is the SHA-256 of its bytes.",
+        },
+        304: {"description": "The reader has it already."},
+    },
+)
+def get_avatar_model(
+    key: str,
+    db: Reading,
+    _: SignedIn,
+    stature_m: Annotated[float, Query(ge=0.5, le=2.6, allow_inf_nan=False)],
+    version: Annotated[int | None, Query(ge=1, le=MAX_VERSION)] = None,
+    if_none_match: Annotated[str | None, Header(max_length=1_000)] = None,
+) -> Response:
+    """The avatar of a stature as a MuJoCo model, the newest version if none is named."""
+    model = model_of(db, key, version, stature_m)
+    tag = f'"{model.content_hash}"'
+    headers = {"etag": tag, "cache-control": "private, no-cache"}
+    known = [one.strip().removeprefix("W/") for one in (if_none_match or "").split(",")]
+    if tag in known or "*" in known:
+        return Response(status_code=304, headers=headers)
+    return Response(model.mjcf, media_type=MEDIA_TYPE, headers=headers)

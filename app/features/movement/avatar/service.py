@@ -1,0 +1,246 @@
+"""Avatars' configurations: named for a lab, each content a version that is never edited.
+
+They belong to the lab, like captures, not to a study. A session names the content it used by its
+hash, so what a participant met stays known whatever is tuned later.
+"""
+
+from collections.abc import Iterator, Mapping
+from datetime import datetime
+from functools import lru_cache
+from typing import Any
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.errors import Conflict, InvalidConfig, NotFound, StaleVersion
+from app.features.audit.service import record
+from app.features.movement.avatar.schemas import NewAvatar, NewAvatarVersion, Origin
+from app.features.movement.humanoids.service import is_known
+from app.models import Avatar, AvatarVersion
+from app.protocol.avatar import (
+    AvatarFile,
+    LoadedAvatar,
+    check_pieces,
+    configuration_of,
+    loaded,
+    parse_avatar_json,
+)
+from app.science.avatar.axis_settings import AvatarProblem, AvatarSettingsError
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.defaults import default_configuration
+
+SHIPPED = "standard"
+"""The key of the configuration that comes with the product."""
+_SHIPPED_TITLE = "Standard"
+_PRODUCT = "system"
+
+
+def create_avatar(
+    db: Session,
+    actor: str,
+    wish: NewAvatar,
+    now: datetime,
+    *,
+    report: Mapping[str, Any] | None = None,
+) -> AvatarVersion:
+    """A configuration under a new key.
+
+    Raises Conflict where the key is taken, InvalidConfig with every problem of the configuration.
+    """
+    content = checked(db, wish.configuration)
+    if db.get(Avatar, wish.key) is not None:
+        raise Conflict(
+            f"there is an avatar {wish.key!r} already",
+            value=wish.key,
+            remedy="Save a version of it, or give the new one another key.",
+        )
+    db.add(Avatar(key=wish.key, title=wish.title, by=actor, at=now))
+    db.flush()
+    row = _append(db, wish.key, 1, content, wish.origin, wish.note, actor, now, report=report)
+    _note(db, actor, row, "avatar.created", now)
+    return row
+
+
+def add_avatar_version(
+    db: Session,
+    actor: str,
+    key: str,
+    wish: NewAvatarVersion,
+    now: datetime,
+    *,
+    report: Mapping[str, Any] | None = None,
+) -> AvatarVersion:
+    """Append a version; the content of the newest gives the newest.
+
+    Raises StaleVersion where somebody saved meanwhile, InvalidConfig, NotFound.
+    """
+    content = checked(db, wish.configuration)
+    avatar = avatar_by_key(db, key, lock=True)
+    newest = newest_version(db, avatar)
+    if newest.content_hash == content.content_hash:
+        return newest
+    if wish.based_on != newest.number:
+        raise StaleVersion(
+            "somebody else has changed this avatar meanwhile",
+            value=wish.based_on,
+            valid=newest.number,
+            remedy="Look at it as it is now, then decide. Nothing was saved.",
+        )
+    number = newest.number + 1
+    row = _append(db, key, number, content, wish.origin, wish.note, actor, now, report=report)
+    _note(db, actor, row, "avatar.version", now)
+    return row
+
+
+def add_shipped_avatar(db: Session, now: datetime) -> None:
+    """Store the product's own configuration, unless the lab has made the key its own."""
+    content = loaded(default_configuration())
+    avatar = db.get(Avatar, SHIPPED)
+    if avatar is None:
+        db.add(Avatar(key=SHIPPED, title=_SHIPPED_TITLE, by=_PRODUCT, at=now))
+        db.flush()
+        _append(db, SHIPPED, 1, content, "shipped", "", _PRODUCT, now)
+        return
+    newest = newest_version(db, avatar)
+    if newest.origin == "shipped" and newest.content_hash != content.content_hash:
+        _append(db, SHIPPED, newest.number + 1, content, "shipped", "", _PRODUCT, now)
+
+
+def avatar_by_key(db: Session, key: str, *, lock: bool = False) -> Avatar:
+    """The avatar of that key; `lock` makes those who save queue. Raises NotFound."""
+    query = select(Avatar).where(Avatar.key == key)
+    avatar = db.scalar(query.with_for_update() if lock else query)
+    if avatar is None:
+        known = list(db.scalars(select(Avatar.key).order_by(Avatar.key)))
+        raise NotFound(f"there is no avatar {key!r}", value=key, valid=known)
+    return avatar
+
+
+def newest_numbers(db: Session) -> dict[str, int]:
+    """Key -> number of the newest version, of every avatar."""
+    rows = db.execute(
+        select(AvatarVersion.key, func.max(AvatarVersion.number)).group_by(AvatarVersion.key)
+    )
+    return {key: number for key, number in rows}  # noqa: C416 - rows are not tuples to mypy
+
+
+def newest_version(db: Session, avatar: Avatar) -> AvatarVersion:
+    """The version that was saved last."""
+    return db.scalars(
+        select(AvatarVersion)
+        .where(AvatarVersion.key == avatar.key)
+        .order_by(AvatarVersion.number.desc())
+        .limit(1)
+    ).one()
+
+
+def version_of(db: Session, key: str, number: int | None) -> AvatarVersion:
+    """A version by its number, the newest for None; raises NotFound."""
+    avatar = avatar_by_key(db, key)
+    if number is None:
+        return newest_version(db, avatar)
+    row = db.get(AvatarVersion, (key, number))
+    if row is None:
+        raise NotFound(
+            f"the avatar {key!r} has no version {number}",
+            value=number,
+            valid=f"1 to {newest_version(db, avatar).number}",
+        )
+    return row
+
+
+def configuration_by_hash(db: Session, content_hash: str) -> Configuration:
+    """The configuration that a session names; raises NotFound."""
+    query = select(AvatarVersion).where(AvatarVersion.content_hash == content_hash).limit(1)
+    row = db.scalar(query)
+    if row is None:
+        raise NotFound("no avatar has this content", value=content_hash)
+    return typed(row)
+
+
+def typed(version: AvatarVersion) -> Configuration:
+    """The configuration of a version."""
+    return _parsed(version.content_hash, version.canonical_json)
+
+
+@lru_cache(maxsize=64)
+def _parsed(_content_hash: str, canonical_json: str) -> Configuration:
+    return parse_avatar_json(canonical_json)
+
+
+def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
+    """The configuration of a file; InvalidConfig has every problem."""
+    try:
+        configuration = configuration_of(file)
+        check_pieces(configuration)
+        problems = tuple(unknown_humanoid(db, configuration))
+        if problems:
+            raise AvatarSettingsError(problems)
+        return loaded(configuration)
+    except AvatarSettingsError as error:
+        raise InvalidConfig(
+            "the avatar's configuration contradicts itself",
+            remedy="Mend what is named below; nothing was saved.",
+            details=[
+                {
+                    "path": f"configuration.{one.path}",
+                    "message": one.message,
+                    "value": one.value,
+                    "valid": one.valid,
+                    "remedy": one.remedy,
+                }
+                for one in error.problems
+            ],
+        ) from None
+
+
+def unknown_humanoid(db: Session, configuration: Configuration) -> Iterator[AvatarProblem]:
+    """The problem of a configuration whose model nobody has uploaded here."""
+    content_hash = configuration.humanoid
+    if content_hash is not None and not is_known(db, content_hash):
+        yield AvatarProblem(
+            "humanoid",
+            "There is no such humanoid model here.",
+            value=content_hash,
+            valid="the hash of an uploaded model",
+            remedy="Upload the model's file first, or leave 'humanoid' out.",
+        )
+
+
+def _append(
+    db: Session,
+    key: str,
+    number: int,
+    content: LoadedAvatar,
+    origin: Origin,
+    note: str,
+    by: str,
+    now: datetime,
+    *,
+    report: Mapping[str, Any] | None = None,
+) -> AvatarVersion:
+    row = AvatarVersion(
+        key=key,
+        number=number,
+        content_hash=content.content_hash,
+        canonical_json=content.canonical_json,
+        origin=origin,
+        note=note,
+        report=None if report is None else dict(report),
+        by=by,
+        at=now,
+    )
+    db.add(row)
+    db.flush()
+    return row
+
+
+def _note(db: Session, actor: str, row: AvatarVersion, action: str, now: datetime) -> None:
+    record(
+        db,
+        actor=actor,
+        action=action,
+        subject=f"avatar:{row.key}",
+        details={"version": row.number, "origin": row.origin, "content": row.content_hash[:12]},
+        now=now,
+    )

@@ -1,0 +1,136 @@
+"""Drawing avatars' configurations for pages."""
+
+from collections.abc import Sequence
+from itertools import groupby
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from app.features.access import Caller, is_theirs
+from app.features.config_problems import problem_views
+from app.features.movement.avatar.schemas import (
+    AvatarCheck,
+    AvatarSummary,
+    AvatarVersionDetail,
+    AvatarVersionView,
+    AvatarView,
+)
+from app.features.movement.avatar.service import (
+    avatar_by_key,
+    newest_version,
+    typed,
+    unknown_humanoid,
+    version_of,
+)
+from app.models import Avatar, AvatarVersion, Study, StudySession
+from app.protocol import ConfigError
+from app.protocol.avatar import file_of, load_avatar
+from app.protocol.errors import ConfigProblem
+from app.science.avatar.configuration import Configuration
+
+
+def avatar_list(db: Session, caller: Caller) -> list[AvatarSummary]:
+    """Every avatar of the lab, by key."""
+    rows = db.scalars(select(AvatarVersion).order_by(AvatarVersion.key, AvatarVersion.number))
+    titles = {avatar.key: avatar.title for avatar in db.scalars(select(Avatar))}
+    used = _sessions_by_hash(db, caller)
+    return [
+        _summary(key, titles[key], list(versions), used)
+        for key, versions in groupby(rows, key=lambda row: row.key)
+    ]
+
+
+def avatar_view(db: Session, caller: Caller, key: str) -> AvatarView:
+    """One avatar with its versions; raises NotFound."""
+    avatar = avatar_by_key(db, key)
+    rows = db.scalars(
+        select(AvatarVersion).where(AvatarVersion.key == key).order_by(AvatarVersion.number.desc())
+    )
+    return AvatarView(
+        key=key,
+        title=avatar.title,
+        by=avatar.by,
+        at=avatar.at,
+        newest=_detail(db, caller, avatar, newest_version(db, avatar)),
+        versions=[version_view(row) for row in rows],
+    )
+
+
+def version_detail(
+    db: Session, caller: Caller, key: str, number: int | None
+) -> AvatarVersionDetail:
+    """One version in full, the newest for None; raises NotFound."""
+    return _detail(db, caller, avatar_by_key(db, key), version_of(db, key, number))
+
+
+def version_view(row: AvatarVersion) -> AvatarVersionView:
+    """One version in a list."""
+    return AvatarVersionView.model_validate(row, from_attributes=True)
+
+
+def check_text(db: Session, text: str) -> AvatarCheck:
+    """What a file holds, or every problem of it with its place."""
+    try:
+        content = load_avatar(text)
+        _check_humanoid(db, content.configuration)
+    except ConfigError as error:
+        return AvatarCheck(ok=False, problems=problem_views(error))
+    same = db.execute(
+        select(AvatarVersion.key, AvatarVersion.number)
+        .where(AvatarVersion.content_hash == content.content_hash)
+        .order_by(AvatarVersion.key, AvatarVersion.number)
+    )
+    return AvatarCheck(
+        ok=True,
+        content_hash=content.content_hash,
+        configuration=file_of(content.configuration),
+        known=[(key, number) for key, number in same],
+    )
+
+
+def _check_humanoid(db: Session, configuration: Configuration) -> None:
+    for one in unknown_humanoid(db, configuration):
+        problem = ConfigProblem(one.path, 0, 0, one.message, one.value, one.valid, one.remedy)
+        raise ConfigError([problem])
+
+
+def _summary(
+    key: str, title: str, versions: Sequence[AvatarVersion], used: dict[str, int]
+) -> AvatarSummary:
+    newest = versions[-1]
+    configuration = typed(newest)
+    return AvatarSummary(
+        key=key,
+        title=title,
+        newest=version_view(newest),
+        versions=len(versions),
+        axes=len(configuration.axes),
+        locked_axes=len(configuration.locked_axes),
+        sessions=sum(used.get(one, 0) for one in {row.content_hash for row in versions}),
+    )
+
+
+def _detail(db: Session, caller: Caller, avatar: Avatar, row: AvatarVersion) -> AvatarVersionDetail:
+    return AvatarVersionDetail(
+        **version_view(row).model_dump(),
+        key=avatar.key,
+        title=avatar.title,
+        configuration=file_of(typed(row)),
+        report=row.report,
+        sessions=_sessions_by_hash(db, caller, row.content_hash).get(row.content_hash, 0),
+    )
+
+
+def _sessions_by_hash(
+    db: Session, caller: Caller, content_hash: str | None = None
+) -> dict[str, int]:
+    """Sessions of the caller's studies."""
+    column = StudySession.avatar_configuration_hash
+    wanted = column.is_not(None) if content_hash is None else column == content_hash
+    rows = db.execute(
+        select(column, func.count())
+        .join(Study, Study.id == StudySession.study_id)
+        .where(wanted, is_theirs(caller))
+        .group_by(column)
+    )
+    return {str(found): count for found, count in rows}

@@ -1,0 +1,122 @@
+"""Joint maps, and captures on avatars, over HTTP."""
+
+from pathlib import Path
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Response
+from fastapi.responses import FileResponse
+from starlette.background import BackgroundTask
+from starlette.concurrency import run_in_threadpool
+
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.movement.captures.binary import BINARY, BYTES, MEDIA_TYPES, binary
+from app.features.movement.captures.downloads import attachment, retargeted_file
+from app.features.movement.captures.joint_maps import (
+    joint_map_view,
+    mapped_capture,
+    reset_map,
+    save_map,
+)
+from app.features.movement.captures.schemas import (
+    MAX_AVATARS,
+    Avatar,
+    ExportFormat,
+    JointMapView,
+    JointMapWish,
+)
+from app.features.movement.captures.tasks import retargeted_positions, verification_json
+from app.features.movement.captures.verification_schemas import VerificationView
+
+router = APIRouter(prefix="/captures", tags=["captures"])
+
+
+@router.get("/{capture_id}/joint-map")
+def get_joint_map(capture_id: str, db: Reading, _: SignedIn) -> JointMapView:
+    """The joint map of the capture's skeleton: what was saved, else what is proposed."""
+    return joint_map_view(db, capture_id)
+
+
+@router.put("/{capture_id}/joint-map")
+def put_joint_map(
+    capture_id: str, wish: JointMapWish, db: Writing, context: Context, caller: SignedIn
+) -> JointMapView:
+    """Save a joint map for every capture of this skeleton, as a new version."""
+    save_map(db, context, caller, capture_id, wish)
+    return joint_map_view(db, capture_id)
+
+
+@router.delete("/{capture_id}/joint-map")
+def delete_joint_map(
+    capture_id: str,
+    db: Writing,
+    context: Context,
+    caller: SignedIn,
+    version: Annotated[int, Query(ge=0, le=2**31 - 1)],
+) -> JointMapView:
+    """Go back to the proposal, as a new version."""
+    reset_map(db, context, caller, capture_id, version)
+    return joint_map_view(db, capture_id)
+
+
+@router.get("/{capture_id}/verification", response_model=VerificationView)
+async def get_verification(
+    capture_id: str,
+    context: Context,
+    _: SignedIn,
+    *,
+    avatars: Annotated[list[Avatar], Query(min_length=1, max_length=MAX_AVATARS)],
+    lock_feet: bool = False,
+) -> Response:
+    """Whether the movement keeps its characteristics on avatars of these statures."""
+    mapped = await run_in_threadpool(mapped_capture, context, capture_id)
+    wanted = tuple(dict.fromkeys(avatars))
+    return Response(
+        await context.captures.computed(verification_json, mapped, wanted, lock_feet=lock_feet),
+        media_type="application/json",
+    )
+
+
+@router.get(
+    "/{capture_id}/retargeted",
+    response_class=FileResponse,
+    responses={
+        200: {
+            "content": {MEDIA_TYPES["bvh"]: BINARY, MEDIA_TYPES["csv"]: BINARY},
+            "description": "The movement on the avatar, as a BVH or CSV file.",
+        }
+    },
+)
+async def get_retargeted(
+    capture_id: str,
+    context: Context,
+    _: SignedIn,
+    *,
+    avatar: Avatar,
+    format: ExportFormat = "bvh",  # noqa: A002 - the word of the address
+    lock_feet: bool = False,
+) -> FileResponse:
+    """The movement on an avatar, to keep."""
+    mapped = await run_in_threadpool(mapped_capture, context, capture_id)
+    path = await retargeted_file(context, mapped, avatar, format, lock_feet=lock_feet)
+    return FileResponse(
+        path,
+        media_type=MEDIA_TYPES[format],
+        headers=attachment(f"{Path(mapped.source.name).stem}-{avatar}.{format}"),
+        background=BackgroundTask(path.unlink),
+    )
+
+
+@router.get(
+    "/{capture_id}/retargeted-motion",
+    response_class=Response,
+    responses={200: binary("Positions of the avatar's joints, in the form of `motion`.")},
+)
+async def get_retargeted_motion(
+    capture_id: str, context: Context, _: SignedIn, *, avatar: Avatar, lock_feet: bool = False
+) -> Response:
+    """Positions over time of an avatar's joints, for a preview."""
+    mapped = await run_in_threadpool(mapped_capture, context, capture_id)
+    return Response(
+        await context.captures.computed(retargeted_positions, mapped, avatar, lock_feet=lock_feet),
+        media_type=BYTES,
+    )

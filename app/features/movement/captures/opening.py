@@ -1,0 +1,119 @@
+"""In the process for captures: files become movement, and the last one stays open.
+
+Runs under a memory limit, so that a file made to hurt fails here and nowhere else.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sqlalchemy import make_url
+from sqlalchemy.orm import Session
+
+from app.adapters.captures import Capture, CaptureError, Limits, Reading
+from app.adapters.captures.door import read_capture
+from app.database import make_engine
+from app.features.movement.captures.contents import plain_pieces
+from app.features.movement.captures.source import Cannot, Source
+from app.science.rig import BodyMotion, RigMotion
+
+if TYPE_CHECKING:
+    from app.science.fitting import Fitted
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """A capture with its skeleton: its own, a fitted one, or the reason why there is none."""
+
+    capture: Capture
+    skeleton: RigMotion | None
+    fitted: "Fitted | None"
+    no_skeleton: str | None
+
+    @property
+    def moving(self) -> RigMotion:
+        """The skeleton's movement; raises Cannot where there is none."""
+        if self.skeleton is None:
+            raise Cannot(f"the capture has no skeleton: {self.no_skeleton}")
+        return self.skeleton
+
+    @property
+    def start_s(self) -> float:
+        """How long after the recording's first frame the skeleton's movement begins."""
+        if self.fitted is None or isinstance(self.capture.motion, RigMotion):
+            return 0.0
+        motion, first = self.capture.motion, self.fitted.first_frame
+        if isinstance(motion, BodyMotion):
+            return float(motion.times_s[first] - motion.times_s[0])
+        return first / motion.rate_hz
+
+
+@dataclass(frozen=True)
+class Store:
+    """Where contents are: the address of the database, and the largest file to be read."""
+
+    url: str
+    max_bytes: int
+
+
+_last: dict[Source, Opened] = {}
+
+
+def open_stored(store: Store, source: Source) -> Opened:
+    """The capture of these contents in the database; raises Cannot."""
+    if source in _last:
+        return _last[source]
+    pooled = make_url(store.url).get_backend_name() != "sqlite"
+    engine = make_engine(store.url, pooled=pooled)
+    try:
+        with Session(engine) as db:
+            files = {one: _joined(plain_pieces(db, one)) for one in source.hashes}
+    finally:
+        engine.dispose()
+    if not all(files.values()):
+        raise Cannot("the capture was deleted meanwhile", source.name)
+    return _open(store.max_bytes, source, files)
+
+
+def open_files(max_bytes: int, source: Source, paths: Iterable[Path]) -> Opened:
+    """The capture of these files on disk, in the order of `source.hashes`; raises Cannot."""
+    files = {one: path.read_bytes() for one, path in zip(source.hashes, paths, strict=True)}
+    return _open(max_bytes, source, files)
+
+
+def _open(max_bytes: int, source: Source, files: Mapping[str, bytes]) -> Opened:
+    _last.clear()
+    companions = {}
+    if source.companion_name is not None and source.companion_hash is not None:
+        companions = {source.companion_name: files[source.companion_hash]}
+    reading = Reading(metres_per_unit=source.metres_per_unit, up=source.up, companions=companions)
+    try:
+        capture = read_capture(
+            files[source.hash], name=source.name, reading=reading, limits=Limits(bytes=max_bytes)
+        )
+    except CaptureError as error:
+        raise Cannot(error.reason, source.name, error.line) from None
+    opened = _with_skeleton(capture)
+    _last[source] = opened
+    return opened
+
+
+def _with_skeleton(capture: Capture) -> Opened:
+    if isinstance(capture.motion, RigMotion):
+        return Opened(capture, capture.motion, None, None)
+    # Slow to load, and the server itself only names what is to be done here.
+    from app.science.fitting import FitError, fit_skeleton
+
+    try:
+        fitted = fit_skeleton(capture.motion)
+    except FitError as error:
+        return Opened(capture, None, None, str(error))
+    return Opened(capture, fitted.motion, fitted, None)
+
+
+def _joined(pieces: Iterable[bytes]) -> bytes:
+    whole = bytearray()
+    for piece in pieces:
+        whole += piece
+    return bytes(whole)

@@ -1,0 +1,209 @@
+"""The captures of the lab: taking in, listing, changing, deleting."""
+
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from typing import Any
+
+from anyio.to_thread import run_sync
+from sqlalchemy import select
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.orm import Session
+
+from app.errors import InvalidInput, NotFound
+from app.features.access import Caller
+from app.features.audit.service import record
+from app.features.context import AppContext
+from app.features.movement.captures.contents import drop_unused, store
+from app.features.movement.captures.inspecting import (
+    Inspected,
+    compressed_beside,
+    inspect_stored,
+    inspect_upload,
+)
+from app.features.movement.captures.opening import Store
+from app.features.movement.captures.schemas import CaptureChange, ReadingChoice
+from app.features.movement.captures.source import Source, source_of
+from app.features.movement.captures.uploads import Uploaded, uploaded
+from app.models import CaptureRow
+from app.models.types import new_id
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What comes with an upload: the names of its files, and how to read them."""
+
+    name: str
+    companion: str | None
+    companion_bytes: int | None
+    reading: ReadingChoice
+
+
+def capture_by_id(db: Session, capture_id: str, *, lock: bool = False) -> CaptureRow:
+    """The capture; raises NotFound."""
+    row = db.get(CaptureRow, capture_id, with_for_update=lock)
+    if row is None:
+        raise NotFound("there is no such capture", value=capture_id)
+    return row
+
+
+def store_of(context: AppContext) -> Store:
+    """Where the process finds contents."""
+    settings = context.settings
+    return Store(settings.resolved_database_url, settings.max_capture_bytes)
+
+
+def source_of_capture(
+    context: AppContext, capture_id: str, reading: ReadingChoice | None = None
+) -> Source:
+    """What the process needs to know of a stored capture; raises NotFound."""
+    with context.database.reading() as db:
+        return source_of(capture_by_id(db, capture_id), reading)
+
+
+async def add_capture(
+    context: AppContext, caller: Caller, wish: Wish, body: AsyncIterator[bytes]
+) -> tuple[str, bool]:
+    """Read and keep an upload; the capture's id, and whether it is new.
+
+    Raises InvalidInput where it cannot be read: then nothing is kept.
+    """
+    if (wish.companion is None) != (wish.companion_bytes is None):
+        raise InvalidInput(
+            "a companion needs its name and its size",
+            value=wish.companion or wish.companion_bytes,
+            valid="both of companion and companion_bytes, or neither",
+        )
+    async with uploaded(body, wish.companion_bytes) as files:
+        source = _source(wish, files)
+        there = await run_sync(_id_of, context, source.identity)
+        if there is not None:
+            return there, False
+        paths = tuple(file.path for file in files)
+        most = context.settings.max_capture_bytes
+        inspected = await context.captures.run(inspect_upload, most, source, paths)
+        async with context.database.writing_async() as db:
+            return await run_sync(_keep, db, context, caller, wish, source, files, inspected)
+
+
+async def change_capture(
+    context: AppContext, caller: Caller, capture_id: str, wish: CaptureChange
+) -> None:
+    """Change the title, or read by other conventions; raises NotFound, InvalidInput."""
+    inspected: Inspected | None = None
+    if wish.reading is not None:
+        source = await run_sync(source_of_capture, context, capture_id, wish.reading)
+        inspected = await context.captures.run(inspect_stored, store_of(context), source)
+    async with context.database.writing_async() as db:
+        await run_sync(_change, db, context, caller, capture_id, wish, inspected)
+
+
+def remove_capture(db: Session, context: AppContext, caller: Caller, capture_id: str) -> None:
+    """Delete a capture; its contents go when nobody else uses them. Raises NotFound."""
+    row = capture_by_id(db, capture_id, lock=True)
+    hashes = [one for one in (row.content_hash, row.companion_hash) if one is not None]
+    db.delete(row)
+    db.flush()
+    for content_hash in sorted(set(hashes)):
+        drop_unused(db, content_hash)
+    _record(db, context, caller, row, action="capture.removed")
+
+
+def _source(wish: Wish, files: tuple[Uploaded, ...]) -> Source:
+    return Source(
+        name=wish.name,
+        hash=files[0].hash,
+        companion_name=wish.companion,
+        companion_hash=files[1].hash if len(files) > 1 else None,
+        metres_per_unit=wish.reading.metres_per_unit,
+        up=wish.reading.up,
+    )
+
+
+def _id_of(context: AppContext, identity: str) -> str | None:
+    with context.database.reading() as db:
+        return db.scalar(select(CaptureRow.id).where(CaptureRow.identity == identity))
+
+
+def _keep(
+    db: Session,
+    context: AppContext,
+    caller: Caller,
+    wish: Wish,
+    source: Source,
+    files: tuple[Uploaded, ...],
+    inspected: Inspected,
+) -> tuple[str, bool]:
+    for file in sorted(files, key=lambda one: one.hash):
+        store(db, file.hash, file.size, compressed_beside(file.path))
+    values = {
+        "id": new_id(),
+        "identity": source.identity,
+        "title": wish.name,
+        "file_name": wish.name,
+        "content_hash": source.hash,
+        "companion_name": source.companion_name,
+        "companion_hash": source.companion_hash,
+        "reading": wish.reading.model_dump(),
+        "by": caller.actor,
+        "at": context.clock.utc_now(),
+        **_columns(inspected),
+    }
+    insert = (postgresql if db.get_bind().dialect.name == "postgresql" else sqlite).insert
+    new = insert(CaptureRow).values(values).on_conflict_do_nothing().returning(CaptureRow.id)
+    made = db.execute(new).scalar()
+    row = db.scalars(select(CaptureRow).where(CaptureRow.identity == source.identity)).one()
+    if made is not None:
+        _record(db, context, caller, row, action="capture.added")
+    return row.id, made is not None
+
+
+def _change(
+    db: Session,
+    context: AppContext,
+    caller: Caller,
+    capture_id: str,
+    wish: CaptureChange,
+    inspected: Inspected | None,
+) -> None:
+    row = capture_by_id(db, capture_id, lock=True)
+    if wish.title is not None:
+        row.title = wish.title
+    if wish.reading is not None and inspected is not None:
+        row.reading = wish.reading.model_dump()
+        for name, value in _columns(inspected).items():
+            setattr(row, name, value)
+    db.flush()
+    _record(db, context, caller, row, action="capture.changed", reading=inspected is not None)
+
+
+def _columns(inspected: Inspected) -> dict[str, Any]:
+    return {
+        "format": inspected.format,
+        "kind": inspected.kind,
+        "frames": inspected.frames,
+        "rate_hz": inspected.rate_hz,
+        "duration_s": inspected.duration_s,
+        "tracks": inspected.tracks,
+        "fingerprint": inspected.fingerprint,
+        "summary": inspected.summary.model_dump(mode="json"),
+    }
+
+
+def _record(
+    db: Session,
+    context: AppContext,
+    caller: Caller,
+    row: CaptureRow,
+    *,
+    action: str,
+    **more: object,
+) -> None:
+    # By id: a name somebody gave a file may be a person's, and the trail cannot be erased.
+    record(
+        db,
+        actor=caller.actor,
+        action=action,
+        subject=f"capture:{row.id}",
+        details={"format": row.format, "content": row.content_hash[:12], **more},
+        now=context.clock.utc_now(),
+    )

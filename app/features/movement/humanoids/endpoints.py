@@ -1,0 +1,75 @@
+"""Humanoid models over HTTP."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi.responses import StreamingResponse
+from starlette.concurrency import run_in_threadpool
+
+from app.features.context import AppContext
+from app.features.dependencies import Context, Reading, SignedIn
+from app.features.movement.captures.binary import BINARY, BYTES, binary
+from app.features.movement.captures.downloads import attachment, sent
+from app.features.movement.captures.schemas import FileName
+from app.features.movement.humanoids.schemas import HumanoidPage, HumanoidView
+from app.features.movement.humanoids.service import humanoid_by_hash
+from app.features.movement.humanoids.taking_in import add_humanoid
+from app.features.movement.humanoids.views import humanoid_page, humanoid_view
+
+router = APIRouter(prefix="/humanoids", tags=["humanoids"])
+BODY = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}
+ContentHash = Annotated[str, Path(pattern=r"^[0-9a-f]{64}$")]
+
+
+@router.post(
+    "",
+    status_code=201,
+    openapi_extra=BODY,
+    responses={200: {"model": HumanoidView, "description": "The same content was here already."}},
+)
+async def post_humanoid(
+    request: Request, response: Response, context: Context, caller: SignedIn, name: FileName
+) -> HumanoidView:
+    """Store a humanoid model, which is the body of the request: GLB, glTF in one file, or VRM."""
+    content_hash, new = await add_humanoid(context, caller, name, request.stream())
+    if not new:
+        response.status_code = 200
+    return await run_in_threadpool(_view, context, content_hash)
+
+
+@router.get("")
+def get_humanoids(
+    db: Reading,
+    _: SignedIn,
+    limit: Annotated[int, Query(ge=1, le=1000)] = 200,
+    offset: Annotated[int, Query(ge=0, le=2**31 - 1)] = 0,
+) -> HumanoidPage:
+    """The humanoid models of the lab, the newest first."""
+    return humanoid_page(db, limit=limit, offset=offset)
+
+
+@router.get("/{content_hash}")
+def get_humanoid(content_hash: ContentHash, db: Reading, _: SignedIn) -> HumanoidView:
+    """One model: the body parts it has and lacks, its lengths and convex pieces."""
+    return humanoid_view(db, content_hash)
+
+
+@router.get(
+    "/{content_hash}/file",
+    response_class=StreamingResponse,
+    responses={200: binary("The file as it was uploaded.")},
+)
+def get_humanoid_file(
+    content_hash: ContentHash, context: Context, _: SignedIn
+) -> StreamingResponse:
+    """The model's file as it was uploaded."""
+    with context.database.reading() as db:
+        name = humanoid_by_hash(db, content_hash).file_name
+    return StreamingResponse(
+        sent(context, content_hash), media_type=BYTES, headers=attachment(name)
+    )
+
+
+def _view(context: AppContext, content_hash: str) -> HumanoidView:
+    with context.database.reading() as db:
+        return humanoid_view(db, content_hash)

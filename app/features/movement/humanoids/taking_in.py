@@ -1,0 +1,98 @@
+"""Taking in humanoid models: read in the process for captures, kept once by their content."""
+
+from collections.abc import AsyncIterator
+from dataclasses import asdict
+
+from anyio.to_thread import run_sync
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.orm import Session
+
+from app.errors import InvalidInput
+from app.features.access import Caller
+from app.features.audit.service import record
+from app.features.context import AppContext
+from app.features.movement.captures.contents import store
+from app.features.movement.captures.uploads import Uploaded, uploaded
+from app.features.movement.humanoids.service import is_known
+from app.features.movement.humanoids.tasks import Measured, Refused, compressed_beside, measure
+from app.models import HumanoidRow
+
+_REMEDY = (
+    "Correct the model in the program that made it, or export it again as glTF binary (.glb) or"
+    " VRM; docs/avatar-configuration.md tells what is read."
+)
+
+
+async def add_humanoid(
+    context: AppContext, caller: Caller, name: str, body: AsyncIterator[bytes]
+) -> tuple[str, bool]:
+    """Read and keep an upload; its content hash, and whether it is new.
+
+    Raises InvalidInput where it is no humanoid: then nothing is kept.
+    """
+    async with uploaded(body, None) as files:
+        file = files[0]
+        if await run_sync(_is_known, context, file.hash):
+            return file.hash, False
+        measured = await _measured(context, name, file)
+        async with context.database.writing_async() as db:
+            new = await run_sync(_keep, db, context, caller, name, file, measured)
+            return file.hash, new
+
+
+async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:
+    try:
+        most = context.settings.max_capture_bytes
+        found = await context.captures.run(measure, most, file.path)
+    except InvalidInput as error:
+        # Too much of something: the words of captures do not help here.
+        raise InvalidInput(
+            "the model cannot be read: it takes too much time or memory",
+            value=name,
+            remedy="Export it with fewer vertices and bones.",
+        ) from error
+    if isinstance(found, Refused):
+        place = f"{found.place}: " if found.place else ""
+        raise InvalidInput(
+            f"{place}{found.reason}",
+            value=name,
+            remedy=_REMEDY,
+            details=[{"path": found.place, "message": found.reason}],
+        )
+    return found
+
+
+def _is_known(context: AppContext, content_hash: str) -> bool:
+    with context.database.reading() as db:
+        return is_known(db, content_hash)
+
+
+def _keep(
+    db: Session,
+    context: AppContext,
+    caller: Caller,
+    name: str,
+    file: Uploaded,
+    measured: Measured,
+) -> bool:
+    store(db, file.hash, file.size, compressed_beside(file.path))
+    now = context.clock.utc_now()
+    insert = (postgresql if db.get_bind().dialect.name == "postgresql" else sqlite).insert
+    new = insert(HumanoidRow).values(
+        hash=file.hash,
+        file_name=name,
+        **asdict(measured),
+        by=caller.actor,
+        at=now,
+    )
+    if db.execute(new.on_conflict_do_nothing().returning(HumanoidRow.hash)).first() is None:
+        return False
+    record(
+        db,
+        actor=caller.actor,
+        action="humanoid.added",
+        subject=f"humanoid:{file.hash[:12]}",
+        details={"content": file.hash[:12]},
+        now=now,
+    )
+    return True

@@ -1,0 +1,62 @@
+"""In the process for captures: a model's file is read and measured, within its limits."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
+from app.features.movement.captures.contents import compress
+from app.protocol.humanoid import figure_json
+from app.science.avatar.figure import Figure, figure_of
+from app.science.avatar.humanoid import HumanoidError
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the table `humanoids` keeps of a file."""
+
+    figure: str
+    bones_by: str
+    stature_m: float
+    parts: int
+    pieces: int
+    left_fingers: int
+    right_fingers: int
+
+
+def measured(figure: Figure, bones_by: str) -> Measured:
+    """A figure as it is kept."""
+    return Measured(
+        figure=figure_json(figure),
+        bones_by=bones_by,
+        stature_m=figure.stature_m,
+        parts=len(figure.places_m),
+        pieces=len(figure.pieces),
+        left_fingers=figure.finger_count("Left"),
+        right_fingers=figure.finger_count("Right"),
+    )
+
+
+@dataclass(frozen=True)
+class Refused:
+    """Why a file is no model, and where in it."""
+
+    reason: str
+    place: str
+
+
+def measure(max_bytes: int, path: Path) -> Measured | Refused:
+    """Read a file that was just uploaded, and compress it beside itself."""
+    try:
+        read = read_humanoid(path.read_bytes(), Limits(bytes=max_bytes))
+        figure = figure_of(read.humanoid)
+    except HumanoidFileError as error:
+        return Refused(error.reason, error.place)
+    except HumanoidError as error:
+        return Refused(str(error), "")
+    compress(path, compressed_beside(path))
+    return measured(figure, read.bones_by)
+
+
+def compressed_beside(path: Path) -> Path:
+    """Where the compressed form of an uploaded file is put."""
+    return path.with_name(f"{path.name}.zst")

@@ -1,0 +1,47 @@
+"""Questions are answered in a process of their own, one at a time, within a time.
+
+It is not the one that fits models, so that a page is answered while a fit goes on. What was
+answered is kept for a while.
+"""
+
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import ClassVar
+
+from app.errors import InvalidInput
+from app.features.movement.walking.sources import Cannot
+from app.features.workers import Worker
+from app.features.working_line import Words, WorkingLine
+
+WITHIN_S = 120.0
+"""The longest that an answer may take; tables of hours of tracks take half a minute."""
+KEPT = 64
+
+
+def load() -> None:
+    """In the process: load what every question needs."""
+    import_module("app.features.movement.walking.telling")
+
+
+@dataclass
+class Bench(WorkingLine):
+    """Has one question answered after the other."""
+
+    words: ClassVar[Words] = Words(
+        busy="the server is busy with other questions about walking",
+        cannot="this cannot be answered",
+        ended="the process that computed it ended",
+        less="Take fewer walks, fewer draws or a shorter path.",
+        otherwise="The server's log says more.",
+        log="a question about walking could not be answered",
+    )
+    within_s: float = WITHIN_S
+    _worker: Worker = field(default_factory=lambda: Worker(load))
+
+    def _keeps_too_much(self) -> bool:
+        return len(self._kept) > KEPT
+
+    def _refusal(self, error: Exception) -> InvalidInput | None:
+        if not isinstance(error, Cannot):
+            return None
+        return InvalidInput(error.reason, remedy=error.remedy)

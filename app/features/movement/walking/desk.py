@@ -1,0 +1,178 @@
+"""Where models are fitted, one after the other, in a process of its own that can be stopped.
+
+Each fit has a folder beside the database for its finished maps. Stopping kills the process, and
+resuming goes on behind the last finished map, also after the server was started again. Only a model
+that is whole gets into the database.
+"""
+
+import hashlib
+import logging
+import shutil
+import threading
+from collections.abc import Callable
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import select, update
+from sqlalchemy.orm import Session
+
+from app.clock import Clock
+from app.database import Database
+from app.features.movement.captures.contents import compress, store
+from app.features.movement.walking.progress import FitFolder, Progress
+from app.features.movement.walking.sources import Cannot, FitOrder, Store
+from app.features.movement.walking.tasks import fit_model
+from app.features.workers import Worker
+from app.models import WalkingModelRow
+
+log = logging.getLogger(__name__)
+BROKE = "the process that fitted it ended: resume it, and if that fails too, look at the log"
+
+
+def new_worker() -> Worker:
+    """A process for one fit, which can be ended alone."""
+    return Worker()
+
+
+@dataclass(eq=False)
+class _Fit:
+    model_id: str
+    order: FitOrder
+    files: FitFolder
+    worker: Worker = field(default_factory=lambda: new_worker())
+    given_up: bool = False
+    begun: bool = False
+
+
+@dataclass(eq=False)
+class FittingDesk:
+    """Safe from any thread."""
+
+    folder: Path
+    url: str
+    database: Database
+    clock: Clock
+    _fits: dict[str, _Fit] = field(default_factory=dict)
+    _lock: threading.RLock = field(default_factory=threading.RLock)
+    _maker: ThreadPoolExecutor = field(
+        default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="fits")
+    )
+
+    def begin(self) -> None:
+        """Fits that the last run of the server left are stopped; their maps are kept."""
+        with self.database.reading() as db:
+            fitting = select(WalkingModelRow.id).where(WalkingModelRow.state == "fitting")
+            left = db.scalars(fitting).all()
+        if left:
+            with self.database.writing() as db:
+                db.execute(
+                    update(WalkingModelRow)
+                    .where(WalkingModelRow.id.in_(left))
+                    .values(state="stopped")
+                )
+
+    def end(self) -> None:
+        """Stop whatever is fitted; what is finished of it is kept."""
+        with self._lock:
+            fits = list(self._fits.values())
+        for fit in fits:
+            self.stop(fit.model_id)
+        self._maker.shutdown(wait=True, cancel_futures=True)
+
+    def order(self, model_id: str, order: FitOrder) -> None:
+        """Have a model fitted, or go on with it."""
+        files = FitFolder(self.folder / model_id)
+        files.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        fit = _Fit(model_id, order, files)
+        with self._lock:
+            self._fits[model_id] = fit
+        self._maker.submit(self._make, fit)
+
+    def stop(self, model_id: str) -> None:
+        """End the process of a fit, or take it out of the queue."""
+        with self._lock:
+            fit = self._fits.pop(model_id, None)
+            if fit is None:
+                return
+            fit.given_up = True
+        fit.worker.end()
+
+    def forget(self, model_id: str) -> None:
+        """Stop it and remove what is finished."""
+        self.stop(model_id)
+        shutil.rmtree(self.folder / model_id, ignore_errors=True)
+
+    def progress(self, model_id: str) -> Progress | None:
+        """How far a fit is, or was when it was stopped; None where nothing was begun."""
+        with self._lock:
+            fit = self._fits.get(model_id)
+            if fit is not None and not fit.begun:
+                kept = fit.files.progress()
+                return Progress("waiting", kept.maps, kept.maps_total)
+        files = FitFolder(self.folder / model_id)
+        told = files.progress() if files.folder.is_dir() else None
+        if fit is not None and told is not None and told.stage == "waiting":
+            return Progress("walks")  # its process is starting
+        return told
+
+    def _make(self, fit: _Fit) -> None:
+        with self._lock:
+            if fit.given_up:
+                return
+            fit.begun = True
+            future = fit.worker.submit(fit_model, Store(self.url), fit.order, fit.files.folder)
+        summary, trouble = _outcome(future)
+        fit.worker.end()
+        if fit.given_up:
+            return
+        try:
+            self._settle(fit, summary, trouble)
+        except Exception:
+            log.exception("a fitted model could not be stored")
+            self._settle(fit, None, "it could not be stored: see the server's log, then resume it")
+
+    def _settle(self, fit: _Fit, summary: dict[str, Any] | None, trouble: str | None) -> None:
+        keep = None if summary is None else _storing(fit.files.model)
+        with self.database.writing() as db:
+            # Contents first: storing one lets go of every row that the session knows.
+            content_hash = None if keep is None else keep(db)
+            row = db.get(WalkingModelRow, fit.model_id, with_for_update=True)
+            if row is None or row.state != "fitting" or fit.given_up:
+                db.rollback()
+                return
+            row.content_hash = content_hash
+            row.summary, row.trouble = summary, trouble
+            row.state = "failed" if summary is None else "ready"
+            row.ended_at = self.clock.utc_now()
+        with self._lock:
+            self._fits.pop(fit.model_id, None)
+        if summary is not None:
+            shutil.rmtree(fit.files.folder, ignore_errors=True)
+
+
+def _outcome(future: "Future[dict[str, Any]]") -> tuple[dict[str, Any] | None, str | None]:
+    try:
+        return future.result(), None
+    except Cannot as error:
+        return None, f"{error.reason}. {error.remedy}".strip()
+    except (BrokenProcessPool, CancelledError):
+        return None, BROKE
+    except Exception as error:
+        log.exception("a model could not be fitted")
+        return None, f"{type(error).__name__}: see the server's log"
+
+
+def _storing(file: Path) -> Callable[[Session], str]:
+    with file.open("rb") as stream:
+        content_hash: str = hashlib.file_digest(stream, "sha256").hexdigest()
+    compressed, size = file.with_name("compressed"), file.stat().st_size
+    compress(file, compressed)
+
+    def keep(db: Session) -> str:
+        store(db, content_hash, size, compressed)
+        return content_hash
+
+    return keep

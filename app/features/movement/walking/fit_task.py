@@ -1,0 +1,97 @@
+"""In a process of its own: fitting a model, map by map, so that it can be stopped and resumed.
+
+An order and the walks it names never change, so maps that were finished before belong to it.
+"""
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.adapters.walks.model_file import write_model
+from app.features.movement.walking.figures import model_told
+from app.features.movement.walking.progress import RECORD_BYTES, FitFolder
+from app.features.movement.walking.reading import planned_walks
+from app.features.movement.walking.sources import Cannot, FitOrder, Store
+from app.science.walking.database import PERSONS, WalkDatabase, database_of
+from app.science.walking.fitting import FitOptions, fitted
+from app.science.walking.following import SteeringFollower
+from app.science.walking.maps import MapMaker, maps_of
+from app.science.walking.model import LENGTH, STATURE, TURNING, PlannedWalk, WalkingError
+from app.science.walking.parameters import PAPER_PARAMETERS, ParameterGrid, regular_grid
+from app.science.walking.suitability import PAPER, TIME_AWARE, DeviationMap
+
+READINGS = {"chosen": None, "paper": PAPER, "time-aware": TIME_AWARE}
+Json = dict[str, Any]
+
+
+def fit(store: Store, order: FitOrder, folder: Path) -> Json:
+    """Fit a model into a folder; a `ModelSummary`. Raises Cannot."""
+    files = FitFolder(folder)
+    files.tell("walks", 0, 0)
+    entries = planned_walks(store, order.source, order.scene)
+    _check_people(entries)
+    follower = SteeringFollower()
+    maker = MapMaker(regular_grid(PAPER_PARAMETERS, order.steps), follower)
+    try:
+        database = _database(files, entries, maker)
+        files.tell("blending", len(entries), maker.grid.size)
+        options = FitOptions(order.seed, order.k, order.entries, READINGS[order.reading])
+        found = fitted(database, options)
+        digest = write_model(files.model, found, follower.rules)
+        return model_told(found, digest)
+    except WalkingError as error:
+        raise Cannot(str(error)) from None
+
+
+def _check_people(entries: list[PlannedWalk]) -> None:
+    people = sorted({entry.walk.subject for entry in entries})
+    if len(people) < PERSONS:
+        raise Cannot(
+            f"all {len(entries)} walks are of one person, {people[0]!r}",
+            f"How people differ is learnt from {PERSONS} or more: add walks of others, and name"
+            " who walks in each.",
+        )
+
+
+def _database(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> WalkDatabase:
+    grid = maker.grid
+    files.tell("maps", len(entries), grid.size)
+    made = _kept_maps(files, entries, maker)
+    with files.maps.open("ab") as file:
+        threads = max(1, (os.cpu_count() or 2) - 1)
+        for _, one in maps_of(entries, maker, done=range(len(made)), threads=threads):
+            record = np.stack([one.deviations.ravel(), one.arrival_s.ravel()])
+            file.write(record.astype("<f4").tobytes())
+            file.flush()
+            made.append(one)
+    usual = (LENGTH, TURNING, STATURE)
+    names = [name for name in usual if all(name in one.dependencies for one in entries)]
+    return database_of(entries, made, names)
+
+
+def _kept_maps(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> list[DeviationMap]:
+    """Maps that an earlier run finished; an unfinished record behind them is cut off."""
+    if not files.maps.exists():
+        return []
+    nodes = maker.grid.size
+    whole = min(files.maps.stat().st_size // (RECORD_BYTES * nodes), len(entries))
+    os.truncate(files.maps, whole * RECORD_BYTES * nodes)
+    records = np.fromfile(files.maps, dtype="<f4").reshape(whole, 2, nodes)
+    return list(_as_maps(records.astype(np.float64), entries, maker.grid, maker.metric.name))
+
+
+def _as_maps(
+    records: np.ndarray[Any, np.dtype[np.float64]],
+    entries: list[PlannedWalk],
+    grid: ParameterGrid,
+    metric: str,
+) -> Iterator[DeviationMap]:
+    for record, entry in zip(records, entries, strict=False):
+        shape = grid.shape
+        duration_s = entry.walk.duration_s
+        yield DeviationMap(
+            grid, metric, record[0].reshape(shape), record[1].reshape(shape), duration_s
+        )

@@ -1,0 +1,143 @@
+"""Models of walking and their answers over HTTP."""
+
+from itertools import pairwise
+from math import dist
+
+from fastapi import APIRouter
+from fastapi.responses import StreamingResponse
+from starlette.concurrency import run_in_threadpool
+
+from app.features.context import AppContext
+from app.features.dependencies import Context, Reading, SignedIn, write
+from app.features.movement.captures.binary import BYTES, binary
+from app.features.movement.captures.downloads import attachment, sent
+from app.features.movement.walking.model_schemas import (
+    ModelListed,
+    ModelView,
+    PathAsked,
+    PathView,
+    PredictionAsked,
+    PredictionView,
+    SliceAsked,
+    SliceView,
+)
+from app.features.movement.walking.scenes import scene_text
+from app.features.movement.walking.schemas import NewModel
+from app.features.movement.walking.service import (
+    begin_fit,
+    mark_resumed,
+    mark_stopped,
+    model_list,
+    model_view,
+    order_model,
+    ready_content,
+    remove_model,
+)
+from app.features.movement.walking.sources import Question, SliceQuestion
+from app.features.movement.walking.tasks import plan_way, predict_walk, slice_of
+from app.features.movement.walking.walk_sets import store_of
+
+router = APIRouter(prefix="/walking", tags=["walking"])
+
+
+@router.get("/models")
+def get_models(db: Reading, context: Context, _: SignedIn) -> list[ModelListed]:
+    """The models, the newest first; one that is fitted tells how far it is."""
+    return model_list(db, context)
+
+
+@router.post("/models", status_code=201)
+async def post_model(wish: NewModel, context: Context, caller: SignedIn) -> ModelView:
+    """Have a model fitted; the answer comes at once, and the model tells how far it is."""
+    model_id = await write(context, lambda db: order_model(db, context, caller, wish))
+    return await run_in_threadpool(begin_fit, context, model_id)
+
+
+@router.get("/models/{model_id}")
+def get_model(model_id: str, db: Reading, context: Context, _: SignedIn) -> ModelView:
+    """One model: what it was fitted on and how, and how well it guesses what it did not see."""
+    return model_view(db, context, model_id)
+
+
+@router.delete("/models/{model_id}", status_code=204)
+async def delete_model(model_id: str, context: Context, caller: SignedIn) -> None:
+    """Delete a model, or give up fitting it."""
+    await write(context, lambda db: remove_model(db, context, caller, model_id))
+    await run_in_threadpool(context.fits.forget, model_id)
+
+
+@router.post("/models/{model_id}/stop")
+async def stop_model(model_id: str, context: Context, caller: SignedIn) -> ModelView:
+    """Stop fitting; the maps that are finished are kept."""
+    await write(context, lambda db: mark_stopped(db, context, caller, model_id))
+    await run_in_threadpool(context.fits.stop, model_id)
+    return await run_in_threadpool(_view, context, model_id)
+
+
+@router.post("/models/{model_id}/resume")
+async def resume_model(model_id: str, context: Context, caller: SignedIn) -> ModelView:
+    """Go on where it was stopped, or try again."""
+    await write(context, lambda db: mark_resumed(db, context, caller, model_id))
+    return await run_in_threadpool(begin_fit, context, model_id)
+
+
+@router.get(
+    "/models/{model_id}/file",
+    response_class=StreamingResponse,
+    responses={200: binary("The model's file, as `reembody walk` reads it.")},
+)
+def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingResponse:
+    """The model as a file."""
+    with context.database.reading() as db:
+        content_hash, _title = ready_content(db, model_id)
+    headers = attachment(f"walking-{content_hash[:12]}.npz")
+    return StreamingResponse(sent(context, content_hash), media_type=BYTES, headers=headers)
+
+
+@router.post("/paths")
+async def post_path(wish: PathAsked, context: Context, _: SignedIn) -> PathView:
+    """The way between two points, or whether a drawn one is free of obstacles."""
+    question = await run_in_threadpool(_question, context, wish)
+    points = await context.walking.computed(plan_way, question)
+    length_m = sum(dist(a, b) for a, b in pairwise(points))
+    return PathView(points_m=points, length_m=length_m)
+
+
+@router.post("/models/{model_id}/prediction")
+async def post_prediction(
+    model_id: str, wish: PredictionAsked, context: Context, _: SignedIn
+) -> PredictionView:
+    """How long people take on a path: a distribution, and walks drawn from it."""
+    content_hash = await run_in_threadpool(_content, context, model_id)
+    question = await run_in_threadpool(_question, context, wish)
+    found = await context.walking.computed(predict_walk, store_of(context), content_hash, question)
+    return PredictionView.model_validate(found)
+
+
+@router.post("/models/{model_id}/slice")
+async def post_slice(model_id: str, wish: SliceAsked, context: Context, _: SignedIn) -> SliceView:
+    """How suitable steering parameters are for such a walk: a slice of the map."""
+    content_hash = await run_in_threadpool(_content, context, model_id)
+    question = SliceQuestion(tuple(sorted(wish.dependencies.items())), wish.held, wish.value)
+    found = await context.walking.computed(slice_of, store_of(context), content_hash, question)
+    return SliceView.model_validate(found)
+
+
+def _content(context: AppContext, model_id: str) -> str:
+    with context.database.reading() as db:
+        return ready_content(db, model_id)[0]
+
+
+def _view(context: AppContext, model_id: str) -> ModelView:
+    with context.database.reading() as db:
+        return model_view(db, context, model_id)
+
+
+def _question(context: AppContext, wish: PathAsked) -> Question:
+    with context.database.reading() as db:
+        scene = None if wish.scene is None else scene_text(db, wish.scene)
+    points = tuple((float(x), float(y)) for x, y in wish.points_m)
+    if not isinstance(wish, PredictionAsked):
+        return Question(scene, points, wish.planned, None, 1, 0, 0)
+    drawn = (wish.stature_m, wish.count, wish.seed, wish.shown)
+    return Question(scene, points, wish.planned, *drawn)

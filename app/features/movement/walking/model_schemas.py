@@ -1,0 +1,249 @@
+"""Fitted models and their answers as they travel to a page; SI throughout."""
+
+from datetime import datetime
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from app.features.movement.walking.schemas import (
+    CensusView,
+    FitChoice,
+    Kind,
+    Point,
+    Range,
+    SceneKey,
+    Seed,
+    Stage,
+    State,
+    Stature,
+)
+
+Coordinate = Annotated[float, Field(ge=-1000.0, le=1000.0, allow_inf_nan=False)]
+Value = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
+
+
+class ProgressView(BaseModel):
+    """How far a fit is; `maps_total` is 0 while it is not known."""
+
+    stage: Stage
+    maps: int
+    maps_total: int
+
+
+class ReadingView(BaseModel):
+    """How deviations are read as suitability."""
+
+    normalisation: Literal["max", "min-max"]
+    power: float
+    threshold: float
+    time_constant_s: float | None
+
+
+class ReadingScoreView(BaseModel):
+    """A reading and its mean error, CRPS in seconds, on people who were left out."""
+
+    reading: ReadingView
+    crps_s: float
+
+
+class ParameterView(BaseModel):
+    """A steering parameter, its bounds, and its values on the grid."""
+
+    name: str
+    unit: str
+    low: float
+    high: float
+    values: list[float]
+
+
+class LeftOutView(BaseModel):
+    """Deviations of suitability in percent of its range, over entries that were left out."""
+
+    mean_percent: float
+    sd_percent: float
+    entries: int
+
+
+class LeftOutFigures(BaseModel):
+    """Guessed by neighbours, between nodes by radial basis functions, and from other people."""
+
+    neighbours: LeftOutView
+    nodes: LeftOutView
+    people: LeftOutView
+
+
+class ModelSummary(BaseModel):
+    """What a fitted model is; `model_hash` is the one that its file names itself by."""
+
+    model_hash: str
+    walks: int
+    people: int
+    duration_s: Range
+    dependencies: dict[str, Range]
+    parameters: list[ParameterView]
+    reading: ReadingView
+    readings: list[ReadingScoreView]
+    entries: int
+    k: int
+    static_vector: list[float]
+    left_out: LeftOutFigures
+    census: CensusView
+
+
+class FittedOn(BaseModel):
+    """The set of walks as it was called when the fit was ordered; `id` is null once it is gone."""
+
+    id: str | None
+    title: str
+    origin: Literal["population", "captures", "tracks"]
+
+
+class SceneNamed(BaseModel):
+    """The scene in which the walks were planned, and the hash of its file then."""
+
+    key: str
+    title: str
+    content_hash: str
+
+
+class ModelListed(BaseModel):
+    """A model in a list; `progress` while it is fitted, `trouble` where that failed."""
+
+    id: str
+    title: str
+    kind: Kind
+    state: State
+    progress: ProgressView | None
+    trouble: str | None
+    walk_set: FittedOn
+    walks: int | None
+    people: int | None
+    by: str
+    at: datetime
+    ended_at: datetime | None
+
+
+class ModelView(ModelListed):
+    """A model; `content_hash` and `size_bytes` are of its file."""
+
+    scene: SceneNamed | None
+    options: FitChoice
+    content_hash: str | None
+    size_bytes: int | None
+    summary: ModelSummary | None
+
+
+class PathAsked(BaseModel):
+    """A path: drawn, or planned between its first and its last point.
+
+    `scene` null: the open floor. `points_m`: x to the right, y ahead.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    scene: SceneKey | None = None
+    points_m: Annotated[list[tuple[Coordinate, Coordinate]], Field(min_length=2, max_length=200)]
+    planned: bool = False
+
+    @model_validator(mode="after")
+    def _two_ends(self) -> "PathAsked":
+        if self.planned and self.scene is None:
+            raise ValueError("a way is planned in a scene: name one, or draw the path")
+        return self
+
+
+class PathView(BaseModel):
+    """A path and its length."""
+
+    points_m: list[Point]
+    length_m: float
+
+
+class PredictionAsked(PathAsked):
+    """How long do people take on this path?
+
+    `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, the same
+    seed gives the same; `shown` of them are followed along the path.
+    """
+
+    stature_m: Stature | None = None
+    count: Annotated[int, Field(ge=20, le=5000)] = 500
+    seed: Seed = 1
+    shown: Annotated[int, Field(ge=0, le=60)] = 20
+
+
+class Quantiles(BaseModel):
+    """Seconds: 50 % of the walks take from p25 to p75, 90 % from p05 to p95."""
+
+    p05: float
+    p25: float
+    p50: float
+    p75: float
+    p95: float
+
+
+class FixedView(BaseModel):
+    """What a model that does not draw says: one duration, of one steering vector."""
+
+    duration_s: float
+    vector: list[float]
+
+
+class SampledWalk(BaseModel):
+    """One walk that was drawn; `xy_m` from 0 in steps of `step_s`, the last point at arrival."""
+
+    vector: list[float]
+    duration_s: float
+    step_s: float
+    xy_m: list[Point]
+
+
+class PredictionView(BaseModel):
+    """The distribution of durations on a path by P_prob, beside P_stat and P_adapt.
+
+    `assumed`: dependencies that were not given. `outside`: those beyond the walks that the model
+    was fitted on, where it guesses. `lost`: draws that did not arrive and were drawn again.
+    `durations_s` are sorted. `kinds`: synthetic where made-up walkers are among the model's people.
+    """
+
+    points_m: list[Point]
+    dependencies: dict[str, float]
+    assumed: list[str]
+    outside: list[str]
+    durations_s: list[float]
+    quantiles_s: Quantiles
+    mean_s: float
+    lost: int
+    count: int
+    seed: int
+    kinds: list[Kind]
+    stat: FixedView
+    adapt: FixedView
+    walkers: list[SampledWalk]
+
+
+class SliceAsked(BaseModel):
+    """A slice of the map that answers for these dependencies, one parameter held."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    dependencies: Annotated[
+        dict[Annotated[str, Field(min_length=1, max_length=80)], Value], Field(max_length=20)
+    ]
+    held: Annotated[str, Field(min_length=1, max_length=80)]
+    value: Value
+
+
+class SliceView(BaseModel):
+    """Suitability over two parameters; rows of `suitability` are values of y.
+
+    `order`: of a vector's numbers. `largest`: of the whole map, so that slices share a scale.
+    """
+
+    x: ParameterView
+    y: ParameterView
+    held: ParameterView
+    order: list[str]
+    held_at: float
+    suitability: list[list[float]]
+    largest: float

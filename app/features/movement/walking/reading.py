@@ -1,0 +1,175 @@
+"""In a process of its own: walks out of stored tables, of captures, of made-up walkers."""
+
+import io
+from collections.abc import Sequence
+from dataclasses import replace
+
+from sqlalchemy import make_url
+from sqlalchemy.orm import Session
+
+from app.adapters.captures import CaptureError, Limits, Reading
+from app.adapters.captures.door import read_capture
+from app.adapters.walks.scene_file import load_scene
+from app.adapters.walks.track_table import TrackReading, read_tracks
+from app.database import make_engine
+from app.features.movement.captures.contents import plain_pieces
+from app.features.movement.walking.sources import (
+    LABORATORY,
+    Cannot,
+    CapturedWalk,
+    PopulationSource,
+    Store,
+    TrackSource,
+    WalkSource,
+)
+from app.protocol import ConfigError
+from app.science.rig import RigError
+from app.science.walking.capture_tracks import Followed, track_of_motion
+from app.science.walking.grid_planner import LazyThetaPlanner
+from app.science.walking.model import PlannedWalk, Track, Walk, WalkingError
+from app.science.walking.populations import POPULATIONS
+from app.science.walking.scene import Scene, open_scene
+from app.science.walking.segmentation import walks_of
+from app.science.walking.synthetic_walks import Sample, laboratory_scenes, synthetic_walks
+from app.science.walking.tracks import Walker
+from app.science.walking.walks import planned_walk
+
+MOST_WALKS = 5000
+
+
+def content_of(store: Store, content_hash: str) -> bytes:
+    """A stored file; raises Cannot where it is gone."""
+    pooled = make_url(store.url).get_backend_name() != "sqlite"
+    engine = make_engine(store.url, pooled=pooled)
+    try:
+        with Session(engine) as db:
+            data = b"".join(plain_pieces(db, content_hash))
+    finally:
+        engine.dispose()
+    if not data:
+        raise Cannot("the file is no longer stored", "Bring the walks in again.")
+    return data
+
+
+def scene_of(text: str) -> Scene:
+    """A scene by its text, which was checked when it came in; raises Cannot."""
+    try:
+        return load_scene(text)
+    except ConfigError as error:
+        raise Cannot(f"the scene cannot be read: {error}", "Mend the scene's file.") from None
+
+
+def planned_walks(store: Store, source: WalkSource, scene: str | None) -> list[PlannedWalk]:
+    """All walks of a source with the paths planned for them; raises Cannot."""
+    try:
+        if isinstance(source, PopulationSource):
+            return _made_up(source)
+        tracks = tracks_of(content_of(store, source.content_hash), source)
+        return planned(walks_in(tracks), None if scene is None else scene_of(scene))
+    except WalkingError as error:
+        raise Cannot(str(error)) from None
+
+
+def tracks_of(data: bytes, source: TrackSource) -> list[Track]:
+    """The tracks of a table; raises Cannot with the line."""
+    reading = TrackReading(
+        rate_hz=source.rate_hz, metres_per_unit=source.metres_per_unit, kind=source.kind
+    )
+    try:
+        found = read_tracks(data, name=source.name, reading=reading)
+        subjects, titles = dict(source.subjects), dict(source.titles)
+        statures_m = dict(source.statures_m)
+        tracks = []
+        for track in found:
+            subject = subjects.get(track.subject, track.subject)
+            title = titles.get(track.subject, track.source)
+            stature_m = statures_m.get(subject)
+            tracks.append(replace(track, subject=subject, source=title, stature_m=stature_m))
+        return tracks
+    except CaptureError as error:
+        at = f"line {error.line}: " if error.line else ""
+        raise Cannot(f"{source.name}, {at}{error.reason}", "Mend the table.") from None
+    except WalkingError as error:
+        raise Cannot(f"{source.name}: {error}", "Mend the table.") from None
+
+
+def walks_in(tracks: Sequence[Track]) -> list[Walk]:
+    """The walks of all tracks; raises Cannot where nobody walks, or there are too many."""
+    walks = [walk for track in tracks for walk in walks_of(track)]
+    if not walks:
+        raise Cannot(
+            f"nobody walks in {len(tracks)} track(s)",
+            "A walk leads 0.25 m or farther from where it begins, faster than 0.1 m/s: check the"
+            " unit of x and y, and the rate.",
+        )
+    _check_count(len(walks))
+    return walks
+
+
+def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
+    """Each walk with its path, on the open floor where there is no scene; raises Cannot."""
+    planner = None if scene is None else LazyThetaPlanner(scene)
+    entries = []
+    for number, walk in enumerate(walks, start=1):
+        used = planner or LazyThetaPlanner(open_scene(walk.start_m, walk.goal_m))
+        try:
+            entries.append(planned_walk(walk, used))
+        except WalkingError as error:
+            raise Cannot(
+                f"walk {number}, of {walk.subject} ({walk.source}): {error}",
+                "Choose the scene in which these walks were walked, or none.",
+            ) from None
+    return entries
+
+
+def table_of_captures(store: Store, captures: Sequence[tuple[str, CapturedWalk]]) -> bytes:
+    """Ways of captured people as one table of tracks, by names of tracks; raises Cannot."""
+    text = io.StringIO()
+    text.write("id,time_s,x_m,y_m\n")
+    for name, capture in captures:
+        track = _track_of_capture(store, name, capture)
+        rows = zip(track.times_s.tolist(), track.xy_m.tolist(), strict=True)
+        text.writelines(f"{name},{time!r},{x!r},{y!r}\n" for time, (x, y) in rows)
+    return text.getvalue().encode()
+
+
+def _track_of_capture(store: Store, name: str, capture: CapturedWalk) -> Track:
+    companions = {}
+    if capture.companion_name is not None and capture.companion_hash is not None:
+        companions = {capture.companion_name: content_of(store, capture.companion_hash)}
+    reading = Reading(metres_per_unit=capture.metres_per_unit, up=capture.up, companions=companions)
+    try:
+        found = read_capture(
+            content_of(store, capture.content_hash),
+            name=capture.name,
+            reading=reading,
+            limits=Limits(bytes=capture.max_bytes),
+        )
+        followed = Followed(body=capture.body)
+        return track_of_motion(found.motion, Walker(name, capture.name), followed)
+    except CaptureError as error:
+        raise Cannot(f"{capture.name}: {error.reason}") from None
+    except (WalkingError, RigError) as error:
+        raise Cannot(f"{capture.name}: {error}") from None
+
+
+def _made_up(source: PopulationSource) -> list[PlannedWalk]:
+    population = next((one for one in POPULATIONS if one.name == source.name), None)
+    if population is None:
+        known = ", ".join(one.name for one in POPULATIONS)
+        raise Cannot(f"there is no population {source.name!r}", f"There are {known}.")
+    scenes = laboratory_scenes() if source.scene == LABORATORY else [scene_of(source.scene)]
+    paths = sum(len(scene.paths) for scene in scenes)
+    if not paths:
+        raise Cannot("the scene names no paths to walk", "Add paths to its file.")
+    _check_count(paths * source.people * source.repetitions)
+    sample = Sample(source.people, source.repetitions, source.seed)
+    return list(synthetic_walks(population, scenes, sample))
+
+
+def _check_count(count: int) -> None:
+    if count > MOST_WALKS:
+        raise Cannot(
+            f"{count} walks are too many for one model",
+            f"Take up to {MOST_WALKS}: fewer people, or fewer repetitions.",
+        )

@@ -1,0 +1,146 @@
+"""Scenes: those that come with the product, and those that the lab brings in."""
+
+import hashlib
+from functools import lru_cache
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.adapters.walks.scene_file import load_scene, shipped_scenes
+from app.errors import Conflict, NotFound
+from app.features.access import Caller
+from app.features.audit.service import record
+from app.features.config_problems import invalid_config
+from app.features.context import AppContext
+from app.features.movement.walking.schemas import (
+    NewScene,
+    ObstacleView,
+    SceneListed,
+    ScenePathView,
+    SceneView,
+)
+from app.models import WalkingScene
+from app.protocol import ConfigError
+from app.science.walking.scene import Scene
+
+
+@lru_cache(maxsize=1)
+def _shipped() -> dict[str, tuple[str, Scene]]:
+    """Texts and scenes of those that come with the product, by key."""
+    texts = {key: file.read_text(encoding="utf-8") for key, file in shipped_scenes().items()}
+    return {key: (text, load_scene(text)) for key, text in texts.items()}
+
+
+def scene_list(db: Session) -> list[SceneListed]:
+    """All scenes: the lab's own by title, then those that come with the product."""
+    rows = db.execute(
+        select(WalkingScene.key, WalkingScene.title, WalkingScene.by, WalkingScene.at).order_by(
+            WalkingScene.title, WalkingScene.key
+        )
+    )
+    own = [
+        SceneListed(key=row.key, title=row.title, shipped=False, by=row.by, at=row.at)
+        for row in rows
+    ]
+    return own + [
+        SceneListed(key=key, title=scene.title or key, shipped=True, by=None, at=None)
+        for key, (_, scene) in _shipped().items()
+    ]
+
+
+def scene_text(db: Session, key: str) -> str:
+    """The text of a scene's file; raises NotFound."""
+    if key in _shipped():
+        return _shipped()[key][0]
+    return _row(db, key).text
+
+
+def scene_view(db: Session, key: str) -> SceneView:
+    """A scene in full; raises NotFound."""
+    if key in _shipped():
+        text, scene = _shipped()[key]
+        return _view(scene, text, None)
+    row = _row(db, key)
+    return _view(load_scene(row.text), row.text, row)
+
+
+def add_scene(db: Session, context: AppContext, caller: Caller, wish: NewScene) -> SceneView:
+    """Keep a scene file; raises InvalidConfig with every problem, Conflict for a key in use."""
+    try:
+        scene = load_scene(wish.text)
+    except ConfigError as error:
+        raise invalid_config("scene", error) from error
+    if scene.name in _shipped() or db.get(WalkingScene, scene.name) is not None:
+        raise Conflict(
+            f"there is a scene {scene.name!r} already",
+            value=scene.name,
+            remedy="Give the file another key, or delete the other scene.",
+        )
+    row = WalkingScene(
+        key=scene.name,
+        title=scene.title or scene.name,
+        text=wish.text,
+        content_hash=_hash(wish.text),
+        by=caller.actor,
+        at=context.clock.utc_now(),
+    )
+    db.add(row)
+    db.flush()
+    _record(db, context, caller, row, "walking.scene_added")
+    return _view(scene, wish.text, row)
+
+
+def remove_scene(db: Session, context: AppContext, caller: Caller, key: str) -> None:
+    """Delete a scene; models keep what they need of it. Raises NotFound, Conflict."""
+    if key in _shipped():
+        raise Conflict(
+            "this scene comes with the product and stays", value=key, remedy="Delete your own."
+        )
+    row = _row(db, key)
+    db.delete(row)
+    db.flush()
+    _record(db, context, caller, row, "walking.scene_removed")
+
+
+def _row(db: Session, key: str) -> WalkingScene:
+    row = db.get(WalkingScene, key)
+    if row is None:
+        raise NotFound("there is no such scene", value=key, remedy="Choose one that is listed.")
+    return row
+
+
+def _view(scene: Scene, text: str, row: WalkingScene | None) -> SceneView:
+    return SceneView(
+        key=scene.name,
+        title=scene.title or scene.name,
+        shipped=row is None,
+        by=None if row is None else row.by,
+        at=None if row is None else row.at,
+        about=scene.about,
+        content_hash=_hash(text),
+        bounds_m=scene.bounds_m,
+        clearance_m=scene.clearance_m,
+        obstacles=[
+            ObstacleView(name=one.name, corners_m=[(float(x), float(y)) for x, y in one.corners_m])
+            for one in scene.obstacles
+        ],
+        places=dict(scene.places),
+        paths=[ScenePathView(name=p.name, start=p.start, goal=p.goal) for p in scene.paths],
+    )
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _record(
+    db: Session, context: AppContext, caller: Caller, row: WalkingScene, action: str
+) -> None:
+    record(
+        db,
+        actor=caller.actor,
+        action=action,
+        subject=f"walking_scene:{row.key}",
+        details={"content": row.content_hash[:12]},
+        now=context.clock.utc_now(),
+    )

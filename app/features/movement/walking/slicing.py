@@ -1,0 +1,57 @@
+"""In a process of its own: slices of the map that answers a question."""
+
+from typing import Any
+
+import numpy as np
+
+from app.features.movement.walking.sources import Cannot, SliceQuestion, Store
+from app.features.movement.walking.telling import opened
+from app.science.walking.fitting import FittedWalking
+from app.science.walking.interpolation import multilinear
+from app.science.walking.model import WalkingError
+from app.science.walking.sampling import density_of
+
+Json = dict[str, Any]
+
+
+def sliced(store: Store, content_hash: str, question: SliceQuestion) -> Json:
+    """One slice of the map that answers, a `SliceView`; raises Cannot."""
+    fit, _ = opened(store, content_hash)
+    grid = fit.space.grid
+    names = [one.name for one in grid.parameters]
+    if question.held not in names:
+        raise Cannot(f"there is no parameter {question.held!r}", f"There are {', '.join(names)}.")
+    held = names.index(question.held)
+    values = grid.values[held]
+    at = float(np.clip(question.value, values[0], values[-1]))
+    across, along = (axis for axis in range(len(names)) if axis != held)
+    try:
+        vector = fit.space.scaling.vector(dict(question.dependencies))
+        blended = density_of(fit.space, fit.space.scaling.z(vector)).grid_values
+        mesh = np.meshgrid(grid.values[across], grid.values[along], indexing="ij")
+        points = np.empty((mesh[0].size, len(names)))
+        points[:, across], points[:, along], points[:, held] = mesh[0].ravel(), mesh[1].ravel(), at
+        found = multilinear(grid, blended, points).reshape(mesh[0].shape)
+    except WalkingError as error:
+        raise Cannot(str(error)) from None
+    return {
+        "x": _axis(fit, across),
+        "y": _axis(fit, along),
+        "held": _axis(fit, held),
+        "order": names,
+        "held_at": at,
+        # Rows are values of y, as heat maps are drawn.
+        "suitability": found.T.round(5).tolist(),
+        "largest": float(blended.max()),
+    }
+
+
+def _axis(fit: FittedWalking, at: int) -> Json:
+    parameter = fit.space.grid.parameters[at]
+    return {
+        "name": parameter.name,
+        "unit": parameter.unit,
+        "low": parameter.low,
+        "high": parameter.high,
+        "values": list(fit.space.grid.values[at]),
+    }

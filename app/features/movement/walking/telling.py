@@ -1,0 +1,185 @@
+"""In a process of its own: what a model answers about a path.
+
+The last models that were asked stay open, since making the blending space of one takes a second.
+"""
+
+import tempfile
+from functools import lru_cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.adapters.walks.model_file import read_model
+from app.features.movement.walking.reading import content_of, scene_of
+from app.features.movement.walking.sources import Cannot, Question, Store
+from app.science.walking.fitting import FittedWalking
+from app.science.walking.following import SteeringFollower
+from app.science.walking.grid_planner import LazyThetaPlanner
+from app.science.walking.model import STATURE, PlannedPath, WalkingError
+from app.science.walking.outlines import outlines_of
+from app.science.walking.prediction import Prediction, Predictor
+from app.science.walking.scene import Scene
+from app.science.walking.walks import dependencies_of
+
+Json = dict[str, Any]
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+SHOWN_STEP_S = 0.05
+"""Between two points of a path that is shown."""
+MOST_SHOWN = 400
+"""Points of one path that is shown; slower walkers get wider steps."""
+
+
+@lru_cache(maxsize=2)
+def opened(store: Store, content_hash: str) -> tuple[FittedWalking, SteeringFollower]:
+    """A stored model, and who walks by its rules; raises Cannot."""
+    with tempfile.TemporaryDirectory(prefix="reembody-walking-") as folder:
+        path = Path(folder) / "model.npz"
+        path.write_bytes(content_of(store, content_hash))
+        try:
+            fit, rules, _ = read_model(path)
+        except WalkingError as error:
+            raise Cannot(str(error), "Fit the model again.") from None
+    return fit, SteeringFollower(rules)
+
+
+@lru_cache(maxsize=4)
+def _planner(text: str) -> LazyThetaPlanner:
+    return LazyThetaPlanner(scene_of(text))
+
+
+def way_asked(question: Question) -> PlannedPath:
+    """The path of a question: as it was drawn, or the shortest way between its ends.
+
+    Raises:
+        Cannot: a point outside the scene or inside an obstacle, a path through one, no way.
+    """
+    points = question.points_m
+    try:
+        if question.scene is None:
+            return PlannedPath(np.array(points, dtype=np.float64))
+        planner = _planner(question.scene)
+        if question.planned:
+            return planner.plan(points[0], points[-1])
+        _check_drawn(planner.scene, points)
+        return PlannedPath(np.array(points, dtype=np.float64))
+    except WalkingError as error:
+        raise Cannot(str(error), "Move the path's points.") from None
+
+
+def _check_drawn(scene: Scene, points: tuple[tuple[float, float], ...]) -> None:
+    from app.science.walking.planner_kernels import sees
+
+    for number, point in enumerate(points, start=1):
+        scene.check_point(point, f"Point {number} of the path")
+    for number, (a, b) in enumerate(pairwise(points), start=1):
+        for obstacle in scene.obstacles:
+            if not sees(*a, *b, outlines_of([obstacle.corners_m])):
+                raise Cannot(
+                    f"between its points {number} and {number + 1} the path leads through obstacle"
+                    f" {obstacle.name!r}",
+                    "Add a point that leads around it, or let the way be planned.",
+                )
+
+
+def predicted(store: Store, content_hash: str, question: Question) -> Json:
+    """How long people take on a path, a `PredictionView`; raises Cannot."""
+    fit, follower = opened(store, content_hash)
+    path = way_asked(question)
+    try:
+        dependencies, assumed = _dependencies(fit, path, question.stature_m)
+        rng = np.random.default_rng(question.seed)
+        prob = Predictor(fit.prob, follower)
+        drawn = prob.predict(path, dependencies, question.count, rng)
+        fixed = {
+            model.name: _fixed(Predictor(model, follower), path, dependencies, rng)
+            for model in (fit.stat, fit.adapt)
+        }
+        shown = drawn.vectors[: question.shown]
+        walkers = _walkers(prob, path, shown, drawn.durations_s[: question.shown])
+    except WalkingError as error:
+        raise Cannot(str(error), "Draw a path that is more like the model's walks.") from None
+    return {
+        "points_m": path.points_m.tolist(),
+        "dependencies": dependencies,
+        "assumed": assumed,
+        "outside": _outside(fit, dependencies),
+        "durations_s": np.sort(drawn.durations_s).round(4).tolist(),
+        "quantiles_s": dict(
+            zip(
+                ("p05", "p25", "p50", "p75", "p95"),
+                np.quantile(drawn.durations_s, QUANTILES).tolist(),
+                strict=True,
+            )
+        ),
+        "mean_s": float(drawn.durations_s.mean()),
+        "lost": drawn.lost,
+        "count": question.count,
+        "seed": question.seed,
+        "kinds": sorted(set(fit.database.kinds)),
+        "walkers": walkers,
+        **fixed,
+    }
+
+
+def _dependencies(
+    fit: FittedWalking, path: PlannedPath, stature_m: float | None
+) -> tuple[dict[str, float], list[str]]:
+    """What the walk depends on, and which of it was not said: the mean of the model's people."""
+    base, assumed = fit.database, []
+    if stature_m is None and STATURE in base.names:
+        stature_m = float(base.vectors[:, base.names.index(STATURE)].mean())
+        assumed.append(STATURE)
+    found = dependencies_of(path, stature_m)
+    return {name: found[name] for name in base.names}, assumed
+
+
+def _outside(fit: FittedWalking, dependencies: dict[str, float]) -> list[str]:
+    """Dependencies beyond those of all walks that the model was fitted on."""
+    base = fit.database
+    return [
+        name
+        for at, name in enumerate(base.names)
+        if not base.vectors[:, at].min() - 1e-9
+        <= dependencies[name]
+        <= base.vectors[:, at].max() + 1e-9
+    ]
+
+
+def _fixed(
+    predictor: Predictor,
+    path: PlannedPath,
+    dependencies: dict[str, float],
+    rng: np.random.Generator,
+) -> Json:
+    found: Prediction = predictor.predict(path, dependencies, 1, rng)
+    return {"duration_s": float(found.durations_s[0]), "vector": found.vectors[0].tolist()}
+
+
+def _walkers(
+    predictor: Predictor,
+    path: PlannedPath,
+    vectors: np.ndarray[Any, np.dtype[np.float64]],
+    durations_s: np.ndarray[Any, np.dtype[np.float64]],
+) -> list[Json]:
+    """Walkers along the path, each up to its arrival, at steps that a page can draw."""
+    if not len(vectors):
+        return []
+    dt_s = predictor.follower.dt_s
+    samples = int(np.ceil(durations_s.max() / dt_s)) + 1
+    places = predictor.walked(path, vectors, samples).xy_m
+    found = []
+    for vector, duration_s, xy_m in zip(vectors, durations_s, places, strict=True):
+        last = int(np.ceil(duration_s / dt_s))
+        every = max(round(SHOWN_STEP_S / dt_s), -(-last // MOST_SHOWN))
+        kept = np.unique(np.append(np.arange(0, last, every), last))
+        found.append(
+            {
+                "vector": vector.tolist(),
+                "duration_s": float(duration_s),
+                "step_s": every * dt_s,
+                "xy_m": xy_m[kept].round(3).tolist(),
+            }
+        )
+    return found

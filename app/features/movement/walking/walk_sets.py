@@ -1,0 +1,185 @@
+"""Sets of walks: tables that are brought in, ways cut from captures, made-up walkers."""
+
+import hashlib
+from collections.abc import AsyncIterator, Callable
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from anyio.to_thread import run_sync
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import Conflict, NotFound
+from app.features.access import Caller
+from app.features.audit.service import record
+from app.features.context import AppContext
+from app.features.movement.captures.contents import compress, drop_unused, store
+from app.features.movement.captures.uploads import uploaded
+from app.features.movement.walking.schemas import (
+    CapturesOrigin,
+    Kind,
+    NewWalkSet,
+    PopulationOrigin,
+    TracksOrigin,
+    WalkSetView,
+    WalksSummary,
+)
+from app.features.movement.walking.set_sources import (
+    captured_walks,
+    captures_source,
+    population_source,
+    tracks_source,
+)
+from app.features.movement.walking.sources import (
+    Store,
+)
+from app.features.movement.walking.tasks import (
+    captured_table,
+    inspected_population,
+    inspected_tracks,
+)
+from app.models import WalkingModelRow, WalkSetRow
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of tracks that is being brought in."""
+
+    title: str
+    kind: Kind
+    origin: TracksOrigin
+
+
+def store_of(context: AppContext) -> Store:
+    """Where the processes find contents."""
+    return Store(context.settings.resolved_database_url)
+
+
+def walk_set_by_id(db: Session, set_id: str, *, lock: bool = False) -> WalkSetRow:
+    """The set; raises NotFound."""
+    row = db.get(WalkSetRow, set_id, with_for_update=lock)
+    if row is None:
+        raise NotFound("there is no such set of walks", value=set_id)
+    return row
+
+
+def walk_set_view(row: WalkSetRow) -> WalkSetView:
+    """A set as a page sees it."""
+    return WalkSetView.model_validate(row, from_attributes=True)
+
+
+def walk_set_list(db: Session) -> list[WalkSetView]:
+    """All sets, the newest first."""
+    rows = db.scalars(select(WalkSetRow).order_by(WalkSetRow.at.desc(), WalkSetRow.id))
+    return [walk_set_view(row) for row in rows]
+
+
+async def add_table(
+    context: AppContext, caller: Caller, wish: Table, body: AsyncIterator[bytes]
+) -> WalkSetView:
+    """Keep a table of tracks; raises InvalidInput with the line where it cannot be read."""
+    async with uploaded(body, None) as (file,):
+        source = tracks_source(wish.origin, wish.kind, file.hash)
+        found = await context.walking.run(inspected_tracks, source, file.path)
+        row = _row(context, caller, wish.title, wish.kind, wish.origin, file.hash)
+        row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
+        return await _kept(context, caller, row, _storing(file.hash, file.path))
+
+
+async def add_walk_set(context: AppContext, caller: Caller, wish: NewWalkSet) -> WalkSetView:
+    """Make walkers up, or cut walks from captures; raises InvalidInput, NotFound."""
+    if isinstance(wish.origin, CapturesOrigin):
+        return await _add_captured(context, caller, wish.title, wish.origin)
+    source = await run_sync(population_source, context, wish.origin)
+    found = await context.walking.run(inspected_population, source)
+    row = _row(context, caller, wish.title, "synthetic", wish.origin, None)
+    row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
+    return await _kept(context, caller, row, lambda _: None)
+
+
+def remove_walk_set(db: Session, context: AppContext, caller: Caller, set_id: str) -> None:
+    """Delete a set; models that were fitted on it stay. Raises NotFound, Conflict."""
+    row = walk_set_by_id(db, set_id, lock=True)
+    users = list(db.scalars(select(WalkingModelRow).where(WalkingModelRow.walk_set_id == set_id)))
+    unfinished = [model.title for model in users if model.state != "ready"]
+    if unfinished:
+        raise Conflict(
+            "a model that is not finished needs these walks",
+            value=unfinished,
+            remedy="Let it finish, or delete it first.",
+        )
+    for model in users:
+        model.walk_set_id = None
+    db.flush()
+    db.delete(row)
+    db.flush()
+    if row.content_hash is not None:
+        drop_unused(db, row.content_hash)
+    _record(db, context, caller, row, "walking.walks_removed")
+
+
+async def _add_captured(
+    context: AppContext, caller: Caller, title: str, origin: CapturesOrigin
+) -> WalkSetView:
+    captures = await run_sync(captured_walks, context, origin)
+    found = await context.walking.run(
+        captured_table, store_of(context), captures, captures_source(origin, "")
+    )
+    content_hash = hashlib.sha256(found.table).hexdigest()
+    row = _row(context, caller, title, "human", origin, content_hash)
+    row.summary = WalksSummary.model_validate(found.summary).model_dump(mode="json")
+    with TemporaryDirectory(prefix="reembody-walks-") as folder:
+        file = Path(folder) / "tracks.csv"
+        await run_sync(file.write_bytes, found.table)
+        return await _kept(context, caller, row, _storing(content_hash, file))
+
+
+def _storing(content_hash: str, file: Path) -> Callable[[Session], None]:
+    compressed = file.with_name("compressed")
+    compress(file, compressed)
+    size = file.stat().st_size
+    return lambda db: store(db, content_hash, size, compressed)
+
+
+def _row(
+    context: AppContext,
+    caller: Caller,
+    title: str,
+    kind: Kind,
+    origin: PopulationOrigin | CapturesOrigin | TracksOrigin,
+    content_hash: str | None,
+) -> WalkSetRow:
+    return WalkSetRow(
+        title=title,
+        kind=kind,
+        origin=origin.model_dump(mode="json"),
+        content_hash=content_hash,
+        by=caller.actor,
+        at=context.clock.utc_now(),
+    )
+
+
+async def _kept(
+    context: AppContext, caller: Caller, row: WalkSetRow, storing: Callable[[Session], None]
+) -> WalkSetView:
+    def keep(db: Session) -> WalkSetView:
+        storing(db)
+        db.add(row)
+        db.flush()
+        _record(db, context, caller, row, "walking.walks_added")
+        return walk_set_view(row)
+
+    async with context.database.writing_async() as db:
+        return await run_sync(keep, db)
+
+
+def _record(db: Session, context: AppContext, caller: Caller, row: WalkSetRow, act: str) -> None:
+    record(
+        db,
+        actor=caller.actor,
+        action=act,
+        subject=f"walk_set:{row.id}",
+        details={"kind": row.kind, "origin": row.origin["kind"], "walks": row.summary["walks"]},
+        now=context.clock.utc_now(),
+    )

@@ -1,0 +1,244 @@
+"""Avatars' configurations over HTTP: names, versions, files, and who may change them."""
+
+import json
+
+from app.clock import Clock
+from app.features.movement.avatar.schemas import NewAvatarVersion
+from app.features.movement.avatar.service import (
+    add_avatar_version,
+    add_shipped_avatar,
+    configuration_by_hash,
+)
+from app.models import AvatarVersion, StudySession
+from app.protocol.avatar import avatar_text, file_of, load_avatar, loaded
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.defaults import default_configuration
+from app.science.avatar.editing import lock, with_global
+from tests.api.people import sign_in
+from tests.features.lab import Json, Lab, error, ok
+
+SHIPPED = default_configuration()
+SOFT = with_global(SHIPPED, group="head", kp=5.0)
+CAST = lock(SHIPPED, "left_fingers")
+PATH = "/api/avatars"
+
+
+def as_json(configuration: Configuration) -> Json:
+    """The configuration as it travels."""
+    body: Json = file_of(configuration).model_dump(mode="json")
+    return body
+
+
+def new(lab: Lab, key: str, configuration: Configuration = SOFT) -> Json:
+    """Save a configuration under a key."""
+    body = {
+        "key": key,
+        "title": "Soft neck",
+        "origin": "by_hand",
+        "note": "for the pilot",
+        "configuration": as_json(configuration),
+    }
+    view: Json = ok(lab.operator.post(PATH, json=body))
+    return view
+
+
+def save(
+    lab: Lab, key: str, configuration: Configuration, based_on: int, origin: str = "by_hand"
+) -> Json:
+    """Append a version."""
+    view: Json = ok(
+        lab.operator.post(
+            f"{PATH}/{key}/versions",
+            json={
+                "based_on": based_on,
+                "origin": origin,
+                "configuration": as_json(configuration),
+            },
+        )
+    )
+    return view
+
+
+def test_a_lab_begins_with_the_standard_avatar(fresh_lab: Lab) -> None:
+    """It drives the whole body, and nobody has used it yet."""
+    (listed,) = ok(fresh_lab.operator.get(PATH))
+    assert (listed["key"], listed["versions"], listed["axes"]) == ("standard", 1, 91)
+    assert (listed["newest"]["origin"], listed["newest"]["by"]) == ("shipped", "system")
+    assert listed["sessions"] == 0
+    assert listed["newest"]["content_hash"] == loaded(SHIPPED).content_hash
+    view = ok(fresh_lab.operator.get(f"{PATH}/standard"))
+    assert view["newest"]["configuration"] == as_json(SHIPPED)
+
+
+def test_versions_are_appended_and_stay(fresh_lab: Lab) -> None:
+    """With who, when, how and why; the old content can still be had."""
+    first = new(fresh_lab, "soft")
+    second = save(fresh_lab, "soft", CAST, 1, "tuned")
+    assert [one["number"] for one in second["versions"]] == [2, 1]
+    assert [one["origin"] for one in second["versions"]] == ["tuned", "by_hand"]
+    assert second["newest"]["configuration"] == as_json(CAST)
+    old = ok(fresh_lab.operator.get(f"{PATH}/soft/versions/1"))
+    assert old == {**first["newest"], "key": "soft", "title": "Soft neck"}
+    assert (old["note"], old["by"], old["report"]) == ("for the pilot", "account:admin", None)
+    back = save(fresh_lab, "soft", SOFT, 2)
+    assert back["newest"]["number"] == 3
+    assert back["newest"]["content_hash"] == old["content_hash"]
+    listed = {one["key"]: one for one in ok(fresh_lab.operator.get(PATH))}
+    assert listed["soft"]["versions"] == 3
+    trail = ok(fresh_lab.operator.get("/api/audit?action=avatar."))["entries"]
+    assert [(one["action"], one["subject"]) for one in trail] == [
+        ("avatar.version", "avatar:soft"),
+        ("avatar.version", "avatar:soft"),
+        ("avatar.created", "avatar:soft"),
+    ]
+    assert trail[1]["details"]["origin"] == "tuned"
+
+
+def test_the_same_content_is_not_saved_twice_in_a_row(fresh_lab: Lab) -> None:
+    """Also by somebody who saw an older version: what they want is there."""
+    new(fresh_lab, "soft")
+    save(fresh_lab, "soft", CAST, 1)
+    again = save(fresh_lab, "soft", CAST, 1)
+    assert len(again["versions"]) == 2
+
+
+def test_two_people_do_not_overwrite_each_other(fresh_lab: Lab) -> None:
+    """Whoever decided on a version that has passed is told the newest one."""
+    new(fresh_lab, "soft")
+    save(fresh_lab, "soft", CAST, 1)
+    body = {"based_on": 1, "origin": "by_hand", "configuration": as_json(SHIPPED)}
+    refusal = error(fresh_lab.operator.post(f"{PATH}/soft/versions", json=body), 409, "stale")
+    assert (refusal["value"], refusal["valid"]) == (1, 2)
+
+
+def test_a_key_is_given_once(fresh_lab: Lab) -> None:
+    """The other avatar is not touched."""
+    new(fresh_lab, "soft")
+    body = {"key": "soft", "title": "Other", "origin": "loaded", "configuration": as_json(CAST)}
+    error(fresh_lab.operator.post(PATH, json=body), 409, "conflict")
+    assert ok(fresh_lab.operator.get(f"{PATH}/soft"))["title"] == "Soft neck"
+
+
+def test_what_is_not_there_is_named(fresh_lab: Lab) -> None:
+    """With what there is."""
+    refusal = error(fresh_lab.operator.get(f"{PATH}/nobody"), 404, "not_found")
+    assert refusal["valid"] == ["standard"]
+    error(fresh_lab.operator.get(f"{PATH}/standard/versions/9"), 404, "not_found")
+
+
+def test_a_contradiction_is_refused_with_its_place(fresh_lab: Lab) -> None:
+    """What no single key can know: crossed limits, a missing axis. Nothing is saved."""
+    wrong = as_json(SHIPPED)
+    wrong["axes"]["HeadX"] |= {"low_deg": 20.0, "high_deg": 10.0}
+    body = {"key": "wrong", "title": "Wrong", "origin": "by_hand", "configuration": wrong}
+    refusal = error(fresh_lab.operator.post(PATH, json=body), 422, "invalid_config")
+    (detail,) = refusal["details"]
+    assert detail["path"] == "configuration.axes.HeadX.low_deg"
+    assert detail["valid"] == "at most 10"
+    del wrong["axes"]["HeadX"]
+    refusal = error(fresh_lab.operator.post(PATH, json=body), 422, "invalid_config")
+    assert refusal["details"][0]["path"] == "configuration.axes.HeadX"
+    wrong["axes"]["HeadX"] = {"kp": 3.0}
+    refusal = error(fresh_lab.operator.post(PATH, json=body), 422, "invalid_input")
+    assert "configuration.axes.HeadX.kp" in {one["path"] for one in refusal["details"]}
+    error(fresh_lab.operator.get(f"{PATH}/wrong"), 404, "not_found")
+
+
+def test_a_file_goes_out_and_comes_in_again(fresh_lab: Lab) -> None:
+    """The same content under the same hash, and known by its places."""
+    new(fresh_lab, "soft")
+    answer = fresh_lab.operator.get(f"{PATH}/soft/versions/1/file")
+    assert answer.headers["content-disposition"] == 'attachment; filename="soft-v1.json"'
+    assert answer.headers["content-type"] == "application/json"
+    assert answer.text == avatar_text(SOFT)
+    assert load_avatar(answer.text).configuration == SOFT
+    told = ok(fresh_lab.operator.post(f"{PATH}/check", json={"text": answer.text}))
+    assert (told["ok"], told["problems"], told["known"]) == (True, [], [["soft", 1]])
+    assert told["configuration"] == as_json(SOFT)
+    body = {
+        "key": "copy",
+        "title": "Copy",
+        "origin": "loaded",
+        "configuration": told["configuration"],
+    }
+    copy = ok(fresh_lab.operator.post(PATH, json=body))
+    assert copy["newest"]["content_hash"] == told["content_hash"]
+
+
+def test_a_wrong_file_tells_its_lines(fresh_lab: Lab) -> None:
+    """Checking stores nothing and is no error."""
+    text = avatar_text(SOFT).replace('"carried"', '"loose"')
+    told = ok(fresh_lab.operator.post(f"{PATH}/check", json={"text": text}))
+    assert (told["ok"], told["configuration"]) == (False, None)
+    (problem,) = told["problems"]
+    assert (problem["path"], problem["line"]) == ("hips", 8)
+
+
+def test_the_lab_reads_and_designers_change(fresh_lab: Lab) -> None:
+    """Operators and analysts get the configuration, but nothing of theirs is stored."""
+    body = {"key": "own", "title": "Own", "origin": "by_hand", "configuration": as_json(SOFT)}
+    for role in ("operator", "analyst"):
+        client = sign_in(fresh_lab, role)
+        ok(client.get(PATH))
+        ok(client.get(f"{PATH}/standard/versions/1/file"))
+        error(client.post(PATH, json=body), 403, "not_allowed")
+        error(client.post(f"{PATH}/standard/versions", json=body), 403, "not_allowed")
+    ok(sign_in(fresh_lab, "experimenter").post(PATH, json=body))
+
+
+def test_sessions_are_counted_by_the_content_they_used(fresh_lab: Lab) -> None:
+    """And the content is found by the hash on the session."""
+    view = fresh_lab.join(kind="test")
+    assert view["avatar_configuration_hash"] is None
+    content_hash = new(fresh_lab, "soft")["newest"]["content_hash"]
+    with fresh_lab.database.writing() as db:
+        db.get_one(StudySession, view["id"]).avatar_configuration_hash = content_hash
+        assert configuration_by_hash(db, content_hash) == SOFT
+    assert fresh_lab.view(view["id"])["avatar_configuration_hash"] == content_hash
+    save(fresh_lab, "soft", CAST, 1)
+    listed = {one["key"]: one["sessions"] for one in ok(fresh_lab.operator.get(PATH))}
+    assert listed == {"soft": 1, "standard": 0}
+    assert ok(fresh_lab.operator.get(f"{PATH}/soft"))["newest"]["sessions"] == 0
+    assert ok(fresh_lab.operator.get(f"{PATH}/soft/versions/1"))["sessions"] == 1
+
+
+def test_a_release_brings_its_standard_unless_the_lab_has_its_own(fresh_lab: Lab) -> None:
+    """An old shipped content is followed by the new one; what somebody saved stays the newest."""
+    now = Clock().utc_now()
+    with fresh_lab.database.writing() as db:
+        row = db.get_one(AvatarVersion, ("standard", 1))
+        older = loaded(SOFT)
+        row.content_hash, row.canonical_json = older.content_hash, older.canonical_json
+    for _ in range(2):
+        with fresh_lab.database.writing() as db:
+            add_shipped_avatar(db, now)
+    view = ok(fresh_lab.operator.get(f"{PATH}/standard"))
+    assert [one["number"] for one in view["versions"]] == [2, 1]
+    assert view["newest"]["configuration"] == as_json(SHIPPED)
+    save(fresh_lab, "standard", CAST, 2)
+    with fresh_lab.database.writing() as db:
+        add_shipped_avatar(db, now)
+    assert ok(fresh_lab.operator.get(f"{PATH}/standard"))["newest"]["number"] == 3
+
+
+def test_the_canonical_form_is_what_is_stored(fresh_lab: Lab) -> None:
+    """Whoever reads the database finds the whole configuration, and its hash is its own."""
+    new(fresh_lab, "soft")
+    with fresh_lab.database.reading() as db:
+        row = db.get_one(AvatarVersion, ("soft", 1))
+    assert row.canonical_json == loaded(SOFT).canonical_json
+    told = {name: value for name, value in as_json(SOFT).items() if value is not None}
+    assert json.loads(row.canonical_json) == told
+
+
+def test_what_tuning_measured_is_kept_with_its_version(fresh_lab: Lab) -> None:
+    """With the settings it used; a version made by hand has no report."""
+    report = {"heuristic": "pd", "axes": [{"name": "HeadX", "overshoot_percent": 2.5}]}
+    wish = NewAvatarVersion(based_on=1, origin="tuned", configuration=file_of(SOFT))
+    with fresh_lab.database.writing() as db:
+        add_avatar_version(db, "system", "standard", wish, Clock().utc_now(), report=report)
+    view = ok(fresh_lab.operator.get(f"{PATH}/standard"))
+    assert (view["newest"]["report"], view["newest"]["origin"]) == (report, "tuned")
+    assert ok(fresh_lab.operator.get(f"{PATH}/standard/versions/1"))["report"] is None
+    with fresh_lab.database.reading() as db:
+        assert db.query(AvatarVersion).filter(AvatarVersion.report.is_(None)).count() == 1

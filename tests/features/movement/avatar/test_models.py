@@ -1,0 +1,77 @@
+"""The model of an avatar over HTTP: the same text for the same content, and had only once."""
+
+import hashlib
+import subprocess
+import sys
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from app.science.avatar.editing import lock, without_parts
+from app.science.avatar.model import avatar_model
+from app.science.avatar.parts import FINGER_PARTS
+from tests.features.lab import Lab, error
+from tests.features.movement.avatar.test_avatars import CAST, PATH, SHIPPED, new, save
+
+pytestmark = pytest.mark.one_engine
+
+
+def test_a_model_is_had_by_its_hash(fresh_lab: Lab) -> None:
+    """The tag names the bytes; who has them gets none."""
+    path = f"{PATH}/standard/model?stature_m=1.7001"
+    answer = fresh_lab.operator.get(path)
+    assert answer.headers["content-type"] == "application/xml"
+    assert answer.text == avatar_model(SHIPPED, 1.7).mjcf
+    tag = answer.headers["etag"]
+    assert tag == f'"{hashlib.sha256(answer.content).hexdigest()}"'
+    again = fresh_lab.operator.get(path, headers={"if-none-match": f'"other", W/{tag}'})
+    assert (again.status_code, again.content, again.headers["etag"]) == (304, b"", tag)
+    taller = fresh_lab.operator.get(f"{PATH}/standard/model?stature_m=1.8")
+    assert taller.headers["etag"] != tag
+
+
+def test_a_cast_takes_the_hinges_of_its_group(fresh_lab: Lab) -> None:
+    """Of the version that is asked for."""
+    new(fresh_lab, "soft")
+    save(fresh_lab, "soft", CAST, 1)
+    for query, hinges in (("&version=1", 89), ("&version=2", 69), ("", 69)):
+        answer = fresh_lab.operator.get(f"{PATH}/soft/model?stature_m=1.7{query}")
+        root = ET.fromstring(answer.text)  # noqa: S314 - our own text
+        assert sum(1 for _ in root.iter("joint")) == hinges
+
+
+def test_a_model_may_lack_fingers_but_no_arm(fresh_lab: Lab) -> None:
+    """The missing part is named."""
+    new(fresh_lab, "mitten", without_parts(SHIPPED, frozenset(FINGER_PARTS)))
+    assert fresh_lab.operator.get(f"{PATH}/mitten/model?stature_m=1.7").is_success
+    new(fresh_lab, "armless", without_parts(SHIPPED, frozenset({"LeftLowerArm"})))
+    answer = fresh_lab.operator.get(f"{PATH}/armless/model?stature_m=1.7")
+    assert "LeftLowerArm" in error(answer, 409, "conflict")["message"]
+
+
+def test_a_stature_is_a_humans(fresh_lab: Lab) -> None:
+    """From 0.5 to 2.6 m."""
+    for stature in ("0.4", "2.7", "nan", "tall"):
+        answer = fresh_lab.operator.get(f"{PATH}/standard/model?stature_m={stature}")
+        error(answer, 422, "invalid_input")
+
+
+def test_locking_keeps_the_rest_of_the_model() -> None:
+    """A held angle turns the part; every other hinge stays."""
+    held = lock(SHIPPED, "left_fingers", {"LeftIndexProximalZ": 0.5})
+    flat, bent = (avatar_model(one, 1.7) for one in (CAST, held))
+    assert flat.mjcf != bent.mjcf
+    assert flat.masses == bent.masses
+
+
+def test_a_server_that_only_writes_models_does_not_load_the_simulator() -> None:
+    """MuJoCo is for who simulates; the text is ours."""
+    code = (
+        "import sys, app.main; from app.science.avatar.defaults import default_configuration;"
+        "from app.science.avatar.model import avatar_model;"
+        "avatar_model(default_configuration(), 1.7); print('mujoco' in sys.modules)"
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+    )
+    assert told.stdout.strip() == "False"

@@ -1,0 +1,113 @@
+"""A capture on avatars: the paper's verification, previews, and files to keep."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from app.adapters.bvh import parse_bvh
+from tests.features.lab import Json, Lab, error, ok
+from tests.features.movement.captures.files import (
+    LIFT_M,
+    SPEED_M_S,
+    positions_of,
+    uploaded,
+    walk_bvh,
+)
+
+pytestmark = pytest.mark.one_engine
+
+AVATARS = "avatars=130cm&avatars=165cm&avatars=190cm"
+
+
+@pytest.fixture(scope="module")
+def walk(lab: Lab) -> Json:
+    """A walk of five strides."""
+    return uploaded(lab.operator, walk_bvh())
+
+
+def test_a_walk_keeps_its_character_on_every_avatar(lab: Lab, walk: Json) -> None:
+    """As many lifts at the same times, steps that grow with the legs."""
+    told = ok(lab.operator.get(f"/api/captures/{walk['id']}/verification?{AVATARS}"))
+    assert (told["frames"], told["rate_hz"], told["lock_feet"]) == (150, 30.0, False)
+    assert len(told["times_s"]) == 150
+    source = told["source"]
+    assert len(source["steps"]) >= 7
+    assert source["mean_step_length_m"] == pytest.approx(SPEED_M_S, rel=0.02)
+    assert source["mean_step_height_m"] == pytest.approx(LIFT_M, rel=0.05)
+    assert [avatar["name"] for avatar in told["avatars"]] == ["130cm", "165cm", "190cm"]
+    assert told["lifts_agree"] is True
+    assert told["largest_timing_difference_s"] <= 2 / 30
+    for avatar in told["avatars"]:
+        assert avatar["lifts_agree"] is True
+        assert avatar["stature_m"] == pytest.approx(float(avatar["name"][:-2]) / 100)
+        assert avatar["length_ratio"] == pytest.approx(avatar["leg_ratio"], rel=0.05)
+        assert (avatar["slide_before_m_s"], avatar["lowered_m"]) == (None, None)
+        for path in avatar["toe_paths"]:
+            assert len(path["forward_m"]) == len(path["height_m"]) == 150
+    lengths = [avatar["mean_step_length_m"] for avatar in told["avatars"]]
+    assert lengths == sorted(lengths)
+    assert told["unmapped_body_joints"] == ["UpperChest"]
+
+
+def test_locked_feet_slide_less(lab: Lab, walk: Json) -> None:
+    """Before and after are told; feet that do not slide stay as they are."""
+    address = f"/api/captures/{walk['id']}/verification?avatars=190cm&lock_feet=true"
+    (avatar,) = ok(lab.operator.get(address))["avatars"]
+    assert avatar["slide_m_s"] <= avatar["slide_before_m_s"]
+    assert avatar["lowered_m"] >= 0.0
+
+
+def test_an_avatar_can_be_looked_at(lab: Lab, walk: Json) -> None:
+    """In the form of the recorded preview, standing on the ground, its size as asked for."""
+    path = f"/api/captures/{walk['id']}/retargeted-motion"
+    heights = {}
+    for avatar in ("130cm", "190cm"):
+        header, positions_m = positions_of(lab.operator.get(f"{path}?avatar={avatar}").content)
+        assert (header["kind"], header["frames"]) == ("skeleton", 150)
+        assert np.isfinite(positions_m).all()
+        heights[avatar] = float(positions_m[0, header["names"].index("Head"), 1])
+        assert -0.01 < positions_m[0, :, 1].min() < 0.1
+    assert heights["130cm"] / heights["190cm"] == pytest.approx(130 / 190, rel=0.02)
+
+
+def test_an_avatars_movement_can_be_kept(lab: Lab, walk: Json) -> None:
+    """As BVH that reads back to the same places, and as a table of them."""
+    path = f"/api/captures/{walk['id']}"
+    preview = lab.operator.get(f"{path}/retargeted-motion?avatar=165cm")
+    header, shown_m = positions_of(preview.content)
+    kept = lab.operator.get(f"{path}/retargeted?avatar=165cm&format=bvh")
+    assert "walk-165cm.bvh" in kept.headers["content-disposition"]
+    clip = parse_bvh(kept.text, metres_per_unit=0.01)
+    order = [clip.names.index(name) for name in header["names"]]
+    np.testing.assert_allclose(clip.world()[0][:, order], shown_m, atol=1e-5)
+    table = lab.operator.get(f"{path}/retargeted?avatar=165cm&format=csv")
+    assert table.headers["content-type"].startswith("text/csv")
+    columns, *rows = csv.reader(table.text.splitlines())
+    assert len(rows) == 150
+    head = [columns.index(f"Head.{axis}_m") for axis in "xyz"]
+    told_m = np.array([[float(row[at]) for at in head] for row in rows])
+    np.testing.assert_allclose(told_m, shown_m[:, header["names"].index("Head")], atol=1e-6)
+    assert float(rows[30][columns.index("time_s")]) == pytest.approx(1.0)
+
+
+def test_only_avatars_that_can_be_are_made(lab: Lab, walk: Json) -> None:
+    """Statures are in centimetres, within what bodies have."""
+    path = f"/api/captures/{walk['id']}"
+    for avatar in ("165", "1.65m", "20cm", "999cm", "faye"):
+        error(lab.operator.get(f"{path}/retargeted-motion?avatar={avatar}"), 422, "invalid_input")
+    many = "&".join(f"avatars={120 + n}cm" for n in range(9))
+    error(lab.operator.get(f"{path}/verification?{many}"), 422, "invalid_input")
+    error(lab.operator.get(f"{path}/verification"), 422, "invalid_input")
+
+
+def test_without_legs_there_is_no_verification(fresh_lab: Lab) -> None:
+    """The refusal names what to map."""
+    view = uploaded(fresh_lab.operator, walk_bvh())
+    path = f"/api/captures/{view['id']}"
+    told = ok(fresh_lab.operator.get(f"{path}/joint-map"))
+    upper = {joint: name for joint, name in told["joint_map"].items() if "Leg" not in joint}
+    ok(fresh_lab.operator.put(f"{path}/joint-map", json={"joint_map": upper, "version": 0}))
+    answer = fresh_lab.operator.get(f"{path}/verification?avatars=165cm")
+    refusal = error(answer, 422, "invalid_input")
+    assert "LeftUpperLeg" in refusal["message"]

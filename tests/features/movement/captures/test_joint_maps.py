@@ -1,0 +1,75 @@
+"""Joint maps: proposed, saved for a skeleton as versions, and refused with every problem."""
+
+from app.models import SavedJointMap
+from tests.features.lab import Json, Lab, error, ok
+from tests.features.movement.captures.files import uploaded, walk_bvh
+
+
+def joint_map_path(view: Json) -> str:
+    """The address of a capture's joint map."""
+    return f"/api/captures/{view['id']}/joint-map"
+
+
+def test_a_map_is_proposed(fresh_lab: Lab) -> None:
+    """From names, with what is left open on both sides."""
+    view = uploaded(fresh_lab.operator, walk_bvh())
+    told = ok(fresh_lab.operator.get(joint_map_path(view)))
+    assert (told["version"], told["chosen"], told["by"]) == (0, False, None)
+    assert told["joint_map"]["LeftUpperLeg"] == "LeftUpLeg"
+    assert told["sources"]["LeftUpperLeg"] == "name"
+    assert told["joint_map"] == told["proposal"]
+    assert told["unmapped_body_joints"] == ["UpperChest"]
+    assert told["unmapped_rig_joints"] == []
+    assert told["rig_joints"] == view["summary"]["names"]
+    assert (told["usable"], told["missing"], told["captures"]) == (True, [], 1)
+
+
+def test_a_saved_map_holds_for_the_skeleton(fresh_lab: Lab) -> None:
+    """Another recording of the same skeleton has it, too; every version stays."""
+    first = uploaded(fresh_lab.operator, walk_bvh())
+    second = uploaded(fresh_lab.operator, walk_bvh(60), "short.bvh")
+    told = ok(fresh_lab.operator.get(joint_map_path(first)))
+    changed = {k: v for k, v in told["joint_map"].items() if k != "LeftToes"}
+    wish = {"joint_map": changed, "version": 0}
+    saved = ok(fresh_lab.operator.put(joint_map_path(first), json=wish))
+    assert (saved["version"], saved["chosen"], saved["by"]) == (1, True, "account:admin")
+    assert saved["joint_map"] == changed
+    assert saved["unmapped_body_joints"] == ["UpperChest", "LeftToes"]
+    assert saved["unmapped_rig_joints"] == ["LeftToeBase"]
+    assert set(saved["sources"].values()) == {"chosen"}
+    assert saved["captures"] == 2
+    assert ok(fresh_lab.operator.get(joint_map_path(second))) == saved
+    back = ok(fresh_lab.operator.delete(f"{joint_map_path(second)}?version=1"))
+    assert (back["version"], back["chosen"]) == (2, False)
+    assert back["joint_map"] == told["joint_map"]
+    with fresh_lab.database.reading() as db:
+        rows = db.query(SavedJointMap).order_by(SavedJointMap.version).all()
+    assert [(row.version, row.chosen) for row in rows] == [(1, True), (2, False)]
+    trail = ok(fresh_lab.operator.get("/api/audit?action=capture."))["entries"]
+    assert [one["action"] for one in trail[:2]] == ["capture.unmapped", "capture.mapped"]
+
+
+def test_two_people_do_not_overwrite_each_other(fresh_lab: Lab) -> None:
+    """Whoever decided on a version that has passed is told the newest one."""
+    view = uploaded(fresh_lab.operator, walk_bvh())
+    told = ok(fresh_lab.operator.get(joint_map_path(view)))
+    wish = {"joint_map": told["joint_map"], "version": 0}
+    ok(fresh_lab.operator.put(joint_map_path(view), json=wish))
+    refusal = error(fresh_lab.operator.put(joint_map_path(view), json=wish), 409, "stale")
+    assert (refusal["value"], refusal["valid"]) == (0, 1)
+    error(fresh_lab.operator.delete(f"{joint_map_path(view)}?version=0"), 409, "stale")
+
+
+def test_a_map_that_does_not_fit_is_refused(fresh_lab: Lab) -> None:
+    """With every problem at its joint: unknown joints, one used twice, no hips."""
+    view = uploaded(fresh_lab.operator, walk_bvh())
+    told = ok(fresh_lab.operator.get(joint_map_path(view)))
+    wrong = {**told["joint_map"], "Tail": "Spine", "Head": "Hut", "LeftHand": "RightHand"}
+    del wrong["Hips"]
+    wish = {"joint_map": wrong, "version": 0}
+    refusal = error(fresh_lab.operator.put(joint_map_path(view), json=wish), 422, "invalid_input")
+    assert {"Tail", "Head", "LeftHand", "RightHand", "Hips"} <= {
+        one["path"] for one in refusal["details"]
+    }
+    assert refusal["valid"]["joints"] == told["rig_joints"]
+    assert ok(fresh_lab.operator.get(joint_map_path(view)))["version"] == 0

@@ -1,0 +1,125 @@
+"""Captures come in once, are listed, changed and deleted; what cannot be read is not kept."""
+
+import hashlib
+
+from sqlalchemy import func, select
+
+from app.models import CaptureContent, CapturePiece, CaptureRow
+from tests.api.people import sign_in
+from tests.features.lab import Json, Lab, error, ok
+from tests.features.movement.captures.files import upload, uploaded, walk_bvh
+
+WALK = walk_bvh()
+
+
+def counted(lab: Lab) -> tuple[int, int, int]:
+    """Rows of captures, contents and pieces."""
+    with lab.database.reading() as db:
+        return (
+            db.scalars(select(func.count()).select_from(CaptureRow)).one(),
+            db.scalars(select(func.count()).select_from(CaptureContent)).one(),
+            db.scalars(select(func.count()).select_from(CapturePiece)).one(),
+        )
+
+
+def test_a_capture_comes_in_and_goes_out(fresh_lab: Lab) -> None:
+    """It tells what it holds, and its file comes back to the byte."""
+    view = uploaded(fresh_lab.operator, WALK)
+    assert (view["format"], view["kind"], view["frames"]) == ("bvh", "skeleton", 150)
+    assert (view["rate_hz"], view["tracks"], view["size_bytes"]) == (30.0, 21, len(WALK))
+    assert view["content_hash"] == hashlib.sha256(WALK).hexdigest()
+    assert view["by"] == "account:admin"
+    summary = view["summary"]
+    assert summary["names"][0] == "Hips"
+    assert summary["observed"] == 1.0
+    assert summary["skeleton"]["parents"][0] == -1
+    assert set(summary["conventions"]) == {"length", "axes", "rotations", "rate"}
+    path = f"/api/captures/{view['id']}"
+    assert ok(fresh_lab.operator.get(path)) == view
+    answer = fresh_lab.operator.get(f"{path}/file")
+    assert answer.content == WALK
+    assert "walk.bvh" in answer.headers["content-disposition"]
+    listed = ok(fresh_lab.operator.get("/api/captures"))
+    assert listed["total"] == 1
+    assert listed["captures"] == [{name: view[name] for name in listed["captures"][0]}]
+
+
+def test_the_same_content_is_stored_once(fresh_lab: Lab) -> None:
+    """A second upload under another name answers the first one."""
+    first = upload(fresh_lab.operator, WALK)
+    again = upload(fresh_lab.operator, WALK, "copy.bvh")
+    assert (first.status_code, again.status_code) == (201, 200)
+    assert again.json() == first.json()
+    assert counted(fresh_lab)[0] == 1
+
+
+def test_what_cannot_be_read_is_not_kept(fresh_lab: Lab) -> None:
+    """The refusal names file, line and reason."""
+    broken = WALK.replace(b"Frame Time", b"Frome Time")
+    refusal = error(upload(fresh_lab.operator, broken), 422, "invalid_input")
+    (where,) = refusal["details"]
+    assert where["path"] == "walk.bvh"
+    assert where["line"] == broken[: broken.index(b"Frome")].count(b"\n") + 1
+    assert where["message"] in refusal["message"]
+    for nothing in (b"", b"hello", bytes(1000)):
+        error(upload(fresh_lab.operator, nothing), 422, "invalid_input")
+    assert counted(fresh_lab) == (0, 0, 0)
+
+
+def test_another_reading_reads_the_file_anew(fresh_lab: Lab) -> None:
+    """Lengths follow the unit that somebody chose, and the convention says that it was chosen."""
+    view = uploaded(fresh_lab.operator, WALK)
+    assert view["summary"]["conventions"]["length"]["origin"] == "guessed"
+    path = f"/api/captures/{view['id']}"
+    wish = {"reading": {"metres_per_unit": 0.0254}, "title": " A walk "}
+    changed = ok(fresh_lab.operator.patch(path, json=wish))
+    assert changed["title"] == "A walk"
+    assert changed["reading"] == {"metres_per_unit": 0.0254, "up": None}
+    assert changed["summary"]["conventions"]["length"]["origin"] == "chosen"
+    back = ok(fresh_lab.operator.patch(path, json={"reading": {}}))
+    assert back["summary"] == view["summary"]
+    error(fresh_lab.operator.patch(path, json={"reading": {"up": "w"}}), 422, "invalid_input")
+
+
+def test_a_deleted_capture_takes_its_content_along(fresh_lab: Lab) -> None:
+    """Unless another capture uses it; the audit trail keeps that it was there."""
+    view = uploaded(fresh_lab.operator, WALK)
+    other = uploaded(fresh_lab.operator, walk_bvh(60), "short.bvh")
+    with fresh_lab.database.writing() as db:
+        row = db.get_one(CaptureRow, other["id"])
+        row.companion_name, row.companion_hash = "walk.bvh", view["content_hash"]
+    assert fresh_lab.operator.delete(f"/api/captures/{view['id']}").status_code == 204
+    assert counted(fresh_lab)[:2] == (1, 2)
+    assert fresh_lab.operator.delete(f"/api/captures/{other['id']}").status_code == 204
+    assert counted(fresh_lab) == (0, 0, 0)
+    error(fresh_lab.operator.get(f"/api/captures/{view['id']}"), 404, "not_found")
+    trail: list[Json] = ok(fresh_lab.operator.get("/api/audit?action=capture."))["entries"]
+    assert [one["action"] for one in trail] == ["capture.removed"] * 2 + ["capture.added"] * 2
+    assert {one["subject"] for one in trail} == {
+        f"capture:{view['id']}",
+        f"capture:{other['id']}",
+    }
+    assert "walk" not in str(trail)
+
+
+def test_a_companion_needs_name_and_size(fresh_lab: Lab) -> None:
+    """One without the other is refused, and so is a companion that leaves no file."""
+    operator = fresh_lab.operator
+    error(upload(operator, WALK, companion="01.asf"), 422, "invalid_input")
+    error(upload(operator, WALK, companion_bytes=5), 422, "invalid_input")
+    whole = upload(operator, WALK, companion="01.asf", companion_bytes=len(WALK))
+    error(whole, 422, "invalid_input")
+    assert counted(fresh_lab) == (0, 0, 0)
+
+
+def test_operators_look_and_change_nothing(lab: Lab) -> None:
+    """Everybody of the lab may see a capture, designers of studies may bring one in."""
+    view = uploaded(lab.operator, WALK)
+    path = f"/api/captures/{view['id']}"
+    for role in ("operator", "analyst"):
+        client = sign_in(lab, role, studies=[])
+        assert ok(client.get(path))["id"] == view["id"]
+        error(upload(client, WALK), 403, "not_allowed")
+        error(client.delete(path), 403, "not_allowed")
+        error(client.patch(path, json={"title": "mine"}), 403, "not_allowed")
+    ok(sign_in(lab, "experimenter", studies=[]).patch(path, json={"title": "ours"}))

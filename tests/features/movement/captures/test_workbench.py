@@ -1,0 +1,86 @@
+"""Whatever a file does to the process that reads it, it is refused, and the next one is read."""
+
+import asyncio
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from app.errors import InvalidInput, NotDurable
+from app.features import working_line
+from app.features.movement.captures import workbench
+from app.features.movement.captures.workbench import Workbench
+from app.features.workers import Worker
+from tests.features.movement.captures import hostile
+
+LIMITED = 512 * 2**20
+
+
+def limit_to_little() -> None:
+    """The process's own limit, but with less to take."""
+    workbench.MEMORY_BYTES = LIMITED
+    workbench.limit_memory()
+
+
+@pytest.fixture(scope="module")
+def bench() -> Iterator[Workbench]:
+    """A process with a small memory."""
+    bench = Workbench(_worker=Worker(limit_to_little))
+    yield bench
+    bench.end()
+
+
+@pytest.mark.parametrize(
+    ("task", "why"),
+    [
+        (hostile.never_end, "longer than"),
+        (hostile.fill_the_memory, "memory"),
+        (hostile.die, "ended"),
+        (hostile.fail, "KeyError"),
+    ],
+)
+def test_a_hostile_file_hurts_nobody(bench: Workbench, task: Callable[[], bytes], why: str) -> None:
+    """It is refused with the reason, and the next file is read by a process that works."""
+
+    async def one_after_the_other() -> bytes:
+        # The process takes some seconds to start, which counts.
+        assert await bench.run(hostile.answer) == b"done"
+        bench.within_s = 2.0 if task is hostile.never_end else 120.0
+        with pytest.raises(InvalidInput, match=why):
+            await bench.run(task)
+        bench.within_s = 120.0
+        return await bench.run(hostile.answer)
+
+    bench._turn = asyncio.Lock()
+    assert asyncio.run(one_after_the_other()) == b"done"
+
+
+def test_whoever_waits_too_long_a_line_is_told(
+    bench: Workbench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Rather than to fill the server with requests that wait."""
+    monkeypatch.setattr(working_line, "WAITING", 2)
+
+    async def crowd() -> list[bytes | BaseException]:
+        return await asyncio.gather(
+            *(bench.run(hostile.answer) for _ in range(4)), return_exceptions=True
+        )
+
+    bench._turn = asyncio.Lock()
+    answers = asyncio.run(crowd())
+    assert answers[:2] == [b"done", b"done"]
+    assert [type(one) for one in answers[2:]] == [NotDurable, NotDurable]
+
+
+def test_what_was_computed_is_kept_within_bounds(
+    bench: Workbench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The oldest go first."""
+    monkeypatch.setattr(workbench, "KEPT_BYTES", 10)
+
+    async def ask() -> None:
+        for n in (4, 5, 6):
+            assert await bench.computed(bytes, n) == bytes(n)
+
+    bench._turn = asyncio.Lock()
+    asyncio.run(ask())
+    assert [len(one) for one in bench._kept.values()] == [6]

@@ -1,0 +1,185 @@
+"""Humanoid models come in once, tell what they have, and lend avatars their body."""
+
+import hashlib
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+from httpx2 import Response
+from sqlalchemy import func, select
+
+from app.database import open_database
+from app.features.movement.captures.contents import drop_unused, plain_pieces
+from app.models import CaptureContent, HumanoidRow
+from app.protocol.avatar import avatar_text, file_of, load_avatar, loaded
+from app.protocol.humanoid import figure_json, parse_figure
+from app.science.avatar.model import avatar_model
+from app.science.avatar.parts import PART_NAMES
+from tests.api.people import sign_in
+from tests.features.care.backups.lab import make, put_back
+from tests.features.lab import Json, Lab, error, ok
+from tests.features.movement.avatar.test_avatars import PATH as AVATARS
+from tests.features.movement.avatar.test_avatars import SHIPPED, as_json, new
+from tests.science.avatar.figures import figure
+from tests.support.humanoid_files import dog_file, humanoid_file
+from tests.support.humanoid_model import Model, without
+from tests.support.sqlite import fresh_sqlite
+
+PATH = "/api/humanoids"
+FIVE, FOUR = humanoid_file(), humanoid_file(Model(parts=without("Little"), vrm=1))
+HASH = hashlib.sha256(FIVE).hexdigest()
+
+
+def upload(lab: Lab, data: bytes = FIVE, name: str = "figure.glb") -> Response:
+    """Send a model's file."""
+    return lab.operator.post(f"{PATH}?name={name}", content=data)
+
+
+def counted(lab: Lab) -> tuple[int, int]:
+    """Rows of models and contents."""
+    with lab.database.reading() as db:
+        return (
+            db.scalars(select(func.count()).select_from(HumanoidRow)).one(),
+            db.scalars(select(func.count()).select_from(CaptureContent)).one(),
+        )
+
+
+def test_a_model_comes_in_and_tells_what_it_has(fresh_lab: Lab) -> None:
+    """Parts, fingers, lengths and pieces; its file comes back to the byte."""
+    answer = upload(fresh_lab)
+    assert answer.status_code == 201
+    view: Json = answer.json()
+    assert view["content_hash"] == HASH
+    assert (view["present"], view["absent"], view["simple"]) == (list(PART_NAMES), [], [])
+    assert (view["left_fingers"], view["right_fingers"], view["bones_by"]) == (5, 5, "names")
+    assert view["stature_m"] == pytest.approx(1.7, abs=1e-5)
+    assert view["segments_m"]["thigh"] == pytest.approx(0.4165, abs=1e-5)
+    pieces = {piece["part"]: piece for piece in view["convex_pieces"]}
+    assert pieces["LeftHand"] == {"part": "LeftHand", "corners": 8, "outside_m": 0.0}
+    assert (view["size_bytes"], view["file_name"]) == (len(FIVE), "figure.glb")
+    assert ok(fresh_lab.operator.get(f"{PATH}/{HASH}")) == view
+    sent = fresh_lab.operator.get(f"{PATH}/{HASH}/file")
+    assert sent.content == FIVE
+    assert "figure.glb" in sent.headers["content-disposition"]
+    page = ok(fresh_lab.operator.get(PATH))
+    assert page["total"] == 1
+    assert page["humanoids"] == [{name: view[name] for name in page["humanoids"][0]}]
+    audited = ok(fresh_lab.operator.get("/api/audit"))["entries"][0]
+    assert (audited["action"], audited["subject"]) == ("humanoid.added", f"humanoid:{HASH[:12]}")
+
+
+def test_the_same_file_is_stored_once(fresh_lab: Lab) -> None:
+    """A second upload under another name answers the first one."""
+    first, again = upload(fresh_lab), upload(fresh_lab, name="copy.glb")
+    assert (first.status_code, again.status_code) == (201, 200)
+    assert first.json() == again.json()
+    assert counted(fresh_lab) == (1, 1)
+
+
+def test_what_is_no_humanoid_is_not_kept(fresh_lab: Lab) -> None:
+    """The missing parts are named, or the place in the file."""
+    dog = error(upload(fresh_lab, dog_file(), "dog.glb"), 422, "invalid_input")
+    assert "no LeftUpperArm, LeftLowerArm, LeftHand" in dog["message"]
+    cut = error(upload(fresh_lab, FIVE[:4000]), 422, "invalid_input")
+    assert f"4000 of {len(FIVE)} bytes" in cut["message"]
+
+    def far(document: Json) -> None:
+        document["accessors"][0]["count"] = 10**9
+
+    odd = error(upload(fresh_lab, humanoid_file(Model(edit=far))), 422, "invalid_input")
+    assert odd["details"] == [{"path": "accessors.0", "message": odd["details"][0]["message"]}]
+    error(upload(fresh_lab, b""), 422, "invalid_input")
+    assert counted(fresh_lab) == (0, 0)
+    error(fresh_lab.operator.get(f"{PATH}/{HASH}"), 404, "not_found")
+    error(fresh_lab.operator.get(f"{PATH}/{HASH}/file"), 404, "not_found")
+
+
+def test_an_avatar_has_the_body_of_its_model(fresh_lab: Lab) -> None:
+    """Four fingers from a configuration of five, pieces of skin, the same text as built here."""
+    four = upload(fresh_lab, FOUR).json()
+    assert (four["left_fingers"], four["bones_by"]) == (4, "vrm")
+    assert "LeftLittleProximal" in four["absent"]
+    skin = replace(SHIPPED, humanoid=four["content_hash"], colliders="mesh")
+    view = new(fresh_lab, "skinned", skin)
+    assert view["newest"]["configuration"]["humanoid"] == four["content_hash"]
+    answer = fresh_lab.operator.get(f"{AVATARS}/skinned/model?stature_m=1.7")
+    with fresh_lab.database.reading() as db:
+        own = parse_figure(db.get_one(HumanoidRow, four["content_hash"]).figure)
+    assert answer.text == avatar_model(skin, 1.7, figure=own).mjcf
+    root = ET.fromstring(answer.text)  # noqa: S314 - our own text
+    assert len(list(root.iter("mesh"))) == len(four["convex_pieces"]) == 46
+    assert not [one for one in root.iter("body") if "Little" in one.get("name", "")]
+
+
+def test_pieces_need_a_model_that_is_here(fresh_lab: Lab) -> None:
+    """A configuration without one, or with one that nobody uploaded, is not saved."""
+    for configuration, path in (
+        (replace(SHIPPED, colliders="mesh"), "configuration.colliders"),
+        (replace(SHIPPED, part_colliders={"Head": "mesh"}), "configuration.part_colliders.Head"),
+        (replace(SHIPPED, humanoid=HASH), "configuration.humanoid"),
+    ):
+        body = {
+            "key": "skinned",
+            "title": "Skinned",
+            "origin": "by_hand",
+            "configuration": as_json(configuration),
+        }
+        refusal = error(fresh_lab.operator.post(AVATARS, json=body), 422, "invalid_config")
+        assert refusal["details"][0]["path"] == path
+        assert "pload" in refusal["details"][0]["remedy"]
+
+
+def test_a_file_of_another_lab_is_told_what_it_lacks(fresh_lab: Lab) -> None:
+    """A check before saving says that the model is missing, and is content once it is here."""
+    text = avatar_text(replace(SHIPPED, humanoid=HASH, colliders="mesh"))
+    (problem,) = ok(fresh_lab.operator.post(f"{AVATARS}/check", json={"text": text}))["problems"]
+    assert (problem["path"], problem["value"]) == ("humanoid", HASH)
+    upload(fresh_lab)
+    assert ok(fresh_lab.operator.post(f"{AVATARS}/check", json={"text": text}))["ok"]
+    alone = text.replace(f'  "humanoid": "{HASH}",\n', "")
+    (problem,) = ok(fresh_lab.operator.post(f"{AVATARS}/check", json={"text": alone}))["problems"]
+    assert (problem["path"], problem["line"]) == (
+        "colliders",
+        alone[: alone.index('"colliders"')].count("\n") + 1,
+    )
+
+
+def test_a_configuration_without_a_model_keeps_its_hash() -> None:
+    """What is not named leaves no trace in the canonical form; what is named does."""
+    assert "humanoid" not in loaded(SHIPPED).canonical_json
+    named = replace(SHIPPED, humanoid=HASH)
+    assert f'"humanoid":"{HASH}"' in loaded(named).canonical_json
+    assert loaded(named).content_hash != loaded(SHIPPED).content_hash
+    text = file_of(named).model_dump_json()
+    assert load_avatar(text).configuration == named
+
+
+def test_a_figure_is_stored_as_it_is() -> None:
+    """The same bytes for the same model, and the same model again."""
+    for own in (figure(), figure("Little")):
+        text = figure_json(own)
+        assert figure_json(parse_figure(text)) == text
+        assert parse_figure(text).scaled(1.8) == own.scaled(1.8)
+
+
+def test_a_restored_model_is_the_file_that_was_uploaded(fresh_lab: Lab, tmp_path: Path) -> None:
+    """Backups have it; what is still used is not dropped."""
+    upload(fresh_lab)
+    with fresh_lab.database.writing() as db:
+        drop_unused(db, HASH)
+    make(fresh_lab.database, tmp_path / "all.reembody")
+    other = open_database(fresh_sqlite(tmp_path / "other.sqlite"))
+    put_back(other, tmp_path / "all.reembody")
+    with other.reading() as db:
+        assert b"".join(plain_pieces(db, HASH)) == FIVE
+        assert parse_figure(db.get_one(HumanoidRow, HASH).figure).finger_count("Left") == 5
+    other.close()
+
+
+def test_designers_bring_models_in_and_everybody_sees_them(fresh_lab: Lab) -> None:
+    """An analyst may look, not upload."""
+    upload(fresh_lab)
+    analyst = sign_in(fresh_lab, "analyst")
+    assert ok(analyst.get(PATH))["total"] == 1
+    assert analyst.post(f"{PATH}?name=a.glb", content=FOUR).status_code == 403

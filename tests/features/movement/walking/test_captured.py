@@ -1,0 +1,69 @@
+"""Walks are cut from stored captures, and fits that a stop of the server left are told."""
+
+import hashlib
+from pathlib import Path
+
+import pytest
+from sqlalchemy.orm import Session
+
+from app.database import make_engine
+from app.features.movement.captures.contents import compress, store
+from app.features.movement.walking.sources import Cannot, CapturedWalk, Store, TrackSource
+from app.features.movement.walking.tasks import captured_table
+from app.models import WalkingModelRow
+from tests.features.lab import Lab, ok
+from tests.features.movement.captures.files import SPEED_M_S, walk_bvh
+
+
+def kept(url: str, data: bytes, folder: Path) -> str:
+    """Store a content as an upload does; its hash."""
+    file, packed = folder / "file", folder / "packed"
+    file.write_bytes(data)
+    compress(file, packed)
+    content_hash = hashlib.sha256(data).hexdigest()
+    engine = make_engine(url)
+    with Session(engine) as db:
+        store(db, content_hash, len(data), packed)
+        db.commit()
+    engine.dispose()
+    return content_hash
+
+
+def test_a_captured_person_walks(database_url: str, tmp_path: Path) -> None:
+    """A skeleton's way becomes a table and a walk of the person it is said to be."""
+    content = kept(database_url, walk_bvh(150), tmp_path)
+    walk = CapturedWalk("walk.bvh", content, None, None, None, None, None, 10**7)
+    source = TrackSource("captures", "", subjects=(("c0", "Ann"),), statures_m=(("Ann", 1.7),))
+    found = captured_table(Store(database_url), (("c0", walk),), source)
+    assert found.table.startswith(b"id,time_s,x_m,y_m\nc0,0.0,")
+    assert (found.summary["walks"], found.summary["people"]) == (1, 1)
+    # It begins and ends in stride.
+    assert found.summary["cut_by_recording"] == 1
+    assert found.summary["speed_m_s"]["mean"] == pytest.approx(SPEED_M_S, rel=0.05)
+    assert found.summary["dependencies"]["stature_m"]["low"] == 1.7
+
+
+def test_a_capture_that_is_gone_is_said(database_url: str) -> None:
+    """Nothing is made up in place of a deleted file."""
+    walk = CapturedWalk("walk.bvh", "0" * 64, None, None, None, None, None, 10**7)
+    with pytest.raises(Cannot, match="no longer stored"):
+        captured_table(Store(database_url), (("c0", walk),), TrackSource("captures", ""))
+
+
+def test_a_fit_that_the_server_left_is_stopped(fresh_lab: Lab) -> None:
+    """After a crash a model is not said to be fitted for ever."""
+    row = WalkingModelRow(
+        title="Left",
+        kind="human",
+        state="fitting",
+        walk_set={"title": "Gone", "origin": "tracks"},
+        scene=None,
+        options={},
+        by="account:admin",
+        at=fresh_lab.context.clock.utc_now(),
+    )
+    with fresh_lab.database.writing() as db:
+        db.add(row)
+    fresh_lab.context.fits.begin()
+    (listed,) = ok(fresh_lab.operator.get("/api/walking/models"))
+    assert (listed["state"], listed["trouble"]) == ("stopped", None)

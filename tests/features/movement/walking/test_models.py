@@ -1,0 +1,158 @@
+"""From walks to a model and its answers; what cannot be is refused, and nothing is half-written."""
+
+import io
+import threading
+
+import numpy as np
+import pytest
+from sqlalchemy import func, select
+
+from app.models import CaptureContent, WalkSetRow
+from tests.features.lab import Json, Lab, error, ok
+from tests.features.movement.walking.walkers import FLOOR, SMALL, bring_in, fitted, settled, table
+
+RACKS = "car-and-three-racks"
+
+
+@pytest.fixture(scope="module")
+def model(walking_lab: Lab) -> Json:
+    """A small model on made-up walkers."""
+    ok(walking_lab.operator.post("/api/walking/scenes", json={"text": FLOOR}))
+    origin = {"kind": "population", "population": "students", "people": 3, "repetitions": 1}
+    wish = {"title": "Students", "origin": origin | {"scene": "floor"}}
+    walks = ok(walking_lab.operator.post("/api/walking/walk-sets", json=wish))
+    return fitted(walking_lab, walks["id"])
+
+
+def counted(lab: Lab) -> tuple[int, int]:
+    """Sets of walks and stored contents."""
+    with lab.database.reading() as db:
+        return (
+            db.scalars(select(func.count()).select_from(WalkSetRow)).one(),
+            db.scalars(select(func.count()).select_from(CaptureContent)).one(),
+        )
+
+
+def test_a_model_tells_what_it_is(walking_lab: Lab, model: Json) -> None:
+    """It says that nobody walked, what it was fitted on, and its file names itself by its hash."""
+    assert (model["state"], model["kind"]) == ("ready", "synthetic")
+    summary = model["summary"]
+    assert (summary["walks"], summary["people"]) == (9, 3)
+    assert sum(summary["census"]["counts"]) == 9
+    assert set(summary["dependencies"]) == {"length_m", "turning_per_m", "stature_m"}
+    assert set(summary["left_out"]) == {"neighbours", "nodes", "people"}
+    path = f"/api/walking/models/{model['id']}"
+    with np.load(io.BytesIO(walking_lab.operator.get(f"{path}/file").content)) as archive:
+        assert summary["model_hash"] in archive["header"].tobytes().decode()
+
+
+def test_a_path_is_answered_with_a_distribution(walking_lab: Lab, model: Json) -> None:
+    """The same seed gives the same, another another; quantiles are in order; walkers arrive."""
+    path = f"/api/walking/models/{model['id']}/prediction"
+    asked = {"scene": RACKS, "points_m": [[2.05, 2.05], [0, 0]], "planned": True, "count": 60}
+    first, other = (
+        ok(walking_lab.operator.post(path, json=asked | {"seed": seed})) for seed in (1, 2)
+    )
+    assert first["durations_s"] == sorted(first["durations_s"])
+    assert len(first["durations_s"]) == 60
+    assert first["durations_s"] != other["durations_s"]
+    assert first["kinds"] == ["synthetic"]
+    assert first["assumed"] == ["stature_m"]
+    assert list(first["quantiles_s"].values()) == sorted(first["quantiles_s"].values())
+    for walker in first["walkers"]:
+        # Within the radius of arrival, and two steps at 2 m/s.
+        assert np.hypot(*walker["xy_m"][-1]) < 0.05 + 2 * 2.0 / 60.0
+    assert (first["stat"], first["adapt"]) == (other["stat"], other["adapt"])
+
+
+def test_a_slice_is_part_of_the_map(walking_lab: Lab, model: Json) -> None:
+    """Rows are values of y; nothing is larger than the whole map's largest; an unknown is named."""
+    path = f"/api/walking/models/{model['id']}/slice"
+    asked = {
+        "dependencies": {"length_m": 2.0, "turning_per_m": 0.0, "stature_m": 1.8},
+        "held": "acceleration",
+        "value": 0.7,
+    }
+    found = ok(walking_lab.operator.post(path, json=asked))
+    assert (found["x"]["name"], found["y"]["name"]) == ("velocity", "angular")
+    values = np.array(found["suitability"])
+    assert values.shape == (3, 3)
+    assert 0.0 <= values.min() <= values.max() <= found["largest"] + 1e-5
+    refusal = error(
+        walking_lab.operator.post(path, json=asked | {"held": "mood"}), 422, "invalid_input"
+    )
+    assert "velocity, acceleration, angular" in refusal["remedy"]
+
+
+def test_impossible_paths_are_refused(walking_lab: Lab, model: Json) -> None:
+    """Through an obstacle, into one, out of the scene, nowhere: each says which and where."""
+    path = f"/api/walking/models/{model['id']}/prediction"
+    for points, planned, told in (
+        ([[0, 0], [0, 3]], False, "through obstacle 'rack 3'"),
+        ([[0, 0], [0, 1.2]], True, "inside obstacle 'rack 3'"),
+        ([[0, 0], [9, 0]], True, "outside the scene's bounds"),
+        ([[0, 0], [0, 0]], True, "the same place"),
+    ):
+        asked = {"scene": RACKS, "points_m": points, "planned": planned}
+        refusal = error(walking_lab.operator.post(path, json=asked), 422, "invalid_input")
+        assert told in refusal["message"]
+
+
+def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
+    """A table becomes walks of people; a model on them is not called synthetic; both can go."""
+    walks = ok(bring_in(walking_lab, table(), stature=["P0=1.6", "P1=1.7", "P2=1.8"]))
+    assert (walks["kind"], walks["summary"]["walks"], walks["summary"]["people"]) == ("human", 9, 3)
+    model = fitted(walking_lab, walks["id"])
+    assert (model["state"], model["kind"]) == ("ready", "human")
+    calls = walking_lab.operator
+    ok(calls.delete(f"/api/walking/walk-sets/{walks['id']}"))
+    assert ok(calls.get(f"/api/walking/models/{model['id']}"))["walk_set"]["id"] is None
+    ok(calls.delete(f"/api/walking/models/{model['id']}"))
+    acts = [one["action"] for one in ok(calls.get("/api/audit"))["entries"]]
+    assert {"walking.model_ordered", "walking.model_removed", "walking.walks_removed"} <= set(acts)
+
+
+@pytest.mark.parametrize(
+    ("data", "told"),
+    [
+        (table(bad_line=9), "line 9"),
+        (b"id,time_s,x_m,y_m\nA,0,0,0\n", "at least two"),
+        (b"id,time_s,x_m,y_m\nA,0,0,0\nA,1,0,0\n", "nobody walks"),
+        (b"id,time_s,y_m\nA,0,0\n", "no column x"),
+    ],
+)
+def test_bad_tables_leave_nothing(walking_lab: Lab, data: bytes, told: str) -> None:
+    """NaN, a walk of one point, standing still, a missing column: said, and nothing is stored."""
+    before = counted(walking_lab)
+    assert told in error(bring_in(walking_lab, data), 422, "invalid_input")["message"]
+    assert counted(walking_lab) == before
+
+
+def test_one_person_is_too_few(walking_lab: Lab) -> None:
+    """The fit fails with the reason, and can still be looked at and deleted."""
+    walks = ok(bring_in(walking_lab, table(people=1)))
+    model = fitted(walking_lab, walks["id"])
+    assert model["state"] == "failed"
+    assert "all 3 walks are of one person, 'P0'" in model["trouble"]
+    path = f"/api/walking/models/{model['id']}"
+    error(walking_lab.operator.get(f"{path}/file"), 409, "not_now")
+    error(walking_lab.operator.delete(f"/api/walking/walk-sets/{walks['id']}"), 409, "conflict")
+    ok(walking_lab.operator.delete(path))
+
+
+def test_a_fit_is_stopped_and_resumed(walking_lab: Lab) -> None:
+    """Stopped while it waits, it is not fitted; resumed, it is; neither can be done twice."""
+    walks = ok(bring_in(walking_lab, table(people=2)))
+    held = threading.Event()
+    walking_lab.context.fits._maker.submit(held.wait)
+    wish = {"title": "Again", "walk_set_id": walks["id"], "options": SMALL}
+    begun = ok(walking_lab.operator.post("/api/walking/models", json=wish))
+    path = f"/api/walking/models/{begun['id']}"
+    assert begun["progress"]["stage"] == "waiting"
+    stopped = ok(walking_lab.operator.post(f"{path}/stop"))
+    held.set()
+    assert stopped["state"] == "stopped"
+    error(walking_lab.operator.post(f"{path}/stop"), 409, "not_now")
+    ok(walking_lab.operator.post(f"{path}/resume"))
+    assert settled(walking_lab, begun["id"])["state"] == "ready"
+    error(walking_lab.operator.post(f"{path}/resume"), 409, "not_now")
