@@ -13,7 +13,6 @@ from app.api.pages import install_pages
 from app.api.router import add_routes
 from app.clock import Clock
 from app.database import open_database
-from app.features.accounts.service import ensure_admin
 from app.features.care.opening.service import bring_up_to_date
 from app.features.care.rights.service import finish_erasures
 from app.features.care.storage.measuring import StorageDesk
@@ -22,6 +21,7 @@ from app.features.design.studies.service import add_shipped
 from app.features.live import Hub
 from app.features.movement.avatar.service import add_shipped_avatar
 from app.features.movement.walking.desk import FittingDesk
+from app.features.people.accounts.service import ensure_admin
 from app.features.rate_limit import RateLimiter
 from app.features.record.sessions.recovery import stop_running_clocks
 from app.features.record.telemetry.encoder import Encoder

@@ -9,9 +9,6 @@ from pydantic import BaseModel
 from sqlalchemy import text
 
 from app import __version__
-from app.features.accounts.endpoints import router as accounts
-from app.features.accounts.people_endpoints import router as people
-from app.features.audit.endpoints import router as audit
 from app.features.care.network.endpoints import router as network
 from app.features.care.rights.endpoints import router as rights
 from app.features.care.storage.endpoints import router as storage
@@ -25,6 +22,9 @@ from app.features.movement.captures.endpoints import router as captures
 from app.features.movement.humanoids.endpoints import router as humanoids
 from app.features.movement.walking.endpoints import router as walks
 from app.features.movement.walking.model_endpoints import router as walking_models
+from app.features.people.accounts.endpoints import router as accounts
+from app.features.people.accounts.people_endpoints import router as people
+from app.features.people.audit.endpoints import router as audit
 from app.features.record.alarms.endpoints import router as alarms
 from app.features.record.calibrations.endpoints import router as calibrations
 from app.features.record.devices.endpoints import router as devices

@@ -4,7 +4,7 @@ from sqlalchemy import select
 
 from app.cli.installation import opened_database
 from app.clock import Clock
-from app.features.accounts.service import issue_token
+from app.features.people.accounts.service import issue_token
 from app.models import Account
 
 

@@ -15,8 +15,8 @@ from pydantic import SecretStr
 
 from app.clock import Clock
 from app.database import Database
-from app.features.accounts.service import issue_token
 from app.features.context import AppContext
+from app.features.people.accounts.service import issue_token
 from app.main import create_app
 from app.models import Account
 from app.settings import Settings

@@ -194,7 +194,7 @@ def make_passwords_cheap() -> None:
     """The same kind of hash in this process from now on, with the least work."""
     from argon2 import PasswordHasher
 
-    from app.features.accounts import passwords
+    from app.features.people.accounts import passwords
 
     passwords._HASHER = PasswordHasher(time_cost=1, memory_cost=64, parallelism=1)
 

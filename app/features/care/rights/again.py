@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.audit.service import record
 from app.features.care.rights.erasing import erase_now, erasure_of, locked_sessions
 from app.features.care.rights.tombstones import (
     Tombstone,
@@ -15,6 +14,7 @@ from app.features.care.rights.tombstones import (
     tombstones_of,
 )
 from app.features.context import AppContext
+from app.features.people.audit.service import record
 from app.models import Participant, StudySession
 
 AGAIN = "restored"

@@ -8,9 +8,9 @@ from sqlalchemy import ColumnElement, and_, func, or_, select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
-from app.features.audit.service import record
 from app.features.care.backups.service import ENDING
 from app.features.care.opening.service import backups_of
+from app.features.people.audit.service import record
 from app.models import CopyMade, Participant, Study, StudySession
 from app.settings import Settings
 

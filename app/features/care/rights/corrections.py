@@ -7,8 +7,8 @@ can be erased.
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound, NotNow
-from app.features.audit.service import record
 from app.features.context import AppContext
+from app.features.people.audit.service import record
 from app.features.record.questionnaires.schemas import AnswerValue
 from app.features.record.questionnaires.service import correct_answer
 from app.features.record.sessions.contents import store_content

@@ -7,7 +7,6 @@ from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
-from app.features.audit.service import record
 from app.features.care.rights.copies import copies_of_study, mark_destroyed
 from app.features.care.rights.corrections import correct
 from app.features.care.rights.erasing import erasure_of
@@ -32,6 +31,7 @@ from app.features.care.rights.service import (
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.design.studies.service import study_by_key
+from app.features.people.audit.service import record
 from app.features.record.questionnaires.schemas import StoredAnswers
 from app.features.record.questionnaires.service import stored_answers
 from app.features.record.sessions.service import session_by_id

@@ -10,7 +10,6 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.access import Caller, add_member, is_blind, is_theirs
-from app.features.audit.service import record
 from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.design.studies.comparing import compare_versions
 from app.features.design.studies.draft_endpoints import router as drafts
@@ -32,6 +31,7 @@ from app.features.design.studies.service import (
     version_by_number,
     versions_of,
 )
+from app.features.people.audit.service import record
 from app.models import Study, StudyVersion
 
 router = APIRouter(tags=["studies"])

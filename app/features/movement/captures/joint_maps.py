@@ -12,7 +12,6 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, StaleVersion
 from app.features.access import Caller
-from app.features.audit.service import record
 from app.features.context import AppContext
 from app.features.movement.captures.avatars import Mapped
 from app.features.movement.captures.schemas import (
@@ -24,6 +23,7 @@ from app.features.movement.captures.schemas import (
 )
 from app.features.movement.captures.service import capture_by_id, store_of
 from app.features.movement.captures.source import source_of
+from app.features.people.audit.service import record
 from app.models import CaptureRow, SavedJointMap
 from app.science.retargeting.joint_map import (
     JointMapError,

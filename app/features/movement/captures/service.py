@@ -11,7 +11,6 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound
 from app.features.access import Caller
-from app.features.audit.service import record
 from app.features.context import AppContext
 from app.features.movement.captures.contents import drop_unused, store
 from app.features.movement.captures.inspecting import (
@@ -24,6 +23,7 @@ from app.features.movement.captures.opening import Store
 from app.features.movement.captures.schemas import CaptureChange, ReadingChoice
 from app.features.movement.captures.source import Source, source_of
 from app.features.movement.captures.uploads import Uploaded, uploaded
+from app.features.people.audit.service import record
 from app.models import CaptureRow
 from app.models.types import new_id
 

@@ -9,7 +9,6 @@ from sqlalchemy.orm import Session
 from app.adapters.walks.scene_file import load_scene, shipped_scenes
 from app.errors import Conflict, NotFound
 from app.features.access import Caller
-from app.features.audit.service import record
 from app.features.config_problems import invalid_config
 from app.features.context import AppContext
 from app.features.movement.walking.schemas import (
@@ -19,6 +18,7 @@ from app.features.movement.walking.schemas import (
     ScenePathView,
     SceneView,
 )
+from app.features.people.audit.service import record
 from app.models import WalkingScene
 from app.protocol import ConfigError
 from app.science.walking.scene import Scene

@@ -7,7 +7,6 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
 from app.features.access import Caller
-from app.features.audit.service import record
 from app.features.context import AppContext
 from app.features.movement.captures.contents import drop_unused, size_of
 from app.features.movement.walking.model_schemas import (
@@ -23,6 +22,7 @@ from app.features.movement.walking.schemas import FitChoice, Kind, NewModel, Sta
 from app.features.movement.walking.set_sources import source_of_set
 from app.features.movement.walking.sources import FitOrder
 from app.features.movement.walking.walk_sets import walk_set_by_id, walk_set_view
+from app.features.people.audit.service import record
 from app.models import WalkingModelRow
 from app.models.types import new_id
 

@@ -12,7 +12,6 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound
 from app.features.access import Caller
-from app.features.audit.service import record
 from app.features.context import AppContext
 from app.features.movement.captures.contents import compress, drop_unused, store
 from app.features.movement.captures.uploads import uploaded
@@ -39,6 +38,7 @@ from app.features.movement.walking.tasks import (
     inspected_population,
     inspected_tracks,
 )
+from app.features.people.audit.service import record
 from app.models import WalkingModelRow, WalkSetRow
 
 

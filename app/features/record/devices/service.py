@@ -8,7 +8,7 @@ from sqlalchemy import bindparam, select, update
 from sqlalchemy.orm import Session
 
 from app.errors import Gone, NotFound, NotSignedIn
-from app.features.accounts.service import hash_token
+from app.features.people.accounts.service import hash_token
 from app.models import Device, PairingCode
 
 # No vowels (no words), no 0/O, 1/I/L, 2/Z, 5/S, 8/B: read aloud and typed without doubt.

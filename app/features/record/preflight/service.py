@@ -11,8 +11,8 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict
 from app.features.access import OVER
-from app.features.audit.service import record
 from app.features.context import AppContext
+from app.features.people.audit.service import record
 from app.features.record.preflight.device_checks import device_checks
 from app.features.record.preflight.latency_check import latency_check
 from app.features.record.preflight.schemas import Check, Override, OverrideRequest, Preflight

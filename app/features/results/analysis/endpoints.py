@@ -5,10 +5,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Response
 
-from app.features.audit.service import record
 from app.features.care.rights.service import in_browser_of, record_copy, sessions_in
 from app.features.dependencies import Context, Reading, SignedIn
 from app.features.design.studies.service import study_by_key
+from app.features.people.audit.service import record
 from app.features.results.analysis.drawing import Drawn
 from app.features.results.analysis.schemas import (
     ColumnView,

@@ -7,7 +7,6 @@ from fastapi import APIRouter, Response
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
-from app.features.audit.service import record
 from app.features.care.rights.service import (
     expect_erasure,
     forget_erasure,
@@ -18,6 +17,7 @@ from app.features.care.rights.service import (
 from app.features.context import AppContext
 from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.design.studies.service import study_by_key
+from app.features.people.audit.service import record
 from app.features.results.imports.looking import check, look
 from app.features.results.imports.schemas import (
     CheckRequest,

@@ -11,8 +11,8 @@ from sqlalchemy import CursorResult, delete, insert, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, NotFound
-from app.features.audit.service import record
 from app.features.design.instruments.service import newest_instruments
+from app.features.people.audit.service import record
 from app.features.results.imports.applying import Form
 from app.features.results.imports.reading import applied_to
 from app.features.results.imports.schemas import ImportRequest

@@ -3,7 +3,7 @@
 import time
 
 from app.features.access import Caller
-from app.features.accounts.service import hash_token
+from app.features.people.accounts.service import hash_token
 from app.features.record.tryout.desk import TryoutDesk
 from app.models import Account, LoginToken
 from tests.features.lab import STUDY, Json, Lab, error, ok

@@ -4,7 +4,7 @@ import { describe, expect, it } from "vitest";
 import { checkPassword, isGood, LEAST_DIFFERENT, LEAST_LENGTH, MOST_LENGTH } from "./passwordRule";
 
 const SERVER = readFileSync(
-  new URL("../../../../../app/features/accounts/passwords.py", import.meta.url),
+  new URL("../../../../../app/features/people/accounts/passwords.py", import.meta.url),
   "utf-8",
 );
 const limit = (name: string) => Number(new RegExp(`^${name} = (\\d+)$`, "m").exec(SERVER)?.[1]);

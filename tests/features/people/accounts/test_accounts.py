@@ -12,7 +12,7 @@ from sqlalchemy import text
 
 from app.clock import Clock
 from app.errors import NotSignedIn
-from app.features.accounts.service import account_of_token, issue_token
+from app.features.people.accounts.service import account_of_token, issue_token
 from app.main import create_app
 from app.models import Account
 from app.settings import Settings

@@ -5,17 +5,6 @@ from sqlalchemy.orm import Session
 
 from app.errors import NotAllowed, NotSignedIn
 from app.features.access import Caller, caller_of
-from app.features.accounts.passwords import hash_password, require_good
-from app.features.accounts.people import account_by_id, end_logins
-from app.features.accounts.schemas import (
-    AccountView,
-    Credentials,
-    NewPassword,
-    SignedInView,
-    WhoView,
-)
-from app.features.accounts.service import check_password, hash_token, issue_token, revoke_token
-from app.features.audit.service import record
 from app.features.context import AppContext
 from app.features.cookies import delete_cookie, read_cookie, set_cookie
 from app.features.dependencies import (
@@ -27,6 +16,22 @@ from app.features.dependencies import (
     known_caller,
 )
 from app.features.live import after_commit
+from app.features.people.accounts.passwords import hash_password, require_good
+from app.features.people.accounts.people import account_by_id, end_logins
+from app.features.people.accounts.schemas import (
+    AccountView,
+    Credentials,
+    NewPassword,
+    SignedInView,
+    WhoView,
+)
+from app.features.people.accounts.service import (
+    check_password,
+    hash_token,
+    issue_token,
+    revoke_token,
+)
+from app.features.people.audit.service import record
 from app.models import Account
 
 router = APIRouter(tags=["accounts"])

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.features.accounts.passwords import MAX_LENGTH
+from app.features.people.accounts.passwords import MAX_LENGTH
 
 Role = Literal["admin", "experimenter", "operator", "analyst"]
 StudyKeys = Annotated[list[Annotated[str, Field(max_length=80)]], Field(max_length=500)]

@@ -14,7 +14,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotSignedIn
-from app.features.accounts.passwords import hash_password, is_password
+from app.features.people.accounts.passwords import hash_password, is_password
 from app.models import Account, LoginToken
 
 _USERNAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")

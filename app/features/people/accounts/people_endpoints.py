@@ -6,8 +6,10 @@ from fastapi import APIRouter, Request, Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.accounts.endpoints import open_login
-from app.features.accounts.invitations import (
+from app.features.dependencies import Context, Reading, SignedIn, Writing
+from app.features.live import after_commit
+from app.features.people.accounts.endpoints import open_login
+from app.features.people.accounts.invitations import (
     accept,
     invitations,
     invite,
@@ -15,7 +17,7 @@ from app.features.accounts.invitations import (
     revoke_invitation,
     status_of,
 )
-from app.features.accounts.people import (
+from app.features.people.accounts.people import (
     Person,
     account_by_id,
     close_account,
@@ -26,7 +28,7 @@ from app.features.accounts.people import (
     person_of,
     reopen_account,
 )
-from app.features.accounts.schemas import (
+from app.features.people.accounts.schemas import (
     Acceptance,
     AccountView,
     InvitationLook,
@@ -38,9 +40,7 @@ from app.features.accounts.schemas import (
     PersonView,
     SignedInView,
 )
-from app.features.audit.service import record
-from app.features.dependencies import Context, Reading, SignedIn, Writing
-from app.features.live import after_commit
+from app.features.people.audit.service import record
 from app.models import Account, Invitation, Study
 
 router = APIRouter(tags=["accounts"])

@@ -13,9 +13,9 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Gone, NotFound
-from app.features.accounts.passwords import require_good
-from app.features.accounts.people import give_studies, study_ids
-from app.features.accounts.service import create_account, hash_token
+from app.features.people.accounts.passwords import require_good
+from app.features.people.accounts.people import give_studies, study_ids
+from app.features.people.accounts.service import create_account, hash_token
 from app.models import Account, Invitation, Study
 
 
