@@ -16,13 +16,10 @@ from app.database import open_database
 from app.features.care.opening.service import bring_up_to_date
 from app.features.care.rights.service import finish_erasures
 from app.features.care.storage.measuring import StorageDesk
-from app.features.context import AppContext
 from app.features.design.studies.service import add_shipped
-from app.features.live import Hub
 from app.features.movement.avatar.service import add_shipped_avatar
 from app.features.movement.walking.desk import FittingDesk
 from app.features.people.accounts.service import ensure_admin
-from app.features.rate_limit import RateLimiter
 from app.features.record.sessions.recovery import stop_running_clocks
 from app.features.record.telemetry.encoder import Encoder
 from app.features.record.telemetry.fold import Folder
@@ -32,8 +29,11 @@ from app.features.record.tryout.desk import TryoutDesk
 from app.features.results.analysis.drawing import Drawings
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.replay.desk import ReplayDesk
-from app.features.storage_health import StorageHealth
 from app.lan.network import Network
+from app.platform.context import AppContext
+from app.platform.hub import Hub
+from app.platform.rate_limit import RateLimiter
+from app.platform.storage_health import StorageHealth
 from app.resources import static_dir
 from app.settings import Settings
 

@@ -18,7 +18,7 @@ from app.errors import (
     NotFound,
     ReembodyError,
 )
-from app.features.trouble import BUSY, explain
+from app.platform.trouble import BUSY, explain
 
 log = logging.getLogger(__name__)
 

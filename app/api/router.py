@@ -12,8 +12,6 @@ from app import __version__
 from app.features.care.network.endpoints import router as network
 from app.features.care.rights.endpoints import router as rights
 from app.features.care.storage.endpoints import router as storage
-from app.features.context import AppContext
-from app.features.dependencies import API_PREFIX, Context
 from app.features.design.instruments.endpoints import router as instruments
 from app.features.design.studies.endpoints import router as studies
 from app.features.movement.avatar.endpoints import router as avatars
@@ -48,6 +46,8 @@ from app.features.results.exports.file_endpoints import router as export_files
 from app.features.results.imports.endpoints import router as imports
 from app.features.results.preregistration.endpoints import router as preregistrations
 from app.features.results.replay.endpoints import router as replays
+from app.platform.context import AppContext
+from app.platform.dependencies import API_PREFIX, Context
 
 
 class Health(BaseModel):

@@ -16,9 +16,9 @@ from app.features.care.rights.service import (
     finish_erasures,
     forget_erasure,
 )
-from app.features.context import AppContext
 from app.features.record.sessions.recovery import stop_running_clocks
 from app.main import create_app
+from app.platform.context import AppContext
 from app.settings import Settings
 
 

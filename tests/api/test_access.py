@@ -5,7 +5,7 @@ import re
 import pytest
 from starlette.websockets import WebSocketDisconnect
 
-from app.features.policy import ANYONE, POLICY
+from app.platform.policy import ANYONE, POLICY
 from app.wire.messages import SUBPROTOCOL
 from tests.faults.figures import note
 from tests.features.lab import Lab, error

@@ -13,7 +13,7 @@ import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
 
-from app.features.policy import ANYONE, HEADSET, POLICY, TABLET
+from app.platform.policy import ANYONE, HEADSET, POLICY, TABLET
 from tests.api.people import ROLES, Place, foreign_study, sign_in
 from tests.faults.figures import note
 from tests.features.lab import STUDY, Lab

@@ -1,6 +1,6 @@
 """The policy table and the routes are the same list."""
 
-from app.features.policy import ANYONE, HEADSET, LAB, POLICY, TABLET
+from app.platform.policy import ANYONE, HEADSET, LAB, POLICY, TABLET
 from tests.features.lab import Lab
 
 NOT_OVER_HTTP = {"WEBSOCKET /api/vr/stream", "WEBSOCKET /api/sessions/{session_id}/pose"}

@@ -16,7 +16,7 @@ from app.clock import Clock
 from app.database import open_database
 from app.features.care.opening.service import bring_up_to_date
 from app.features.design.studies.service import add_shipped
-from app.features.policy import POLICY
+from app.platform.policy import POLICY
 from app.settings import Settings
 from tests.benchmarks.report import Figure, Report
 from tests.benchmarks.thousand import fill_thousand

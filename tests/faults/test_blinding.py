@@ -14,7 +14,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from app.features.policy import POLICY
+from app.platform.policy import POLICY
 from app.rehearsal.cast import Cast, perform
 from app.rehearsal.rehearse import RehearsalPlan, assembled
 from tests.faults.figures import note

@@ -15,10 +15,10 @@ from pydantic import SecretStr
 
 from app.clock import Clock
 from app.database import Database
-from app.features.context import AppContext
 from app.features.people.accounts.service import issue_token
 from app.main import create_app
 from app.models import Account
+from app.platform.context import AppContext
 from app.settings import Settings
 
 STUDY = "reembodiment-latency"

@@ -3,7 +3,7 @@ import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
 import { RULES } from "./may";
 
-const SOURCE = readFileSync(new URL("../../../app/features/policy.py", import.meta.url), "utf-8");
+const SOURCE = readFileSync(new URL("../../../app/platform/policy.py", import.meta.url), "utf-8");
 const SETS = new Map(
   [...SOURCE.matchAll(/^([A-Z]+) = frozenset\(\{(.+)\}\)$/gm)].map(([, name, roles]) => [
     name,

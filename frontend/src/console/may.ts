@@ -1,6 +1,6 @@
 /**
  * Who may do what, so that nobody is shown a door that is locked for them. The server decides; this
- * table repeats the rows of `app/features/policy.py` that the console draws by, and a test compares.
+ * table repeats the rows of `app/platform/policy.py` that the console draws by, and a test compares.
  */
 import type { Role } from "@shared/api/people";
 import { useAccount } from "./account";

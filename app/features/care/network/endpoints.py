@@ -9,9 +9,9 @@ from app.features.care.network.schemas import (
     HelpView,
     NetworkView,
 )
-from app.features.dependencies import Context, SignedIn
 from app.lan.network import Reach, ShownCertificate
 from app.lan.qr import qr_svg
+from app.platform.dependencies import Context, SignedIn
 
 router = APIRouter(tags=["network"])
 

@@ -13,9 +13,9 @@ from app.features.care.rights.tombstones import (
     tombstone_file,
     tombstones_of,
 )
-from app.features.context import AppContext
 from app.features.people.audit.service import record
 from app.models import Participant, StudySession
+from app.platform.context import AppContext
 
 AGAIN = "restored"
 """The reason code of an erasure that was made again."""

@@ -7,7 +7,6 @@ can be erased.
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound, NotNow
-from app.features.context import AppContext
 from app.features.people.audit.service import record
 from app.features.record.questionnaires.schemas import AnswerValue
 from app.features.record.questionnaires.service import correct_answer
@@ -15,6 +14,7 @@ from app.features.record.sessions.contents import store_content
 from app.features.record.sessions.engine.commands import CorrectAnswers
 from app.features.record.sessions.service import apply_command, state_of
 from app.models import AnswerCorrection, StudySession, Submission
+from app.platform.context import AppContext
 
 CONTENT = "correction"
 

@@ -28,13 +28,13 @@ from app.features.care.rights.service import (
     record_copy,
     require_erasable,
 )
-from app.features.context import AppContext
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.design.studies.service import study_by_key
 from app.features.people.audit.service import record
 from app.features.record.questionnaires.schemas import StoredAnswers
 from app.features.record.questionnaires.service import stored_answers
 from app.features.record.sessions.service import session_by_id
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["rights"])
 

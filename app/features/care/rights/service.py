@@ -13,7 +13,7 @@ from app.features.care.rights.overwriting import (
     overwrite_what_is_left,
 )
 from app.features.care.rights.tombstones import tombstone_file, tombstones_of
-from app.features.context import AppContext
+from app.platform.context import AppContext
 
 __all__ = [
     "COMMAND_LINE",

@@ -4,7 +4,7 @@ from fastapi import APIRouter
 
 from app.features.care.storage.schemas import StorageView
 from app.features.care.storage.service import storage_view
-from app.features.dependencies import Context, Reading, SignedIn
+from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(tags=["storage"])
 

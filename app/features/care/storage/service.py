@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.access import Caller, is_theirs
 from app.features.care.storage.measuring import Measured, MeasuredSession
 from app.features.care.storage.schemas import (
     DiskView,
@@ -14,9 +13,10 @@ from app.features.care.storage.schemas import (
     StorageView,
     StudyRoom,
 )
-from app.features.context import AppContext
 from app.features.design.studies.service import newest_version, protocol_of
 from app.models import Study
+from app.platform.access import Caller, is_theirs
+from app.platform.context import AppContext
 
 LARGEST = 12
 """How many sessions are listed."""

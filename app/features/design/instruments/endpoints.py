@@ -6,9 +6,6 @@ from fastapi import APIRouter
 from sqlalchemy import select
 
 from app.errors import InvalidInput
-from app.features.access import is_theirs
-from app.features.config_problems import problem_views
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.design.instruments.schemas import (
     InstrumentCheck,
     InstrumentDetail,
@@ -27,6 +24,9 @@ from app.features.design.instruments.service import (
 from app.features.design.instruments.trying import try_answers
 from app.features.design.instruments.views import detail_of, preview_of, summary_of
 from app.models import InstrumentVersion
+from app.platform.access import is_theirs
+from app.platform.config_problems import problem_views
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.protocol import ConfigError, load_instrument
 
 router = APIRouter(tags=["instruments"])

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from app.features.config_problems import ProblemView
+from app.platform.config_problems import ProblemView
 
 MAX_YAML_CHARACTERS = 262_144
 Whole = Annotated[int, Field(ge=-(2**53), le=2**53)]

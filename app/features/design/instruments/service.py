@@ -7,8 +7,8 @@ from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
-from app.features.config_problems import invalid_config
 from app.models import InstrumentVersion, Study, StudyVersion
+from app.platform.config_problems import invalid_config
 from app.protocol import ConfigError, LoadedInstrument, load_instrument, parse_instrument_json
 from app.science.instruments import Instrument
 

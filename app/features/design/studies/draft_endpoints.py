@@ -4,7 +4,6 @@ from typing import Any
 
 from fastapi import APIRouter
 
-from app.features.dependencies import Reading, SignedIn
 from app.features.design.studies.comparing import compare_draft
 from app.features.design.studies.draft_schemas import (
     CheckResult,
@@ -20,6 +19,7 @@ from app.features.design.studies.drafts import check, dry_run, edit
 from app.features.design.studies.schemas import StudyFile
 from app.features.design.studies.service import study_by_key
 from app.features.design.studies.templates import templates
+from app.platform.dependencies import Reading, SignedIn
 from app.protocol.loading import study_schema
 
 router = APIRouter(tags=["studies"])

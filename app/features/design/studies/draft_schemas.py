@@ -4,8 +4,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.features.config_problems import ProblemView
 from app.features.design.studies.schemas import MAX_YAML_CHARACTERS
+from app.platform.config_problems import ProblemView
 from app.protocol.plan import StepKind
 
 MAX_CHANGES = 200

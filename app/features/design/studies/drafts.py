@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.config_problems import invalid_config, problem_views
 from app.features.design.instruments.service import parsed_instruments
 from app.features.design.studies.draft_schemas import (
     ChangeRequest,
@@ -18,6 +17,7 @@ from app.features.design.studies.draft_schemas import (
 )
 from app.features.design.studies.service import check_study
 from app.features.movement.avatar.service import newest_numbers
+from app.platform.config_problems import invalid_config, problem_views
 from app.protocol import ConfigError, LedgerRow, StudyProtocol, compile_plan, load_study, sequences
 from app.protocol.editing import Change, edit_text
 from app.protocol.orders import ledger_block

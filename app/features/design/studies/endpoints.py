@@ -9,8 +9,6 @@ from fastapi import APIRouter, Query
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.access import Caller, add_member, is_blind, is_theirs
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.design.studies.comparing import compare_versions
 from app.features.design.studies.draft_endpoints import router as drafts
 from app.features.design.studies.draft_schemas import DuplicateRequest, StudyDiff, VersionDetail
@@ -33,6 +31,8 @@ from app.features.design.studies.service import (
 )
 from app.features.people.audit.service import record
 from app.models import Study, StudyVersion
+from app.platform.access import Caller, add_member, is_blind, is_theirs
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["studies"])
 router.include_router(drafts)

@@ -7,9 +7,9 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotNow
-from app.features.config_problems import invalid_config
 from app.features.design.studies.service import create_study, newest_version, protocol_of
 from app.models import Study, StudySession, StudyVersion
+from app.platform.config_problems import invalid_config
 from app.protocol import ConfigError
 from app.protocol.editing import Change, edit_text
 

@@ -9,7 +9,6 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
-from app.features.config_problems import invalid_config
 from app.features.design.instruments.service import (
     instrument_of as instrument_of,  # read with studies
 )
@@ -20,6 +19,7 @@ from app.features.design.studies.versions import used_instrument as used_instrum
 from app.features.design.studies.versions import version_content as version_content
 from app.features.movement.avatar.service import newest_numbers
 from app.models import InstrumentVersion, Study, StudySession, StudyVersion
+from app.platform.config_problems import invalid_config
 from app.protocol import ConfigError, LoadedStudy, StudyProtocol, load_study, parse_study_json
 from app.resources import study_configs_dir
 

@@ -10,8 +10,8 @@ from sqlalchemy.orm import Session
 
 from app.errors import NotFound
 from app.features.design.instruments.service import instrument_of
-from app.features.unchanging import Unchanging
 from app.models import InstrumentVersion, StudyVersion
+from app.platform.immutable_cache import Unchanging
 from app.protocol import StudyProtocol, parse_study_json
 from app.science.instruments import Instrument
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
-from app.features.config_problems import ProblemView
+from app.platform.config_problems import ProblemView
 from app.protocol.avatar import AvatarFile
 
 MAX_FILE_CHARACTERS = 262_144

@@ -6,8 +6,6 @@ from itertools import groupby
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.features.access import Caller, is_theirs
-from app.features.config_problems import problem_views
 from app.features.movement.avatar.schemas import (
     AvatarCheck,
     AvatarSummary,
@@ -23,6 +21,8 @@ from app.features.movement.avatar.service import (
     version_of,
 )
 from app.models import Avatar, AvatarVersion, Study, StudySession
+from app.platform.access import Caller, is_theirs
+from app.platform.config_problems import problem_views
 from app.protocol import ConfigError
 from app.protocol.avatar import file_of, load_avatar
 from app.protocol.errors import ConfigProblem

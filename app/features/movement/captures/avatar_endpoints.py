@@ -8,7 +8,6 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.movement.captures.binary import BINARY, BYTES, MEDIA_TYPES, binary
 from app.features.movement.captures.downloads import attachment, retargeted_file
 from app.features.movement.captures.joint_maps import (
@@ -26,6 +25,7 @@ from app.features.movement.captures.schemas import (
 )
 from app.features.movement.captures.tasks import retargeted_positions, verification_json
 from app.features.movement.captures.verification_schemas import VerificationView
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/captures", tags=["captures"])
 

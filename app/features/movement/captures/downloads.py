@@ -9,12 +9,12 @@ from urllib.parse import quote
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
 from app.errors import NotFound
-from app.features.context import AppContext
 from app.features.movement.captures.avatars import Mapped
 from app.features.movement.captures.contents import plain_pieces
 from app.features.movement.captures.schemas import ExportFormat
 from app.features.movement.captures.service import capture_by_id
 from app.features.movement.captures.tasks import write_retargeted
+from app.platform.context import AppContext
 
 
 def stored_file(context: AppContext, capture_id: str, *, companion: bool) -> tuple[str, str]:

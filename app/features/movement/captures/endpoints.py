@@ -6,8 +6,6 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.features.context import AppContext
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.movement.captures.binary import BINARY, BYTES, binary
 from app.features.movement.captures.downloads import attachment, sent, stored_file
 from app.features.movement.captures.schemas import (
@@ -30,6 +28,8 @@ from app.features.movement.captures.service import (
 )
 from app.features.movement.captures.tasks import recorded_positions
 from app.features.movement.captures.views import capture_page, capture_view
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/captures", tags=["captures"])
 BODY = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}

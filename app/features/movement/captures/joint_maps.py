@@ -11,8 +11,6 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, StaleVersion
-from app.features.access import Caller
-from app.features.context import AppContext
 from app.features.movement.captures.avatars import Mapped
 from app.features.movement.captures.schemas import (
     CaptureSummary,
@@ -25,6 +23,8 @@ from app.features.movement.captures.service import capture_by_id, store_of
 from app.features.movement.captures.source import source_of
 from app.features.people.audit.service import record
 from app.models import CaptureRow, SavedJointMap
+from app.platform.access import Caller
+from app.platform.context import AppContext
 from app.science.retargeting.joint_map import (
     JointMapError,
     Proposal,

@@ -10,8 +10,6 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound
-from app.features.access import Caller
-from app.features.context import AppContext
 from app.features.movement.captures.contents import drop_unused, store
 from app.features.movement.captures.inspecting import (
     Inspected,
@@ -26,6 +24,8 @@ from app.features.movement.captures.uploads import Uploaded, uploaded
 from app.features.people.audit.service import record
 from app.models import CaptureRow
 from app.models.types import new_id
+from app.platform.access import Caller
+from app.platform.context import AppContext
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ import psutil
 
 from app.errors import InvalidInput
 from app.features.movement.captures.source import Cannot
-from app.features.workers import Worker
-from app.features.working_line import Words, WorkingLine
+from app.platform.job_queue import Words, WorkingLine
+from app.platform.workers import Worker
 
 WITHIN_S = 120.0
 """The longest that anything may take; a capture of an hour takes a quarter of it."""

@@ -6,8 +6,6 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.features.context import AppContext
-from app.features.dependencies import Context, Reading, SignedIn
 from app.features.movement.captures.binary import BINARY, BYTES, binary
 from app.features.movement.captures.downloads import attachment, sent
 from app.features.movement.captures.schemas import FileName
@@ -15,6 +13,8 @@ from app.features.movement.humanoids.schemas import HumanoidPage, HumanoidView
 from app.features.movement.humanoids.service import humanoid_by_hash
 from app.features.movement.humanoids.taking_in import add_humanoid
 from app.features.movement.humanoids.views import humanoid_page, humanoid_view
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(prefix="/humanoids", tags=["humanoids"])
 BODY = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}

@@ -10,8 +10,8 @@ from typing import ClassVar
 
 from app.errors import InvalidInput
 from app.features.movement.walking.sources import Cannot
-from app.features.workers import Worker
-from app.features.working_line import Words, WorkingLine
+from app.platform.job_queue import Words, WorkingLine
+from app.platform.workers import Worker
 
 WITHIN_S = 120.0
 """The longest that an answer may take; tables of hours of tracks take half a minute."""

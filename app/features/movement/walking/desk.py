@@ -25,8 +25,8 @@ from app.features.movement.captures.contents import compress, store
 from app.features.movement.walking.progress import FitFolder, Progress
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
 from app.features.movement.walking.tasks import fit_model
-from app.features.workers import Worker
 from app.models import WalkingModelRow
+from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
 BROKE = "the process that fitted it ended: resume it, and if that fails too, look at the log"

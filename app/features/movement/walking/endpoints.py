@@ -5,7 +5,6 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from app.errors import InvalidInput
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.movement.captures.binary import BINARY, BYTES, binary
 from app.features.movement.captures.downloads import attachment
 from app.features.movement.captures.schemas import FileName
@@ -36,6 +35,7 @@ from app.features.movement.walking.walk_sets import (
     walk_set_list,
     walk_set_view,
 )
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/walking", tags=["walking"])
 BODY = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}

@@ -7,8 +7,6 @@ from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.features.context import AppContext
-from app.features.dependencies import Context, Reading, SignedIn, write
 from app.features.movement.captures.binary import BYTES, binary
 from app.features.movement.captures.downloads import attachment, sent
 from app.features.movement.walking.model_schemas import (
@@ -36,6 +34,8 @@ from app.features.movement.walking.service import (
 from app.features.movement.walking.sources import Question, SliceQuestion
 from app.features.movement.walking.tasks import plan_way, predict_walk, slice_of
 from app.features.movement.walking.walk_sets import store_of
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, Reading, SignedIn, write
 
 router = APIRouter(prefix="/walking", tags=["walking"])
 

@@ -8,9 +8,6 @@ from sqlalchemy.orm import Session
 
 from app.adapters.walks.scene_file import load_scene, shipped_scenes
 from app.errors import Conflict, NotFound
-from app.features.access import Caller
-from app.features.config_problems import invalid_config
-from app.features.context import AppContext
 from app.features.movement.walking.schemas import (
     NewScene,
     ObstacleView,
@@ -20,6 +17,9 @@ from app.features.movement.walking.schemas import (
 )
 from app.features.people.audit.service import record
 from app.models import WalkingScene
+from app.platform.access import Caller
+from app.platform.config_problems import invalid_config
+from app.platform.context import AppContext
 from app.protocol import ConfigError
 from app.science.walking.scene import Scene
 

@@ -6,8 +6,6 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
-from app.features.access import Caller
-from app.features.context import AppContext
 from app.features.movement.captures.contents import drop_unused, size_of
 from app.features.movement.walking.model_schemas import (
     FittedOn,
@@ -25,6 +23,8 @@ from app.features.movement.walking.walk_sets import walk_set_by_id, walk_set_vie
 from app.features.people.audit.service import record
 from app.models import WalkingModelRow
 from app.models.types import new_id
+from app.platform.access import Caller
+from app.platform.context import AppContext
 
 
 def model_by_id(db: Session, model_id: str, *, lock: bool = False) -> WalkingModelRow:

@@ -3,7 +3,6 @@
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.context import AppContext
 from app.features.movement.captures.service import source_of_capture
 from app.features.movement.walking.scenes import scene_text
 from app.features.movement.walking.schemas import (
@@ -20,6 +19,7 @@ from app.features.movement.walking.sources import (
     TrackSource,
     WalkSource,
 )
+from app.platform.context import AppContext
 
 
 def source_of_set(db: Session, view: WalkSetView) -> WalkSource:

@@ -11,8 +11,6 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound
-from app.features.access import Caller
-from app.features.context import AppContext
 from app.features.movement.captures.contents import compress, drop_unused, store
 from app.features.movement.captures.uploads import uploaded
 from app.features.movement.walking.schemas import (
@@ -40,6 +38,8 @@ from app.features.movement.walking.tasks import (
 )
 from app.features.people.audit.service import record
 from app.models import WalkingModelRow, WalkSetRow
+from app.platform.access import Caller
+from app.platform.context import AppContext
 
 
 @dataclass(frozen=True)

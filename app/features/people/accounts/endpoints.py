@@ -4,18 +4,6 @@ from fastapi import APIRouter, Request, Response
 from sqlalchemy.orm import Session
 
 from app.errors import NotAllowed, NotSignedIn
-from app.features.access import Caller, caller_of
-from app.features.context import AppContext
-from app.features.cookies import delete_cookie, read_cookie, set_cookie
-from app.features.dependencies import (
-    LOGIN_COOKIE,
-    Context,
-    SignedIn,
-    Writing,
-    bearer_token,
-    known_caller,
-)
-from app.features.live import after_commit
 from app.features.people.accounts.passwords import hash_password, require_good
 from app.features.people.accounts.people import account_by_id, end_logins
 from app.features.people.accounts.schemas import (
@@ -33,6 +21,18 @@ from app.features.people.accounts.service import (
 )
 from app.features.people.audit.service import record
 from app.models import Account
+from app.platform.access import Caller, caller_of
+from app.platform.context import AppContext
+from app.platform.cookies import delete_cookie, read_cookie, set_cookie
+from app.platform.dependencies import (
+    LOGIN_COOKIE,
+    Context,
+    SignedIn,
+    Writing,
+    bearer_token,
+    known_caller,
+)
+from app.platform.hub import after_commit
 
 router = APIRouter(tags=["accounts"])
 

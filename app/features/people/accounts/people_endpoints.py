@@ -6,8 +6,6 @@ from fastapi import APIRouter, Request, Response
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.dependencies import Context, Reading, SignedIn, Writing
-from app.features.live import after_commit
 from app.features.people.accounts.endpoints import open_login
 from app.features.people.accounts.invitations import (
     accept,
@@ -42,6 +40,8 @@ from app.features.people.accounts.schemas import (
 )
 from app.features.people.audit.service import record
 from app.models import Account, Invitation, Study
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
+from app.platform.hub import after_commit
 
 router = APIRouter(tags=["accounts"])
 

@@ -5,9 +5,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from app.features.dependencies import Reading, SignedIn
 from app.features.people.audit.schemas import AuditCheckView, AuditPage, AuditView
 from app.features.people.audit.service import entries_before, verify_trail
+from app.platform.dependencies import Reading, SignedIn
 
 router = APIRouter(tags=["audit"])
 Name = Annotated[str | None, Query(max_length=100)]

@@ -2,13 +2,13 @@
 
 from fastapi import APIRouter
 
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.record.calibrations.schemas import CalibrationView, NewCalibration, Retirement
 from app.features.record.calibrations.service import (
     add_calibration,
     calibrations,
     retire_calibration,
 )
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/calibrations", tags=["calibrations"])
 

@@ -2,13 +2,13 @@
 
 from fastapi import APIRouter, Request, Response
 
-from app.features.cookies import set_cookie
-from app.features.dependencies import TABLET_COOKIE, Context, SignedIn, Writing
 from app.features.people.audit.service import record
 from app.features.record.devices.schemas import NewPairing, PairedView, PairingView, PairRequest
 from app.features.record.devices.service import new_code, pair, revoke
 from app.features.record.sessions.service import session_by_id
 from app.lan.qr import qr_svg
+from app.platform.cookies import set_cookie
+from app.platform.dependencies import TABLET_COOKIE, Context, SignedIn, Writing
 
 router = APIRouter(tags=["devices"])
 TABLET_COOKIE_DAYS = 2

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput
-from app.features.context import AppContext
 from app.features.movement.avatar.service import configuration_by_hash
 from app.features.movement.humanoids.service import figure_by_hash
 from app.features.record.headset.avatar_schemas import AvatarWish, SessionAvatar
@@ -19,6 +18,7 @@ from app.features.record.sessions.capture import require_capture
 from app.features.record.sessions.contents import content_body, contents_of, store_content
 from app.features.record.sessions.engine.commands import RecordAvatar
 from app.features.record.sessions.service import apply_command, protocol_of_session, session_by_id
+from app.platform.context import AppContext
 from app.protocol.avatar import file_of
 from app.protocol.tasks import Tasks
 from app.science.avatar.configuration import Configuration

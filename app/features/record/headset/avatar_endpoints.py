@@ -2,9 +2,9 @@
 
 from fastapi import APIRouter
 
-from app.features.dependencies import Context, PairedHeadset
 from app.features.record.headset.avatar import prepare, put_on_record
 from app.features.record.headset.avatar_schemas import AvatarWish, SessionAvatar
+from app.platform.dependencies import Context, PairedHeadset
 
 router = APIRouter(prefix="/vr", tags=["headset"])
 

@@ -13,8 +13,6 @@ from typing import TypeVar
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, Withdrawn
-from app.features.context import AppContext
-from app.features.live import Subscription
 from app.features.record.devices.service import device_of_token
 from app.features.record.headset.lookout import Lookout
 from app.features.record.headset.parsing import parse_message
@@ -30,6 +28,8 @@ from app.features.record.telemetry.writer import (
     ProbeContent,
     TelemetryWriter,
 )
+from app.platform.context import AppContext
+from app.platform.hub import Subscription
 from app.wire import decode_batch
 from app.wire.messages import (
     PROTOCOL_VERSION,

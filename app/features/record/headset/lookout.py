@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.features.context import AppContext
 from app.features.record.alarms.alarm import Alarm, Change, Condition, Moment
 from app.features.record.alarms.limits import WatchLimits
 from app.features.record.alarms.watch import QualityWatch
@@ -17,6 +16,7 @@ from app.features.record.poses.service import PoseFeed
 from app.features.record.telemetry.live import LiveTelemetry
 from app.features.record.telemetry.outcome import Outcome
 from app.features.record.telemetry.writer import AlarmContent, Content, LossContent
+from app.platform.context import AppContext
 from app.wire import Batch
 from app.wire.messages import HeadsetState, Probed, Produced, Report, Welcome
 

@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from fastapi import APIRouter
 from sqlalchemy.orm import Session
 
-from app.features.access import Caller, is_blind
-from app.features.dependencies import Reading, SignedIn
 from app.features.design.studies.schemas import AttemptView, LedgerView, SequenceRow, SlotRow
 from app.features.design.studies.service import newest_version, protocol_of, study_by_key
 from app.features.record.ledger.service import SlotView, ledger_of, planned_slots
 from app.features.record.sessions.schemas import Kind
 from app.features.record.sessions.service import end_reason
+from app.platform.access import Caller, is_blind
+from app.platform.dependencies import Reading, SignedIn
 
 router = APIRouter(tags=["participants"])
 GIVEN_UP = ("aborted", "withdrawn")

@@ -2,7 +2,7 @@
 
 The feed of one headset's connection publishes the newest frame of each stream at most `RATE_HZ`
 times a second, and only while a console listens. A console that is slow finds the newest frame in
-its slot and never learns of those between, so nobody can hold up the headset (app.features.live).
+its slot and never learns of those between, so nobody can hold up the headset (app.platform.hub).
 
 A pose message is little-endian binary:
 
@@ -23,8 +23,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.features.live import Hub
 from app.features.record.poses.schemas import Touch
+from app.platform.hub import Hub
 from app.wire import Batch, StreamName
 from app.wire.messages import CompletionReport, ContactReport, Report
 

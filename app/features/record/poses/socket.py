@@ -13,11 +13,11 @@ from typing import Any
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from app.errors import NotSignedIn, ReembodyError
-from app.features.context import AppContext
-from app.features.dependencies import admitted
 from app.features.record.poses.schemas import Setup, Touches
 from app.features.record.poses.service import TOPICS, TOUCHES
 from app.features.record.poses.setting import setup_of
+from app.platform.context import AppContext
+from app.platform.dependencies import admitted
 from app.wire import StreamName
 
 CLOSE_NOT_SIGNED_IN = 4401

@@ -9,12 +9,12 @@ from typing import Any, Literal
 
 from sqlalchemy.orm import Session
 
-from app.features.context import AppContext
 from app.features.record.alarms.limits import WatchLimits
 from app.features.record.alarms.service import open_alarms
 from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
 from app.features.record.preflight.schemas import Check
 from app.models import Device, StudySession
+from app.platform.context import AppContext
 from app.science.skeleton import JOINT_COUNT
 
 LIMITS = WatchLimits()

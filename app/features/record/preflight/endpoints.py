@@ -4,9 +4,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Depends
 
-from app.features.dependencies import Context, SignedIn, Writing
 from app.features.record.preflight.schemas import Check, OverrideRequest, Preflight
 from app.features.record.preflight.service import override, preflight_of
+from app.platform.dependencies import Context, SignedIn, Writing
 
 router = APIRouter(prefix="/sessions/{session_id}/preflight", tags=["preflight"])
 

@@ -10,8 +10,6 @@ from anyio.to_thread import run_sync
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict
-from app.features.access import OVER
-from app.features.context import AppContext
 from app.features.people.audit.service import record
 from app.features.record.preflight.device_checks import device_checks
 from app.features.record.preflight.latency_check import latency_check
@@ -22,6 +20,8 @@ from app.features.record.sessions.contents import content_body, contents_of, sto
 from app.features.record.sessions.engine.commands import OverrideCheck
 from app.features.record.sessions.service import apply_command, session_by_id
 from app.models import StudySession
+from app.platform.access import OVER
+from app.platform.context import AppContext
 
 CONTENT = "preflight"
 """Kind of the contents that hold reasons."""

@@ -12,10 +12,10 @@ from sqlalchemy.orm import Session
 
 from app.database import Database
 from app.errors import NotDurable
-from app.features.context import AppContext
 from app.features.record.preflight.schemas import Check
-from app.features.trouble import explain
 from app.models import SessionContent
+from app.platform.context import AppContext
+from app.platform.trouble import explain
 
 KIND = "write_test"
 WRITTEN_BYTES = 64 * 1024

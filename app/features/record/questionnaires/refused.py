@@ -6,13 +6,13 @@ from typing import NoReturn
 from sqlalchemy.orm import Session
 
 from app.errors import KeptConflict
-from app.features.context import AppContext
 from app.features.record.questionnaires.schemas import SubmissionRequest
 from app.features.record.sessions.contents import content_body, contents_of, store_content
 from app.features.record.sessions.engine.commands import KeepRefusedForm
 from app.features.record.sessions.journal import canonical
 from app.features.record.sessions.service import apply_command
 from app.models import StudySession, Submission
+from app.platform.context import AppContext
 
 CONTENT = "refused_form"
 

@@ -9,7 +9,6 @@ from sqlalchemy import Table, bindparam, insert, select
 from sqlalchemy.orm import Session
 
 from app.errors import NotNow
-from app.features.context import AppContext
 from app.features.record.questionnaires.checks import check_answers
 from app.features.record.questionnaires.due import DueForm, due_form
 from app.features.record.questionnaires.due import current_administration as current_administration
@@ -27,6 +26,7 @@ from app.features.record.sessions.journal import canonical
 from app.features.record.sessions.service import apply_command
 from app.models import Answer, ScoreValue, StudySession, Submission
 from app.models.types import new_id
+from app.platform.context import AppContext
 from app.rows import insert_rows
 from app.science.instruments import Instrument, score_answers
 

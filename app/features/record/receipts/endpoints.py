@@ -4,10 +4,10 @@ from dataclasses import replace
 
 from fastapi import APIRouter
 
-from app.features.access import is_blind
-from app.features.dependencies import Reading, SignedIn
 from app.features.record.receipts.service import SessionReceipt, receipt_of
 from app.features.record.sessions.service import protocol_of_session, session_by_id
+from app.platform.access import is_blind
+from app.platform.dependencies import Reading, SignedIn
 
 router = APIRouter(tags=["receipts"])
 

@@ -3,7 +3,6 @@
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.context import AppContext
 from app.features.record.sessions.consent import ConsentDesk
 from app.features.record.sessions.contents import store_content
 from app.features.record.sessions.engine import Command, ContentRef
@@ -11,6 +10,7 @@ from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.schemas import CommandRequest
 from app.features.record.sessions.service import plan_of, state_of
 from app.models import StudySession
+from app.platform.context import AppContext
 from app.protocol import Step
 
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop")

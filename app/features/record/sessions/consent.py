@@ -12,7 +12,6 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.context import AppContext
 from app.features.design.studies.service import protocol_of
 from app.features.record.sessions.consent_schemas import (
     ConsentForm,
@@ -26,6 +25,7 @@ from app.features.record.sessions.contents import content_body, contents_of, sto
 from app.features.record.sessions.engine import ContentRef
 from app.features.record.sessions.service import plan_of
 from app.models import Participant, SessionContent, StudySession, StudyVersion
+from app.platform.context import AppContext
 from app.protocol import ConsentStep, Step, StudyProtocol, Text, sha256_of
 
 CONTENT = "consent"

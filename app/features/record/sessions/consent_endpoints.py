@@ -2,10 +2,10 @@
 
 from fastapi import APIRouter
 
-from app.features.dependencies import Reading, SignedIn
 from app.features.record.sessions.consent import consent_record
 from app.features.record.sessions.consent_schemas import ConsentRecord
 from app.features.record.sessions.service import session_by_id
+from app.platform.dependencies import Reading, SignedIn
 
 router = APIRouter(tags=["sessions"])
 

@@ -3,8 +3,6 @@
 from fastapi import APIRouter
 from sqlalchemy import select
 
-from app.features.access import is_blind
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.design.studies.service import study_by_key
 from app.features.record.questionnaires.schemas import (
     Administration,
@@ -39,6 +37,8 @@ from app.features.record.sessions.service import (
 )
 from app.features.record.sessions.view import event_views, list_sessions, session_view
 from app.models import TelemetryStream
+from app.platform.access import is_blind
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["sessions"])
 

@@ -5,8 +5,8 @@ from functools import lru_cache
 from sqlalchemy.orm import Session
 
 from app.features.record.ledger.service import slot_of
-from app.features.unchanging import Unchanging
 from app.models import StudySession, StudyVersion
+from app.platform.immutable_cache import Unchanging
 from app.protocol import parse_study_json
 from app.protocol.plan import Step, compile_plan
 

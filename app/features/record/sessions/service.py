@@ -8,7 +8,6 @@ from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound, NotNow, StaleVersion
-from app.features.context import AppContext
 from app.features.design.studies.service import (
     newest_version,
     protocol_of,
@@ -38,6 +37,7 @@ from app.features.record.sessions.projection import project
 from app.models import SessionContent, SessionEvent, StudySession
 from app.models.ledger import KINDS
 from app.models.types import new_id
+from app.platform.context import AppContext
 from app.protocol import StudyProtocol
 
 MAX_TIME_SCALE = 100.0

@@ -6,8 +6,6 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session, defer
 
-from app.features.access import Caller, is_blind
-from app.features.context import AppContext
 from app.features.design.studies.service import protocol_of, versions_of
 from app.features.record.alarms.service import open_alarms
 from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
@@ -31,6 +29,8 @@ from app.features.record.sessions.schemas import (
 )
 from app.features.record.sessions.service import plan_of, state_of
 from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
+from app.platform.access import Caller, is_blind
+from app.platform.context import AppContext
 from app.protocol import StudyProtocol
 from app.protocol.plan import Step
 

@@ -8,11 +8,11 @@ from fastapi import APIRouter, Depends, Request
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.errors import ReembodyError
-from app.features.access import Caller, is_blind
-from app.features.context import AppContext
-from app.features.dependencies import Context, SignedIn, get_caller
 from app.features.record.sessions.service import protocol_of_session, session_by_id
 from app.features.record.sessions.view import session_view
+from app.platform.access import Caller, is_blind
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, SignedIn, get_caller
 
 router = APIRouter(tags=["sessions"])
 HEARTBEAT_S = 10.0

@@ -2,13 +2,13 @@
 
 from fastapi import APIRouter
 
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.record.suggestions.schemas import Decision, NewSuggestion, SuggestionView
 from app.features.record.suggestions.service import (
     add_suggestion,
     decide_suggestion,
     suggestions_of,
 )
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["suggestions"])
 

@@ -2,9 +2,9 @@
 
 from fastapi import APIRouter
 
-from app.features.dependencies import Context, SignedIn, Writing
 from app.features.record.sessions.service import session_by_id
 from app.features.record.tablet.help import note_help
+from app.platform.dependencies import Context, SignedIn, Writing
 
 router = APIRouter(tags=["sessions"])
 

@@ -8,8 +8,6 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.context import AppContext
-from app.features.dependencies import Context, PairedTablet, Writing, tablet_in, write
 from app.features.design.studies.service import protocol_of
 from app.features.record.questionnaires.schemas import Receipt, SubmissionRequest
 from app.features.record.questionnaires.service import submit
@@ -26,6 +24,8 @@ from app.features.record.tablet.schemas import (
 )
 from app.features.record.tablet.service import tablet_state
 from app.models import Device, StudySession, StudyVersion
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, PairedTablet, Writing, tablet_in, write
 from app.protocol import Step
 
 router = APIRouter(prefix="/tablet", tags=["tablet"])

@@ -12,11 +12,11 @@ from typing import cast
 from sqlalchemy import Table, bindparam, delete, select
 from sqlalchemy.orm import Session
 
-from app.features.context import AppContext
 from app.features.record.telemetry.checkpoints import Checkpointer
 from app.features.record.telemetry.due import BATCHES, DUE_AFTER, KEY, Chunks, due_chunks
 from app.features.record.telemetry.encoder import Encoder
 from app.models import TelemetryChunk
+from app.platform.context import AppContext
 from app.rows import insert_rows
 
 log = logging.getLogger(__name__)

@@ -13,7 +13,6 @@ from typing import Any, cast
 from sqlalchemy import Table, select
 from sqlalchemy.orm import Session
 
-from app.features.context import AppContext
 from app.features.record.alarms.alarm import Change
 from app.features.record.alarms.service import store_change
 from app.features.record.sessions.engine.commands import HeadsetLost
@@ -27,6 +26,7 @@ from app.features.record.telemetry.outcome import Outcome
 from app.features.record.telemetry.positions import Positions, certain_active_s
 from app.models import ClockProbe, Phase, TelemetryBatch
 from app.models.types import new_id
+from app.platform.context import AppContext
 from app.rows import insert_rows
 from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
 from app.wire.messages import Flag, Probed, Produced, Resend

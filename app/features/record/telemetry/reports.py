@@ -7,7 +7,6 @@ from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
-from app.features.context import AppContext
 from app.features.record.sessions.engine.commands import Materialise, Report
 from app.features.record.sessions.service import (
     apply_command,
@@ -17,6 +16,7 @@ from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.outcome import Outcome
 from app.models import ClientReport, Completion, Contact
 from app.models.types import new_id
+from app.platform.context import AppContext
 from app.wire.messages import (
     REPORT_STREAM,
     CompletionReport,

@@ -13,7 +13,6 @@ from dataclasses import dataclass, field
 from sqlalchemy import ColumnElement, and_, delete, or_, select
 from sqlalchemy.orm import Session
 
-from app.features.context import AppContext
 from app.features.record.sessions.capture import erased_session, not_erased
 from app.features.record.sessions.service import session_by_id
 from app.features.record.telemetry.joint_errors import joint_error_rows
@@ -29,6 +28,7 @@ from app.models import (
     TelemetryBatch,
     TelemetryChunk,
 )
+from app.platform.context import AppContext
 
 log = logging.getLogger(__name__)
 Row = JointErrorRow | JointErrorCourseRow | PhaseLatency | PhaseQuality

@@ -14,13 +14,13 @@ from typing import NamedTuple, Protocol
 
 from sqlalchemy.exc import DBAPIError
 
-from app.features.context import AppContext
 from app.features.record.alarms.alarm import Change, Condition
 from app.features.record.sessions.capture import closed_sessions, refusal
 from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.outcome import Outcome
 from app.features.record.telemetry.reports import store_report
-from app.features.trouble import explain
+from app.platform.context import AppContext
+from app.platform.trouble import explain
 from app.wire import Batch, FrameFlags, flag_batches
 from app.wire.messages import Probed, Produced, Report
 

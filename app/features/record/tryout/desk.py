@@ -10,11 +10,11 @@ from typing import Any
 from app.clock import Clock
 from app.database import Database
 from app.errors import Conflict, NotDurable, NotFound
-from app.features.access import Caller
 from app.features.people.accounts.service import issue_token, revoke_token
 from app.features.record.tryout.performance import Performance
 from app.features.record.tryout.schemas import TryoutState, TryoutTrouble, TryoutView
 from app.models import Account
+from app.platform.access import Caller
 
 log = logging.getLogger(__name__)
 SPEED = 4.0

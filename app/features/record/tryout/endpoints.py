@@ -3,9 +3,6 @@
 from fastapi import APIRouter
 
 from app.errors import InvalidInput, NotFound
-from app.features.access import Caller, require_object
-from app.features.context import AppContext
-from app.features.dependencies import Context, Reading, SignedIn
 from app.features.design.studies.service import (
     newest_version,
     protocol_of,
@@ -13,6 +10,9 @@ from app.features.design.studies.service import (
     study_by_key,
 )
 from app.features.record.tryout.schemas import TryoutView, TryoutWish
+from app.platform.access import Caller, require_object
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(tags=["tryout"])
 

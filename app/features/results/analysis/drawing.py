@@ -22,7 +22,7 @@ from app.errors import NotDurable, ReembodyError
 from app.features.results.analysis.filters import NO_FILTER, FigureFilter
 from app.features.results.analysis.schemas import DashboardKind, FigureGroup
 from app.features.results.analysis.state import State, state_of_data
-from app.features.workers import Worker
+from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
 FIRST_WITHIN_S = 180.0

@@ -6,7 +6,6 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query, Response
 
 from app.features.care.rights.service import in_browser_of, record_copy, sessions_in
-from app.features.dependencies import Context, Reading, SignedIn
 from app.features.design.studies.service import study_by_key
 from app.features.people.audit.service import record
 from app.features.results.analysis.drawing import Drawn
@@ -18,6 +17,7 @@ from app.features.results.analysis.schemas import (
     GroupAsked,
     StatisticsView,
 )
+from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(tags=["analysis"])
 FigureKey = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,79}$")]

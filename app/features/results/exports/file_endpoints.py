@@ -6,10 +6,7 @@ from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import NotFound, NotNow
-from app.features.access import Caller, require_object
 from app.features.care.rights.service import in_browser_of, record_copy
-from app.features.context import AppContext
-from app.features.dependencies import Context, Reading, SignedIn
 from app.features.design.studies.service import study_by_key
 from app.features.people.audit.service import record
 from app.features.record.sessions.service import session_by_id
@@ -17,6 +14,9 @@ from app.features.results.exports.jobs import Job
 from app.features.results.exports.names import archive_name
 from app.features.results.exports.schemas import ExportView, ExportWish
 from app.models import Participant
+from app.platform.access import Caller, require_object
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(tags=["exports"])
 MEDIA_TYPE = "application/zip"

@@ -7,8 +7,8 @@ from pathlib import Path
 from app.features.results.analysis.schemas import Kind
 from app.features.results.exports.meter import Meter
 from app.features.results.exports.schemas import ExportState, ExportTrouble, ExportView
-from app.features.workers import Worker
 from app.models.types import new_id
+from app.platform.workers import Worker
 
 KEPT = timedelta(hours=2)
 """How long a file that is ready stays, from the last time somebody asked for it."""

@@ -14,8 +14,6 @@ from app.features.care.rights.service import (
     overwrite,
     record_copy,
 )
-from app.features.context import AppContext
-from app.features.dependencies import Context, Reading, SignedIn, Writing
 from app.features.design.studies.service import study_by_key
 from app.features.people.audit.service import record
 from app.features.results.imports.looking import check, look
@@ -40,6 +38,8 @@ from app.features.results.imports.stored import (
     imports_of,
     instrument_of_import,
 )
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["imports"], prefix="/studies/{key}/imports")
 

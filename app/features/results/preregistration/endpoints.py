@@ -4,11 +4,11 @@ from typing import Literal
 
 from fastapi import APIRouter, Response
 
-from app.features.dependencies import Context, Reading, SignedIn
 from app.features.results.analysis.schemas import DashboardKind
 from app.features.results.preregistration.markdown import as_markdown, without_codes
 from app.features.results.preregistration.schemas import PreregistrationView
 from app.features.results.preregistration.service import preregistration_of
+from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(tags=["preregistration"])
 

@@ -4,11 +4,11 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Response
 
-from app.features.dependencies import Context, Reading, SignedIn
 from app.features.movement.captures.binary import BYTES, binary
 from app.features.results.replay.schemas import Replay
 from app.features.results.replay.service import movement_tag, replayable
 from app.features.results.replay.timeline import replay_of
+from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(prefix="/sessions/{session_id}/phases/{phase_id}", tags=["replay"])
 PhaseId = Annotated[int, Path(ge=0, lt=2**31)]

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from app.errors import InvalidInput, NotDurable
-from app.features import working_line
 from app.features.movement.captures import workbench
 from app.features.movement.captures.workbench import Workbench
-from app.features.workers import Worker
+from app.platform import job_queue as working_line
+from app.platform.workers import Worker
 from tests.features.movement.captures import hostile
 
 LIMITED = 512 * 2**20

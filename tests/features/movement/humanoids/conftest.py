@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 
 from app.features.movement.captures import workbench
-from app.features.workers import Worker
+from app.platform.workers import Worker
 
 
 class SharedWorker(Worker):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from app.features.movement.walking import bench, desk
-from app.features.workers import Worker
+from app.platform.workers import Worker
 from tests.features.lab import Lab
 
 

@@ -5,7 +5,6 @@ import struct
 
 import numpy as np
 
-from app.features.live import Hub
 from app.features.record.poses.service import (
     HEADER,
     MAGIC,
@@ -15,6 +14,7 @@ from app.features.record.poses.service import (
     encode_pose,
 )
 from app.features.record.poses.socket import visible
+from app.platform.hub import Hub
 from app.wire import Batch, StreamName, decode_batch
 from app.wire.messages import CompletionReport, ContactReport, Report
 from tests.wire.samples import message, standing

@@ -2,10 +2,10 @@
 
 import time
 
-from app.features.access import Caller
 from app.features.people.accounts.service import hash_token
 from app.features.record.tryout.desk import TryoutDesk
 from app.models import Account, LoginToken
+from app.platform.access import Caller
 from tests.features.lab import STUDY, Json, Lab, error, ok
 
 WITHIN_S = 60.0

@@ -10,7 +10,7 @@ import pytest
 
 from app.database import Database
 from app.features.results.analysis.drawing import Drawings
-from app.features.workers import Worker
+from app.platform.workers import Worker
 from tests.features.builders import NOW, STUDY
 
 LATE_S = 0.2

@@ -13,8 +13,8 @@ from sqlalchemy.exc import DatabaseError, IntegrityError, OperationalError
 
 from app.clock import Clock
 from app.errors import NotDurable
-from app.features.storage_health import StorageHealth
-from app.features.trouble import DAMAGED, FULL, LOCKED, READ_ONLY, REFUSED, Trouble, explain
+from app.platform.storage_health import StorageHealth
+from app.platform.trouble import DAMAGED, FULL, LOCKED, READ_ONLY, REFUSED, Trouble, explain
 from tests.features.lab import Lab, error, running_lab
 from tests.support.sqlite import fresh_sqlite
 

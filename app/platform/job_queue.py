@@ -17,7 +17,7 @@ from typing import Any, ClassVar, ParamSpec, TypeVar
 from anyio.to_thread import run_sync
 
 from app.errors import InvalidInput, NotDurable
-from app.features.workers import Worker
+from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
 WAITING = 20

@@ -5,17 +5,17 @@ from dataclasses import dataclass, field
 from app.clock import Clock
 from app.database import Database
 from app.features.care.storage.measuring import StorageDesk
-from app.features.live import Hub
 from app.features.movement.captures.workbench import Workbench
 from app.features.movement.walking.bench import Bench
 from app.features.movement.walking.desk import FittingDesk
-from app.features.rate_limit import RateLimiter
 from app.features.record.tryout.desk import TryoutDesk
 from app.features.results.analysis.drawing import Drawings
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.replay.desk import ReplayDesk
-from app.features.storage_health import StorageHealth
 from app.lan.network import Network
+from app.platform.hub import Hub
+from app.platform.rate_limit import RateLimiter
+from app.platform.storage_health import StorageHealth
 from app.settings import Settings
 
 

@@ -19,7 +19,7 @@ from pydantic import BaseModel, ConfigDict
 
 from app.clock import Clock
 from app.errors import NotDurable
-from app.features.trouble import Trouble, explain
+from app.platform.trouble import Trouble, explain
 
 log = logging.getLogger(__name__)
 LOOK_EVERY_NS = TRY_AGAIN_NS = 5_000_000_000

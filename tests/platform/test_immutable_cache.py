@@ -4,7 +4,7 @@ import pytest
 from sqlalchemy import create_engine
 from sqlalchemy.orm import Session
 
-from app.features.unchanging import Unchanging
+from app.platform.immutable_cache import Unchanging
 
 HERE, THERE = (Session(create_engine(f"sqlite:///{name}.sqlite")) for name in ("here", "there"))
 """Two databases that nobody connects to."""

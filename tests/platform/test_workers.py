@@ -12,11 +12,11 @@ from concurrent.futures.process import BrokenProcessPool
 import psutil
 import pytest
 
-from app.features.workers import NICENESS, Worker
+from app.platform.workers import NICENESS, Worker
 
 KILLED_SERVER = """
 import os, signal
-from app.features.workers import Worker
+from app.platform.workers import Worker
 if __name__ == "__main__":
     print(Worker().submit(os.getpid).result(), flush=True)
     os.kill(os.getpid(), signal.SIGKILL)

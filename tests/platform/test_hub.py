@@ -3,7 +3,7 @@
 import asyncio
 from typing import Any
 
-from app.features.live import Hub
+from app.platform.hub import Hub
 
 
 async def heard_by(hub: Hub, *more: str) -> dict[str, Any]:

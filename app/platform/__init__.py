@@ -1,0 +1,1 @@
+"""What every request needs, whatever the feature: access, context, hub, limiters, jobs."""
