@@ -21,9 +21,9 @@ from app.features.movement.avatar.service import (
 from app.features.movement.humanoids.service import figure_by_hash
 from app.models import AvatarVersion
 from app.protocol.avatar import file_of
-from app.science.avatar.configuration import Configuration
-from app.science.avatar.editing import without_parts
-from app.science.avatar.figure import Figure
+from app.science.avatar.body.figure import Figure
+from app.science.avatar.configuration.configuration import Configuration
+from app.science.avatar.configuration.editing import without_parts
 from app.science.avatar.tuning import Followed, TuningReport
 
 _KEY: TypeAdapter[str] = TypeAdapter(AvatarKey)

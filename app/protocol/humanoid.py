@@ -6,9 +6,9 @@ from pydantic import Field, TypeAdapter
 
 from app.protocol.canonical import canonical_json
 from app.protocol.common import Strict
-from app.science.avatar.figure import Figure
-from app.science.avatar.hulls import Piece
-from app.science.avatar.parts import PART_NAMES
+from app.science.avatar.body.figure import Figure
+from app.science.avatar.body.hulls import Piece
+from app.science.avatar.body.parts import PART_NAMES
 from app.science.rotations.scalars import Vector
 
 
@@ -20,7 +20,7 @@ class PieceFile(Strict):
 
 
 class FigureFile(Strict):
-    """A model's measures; see `app.science.avatar.figure.Figure`."""
+    """A model's measures; see `app.science.avatar.body.figure.Figure`."""
 
     format: Literal["reembody-humanoid"]
     version: Literal[1]

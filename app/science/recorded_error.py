@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.delay import delayed_pose
+from app.science.avatar.simulation.delay import delayed_pose
 from app.science.joint_error import (
     ERROR_AXES,
     Clipping,

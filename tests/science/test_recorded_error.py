@@ -7,11 +7,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from app.science.avatar.delay import delayed_pose
-from app.science.avatar.hinge_reference import HingeReference
-from app.science.avatar.limits import ANATOMIC
-from app.science.avatar.parts import AXIS_NAMES
-from app.science.avatar.targets import TargetAngles, joint_rotations
+from app.science.avatar.body.parts import AXIS_NAMES
+from app.science.avatar.configuration.limits import ANATOMIC
+from app.science.avatar.simulation.delay import delayed_pose
+from app.science.avatar.targets.hinge_reference import HingeReference
+from app.science.avatar.targets.targets import TargetAngles, joint_rotations
 from app.science.joint_error import (
     ERROR_AXES,
     ERROR_JOINTS,

@@ -1,4 +1,4 @@
-"""Files of humanoid models: glTF 2.0 and VRM become `app.science.avatar.humanoid.Humanoid`."""
+"""Files of humanoid models: glTF 2.0 and VRM become `app.science.avatar.body.humanoid.Humanoid`."""
 
 from app.adapters.humanoids.errors import HumanoidFileError
 from app.adapters.humanoids.reader import Limits, ReadHumanoid, read_humanoid

@@ -17,7 +17,7 @@ from dataclasses import replace
 
 from app.adapters.humanoids.document import Document
 from app.adapters.humanoids.errors import HumanoidFileError
-from app.science.avatar.parts import FINGERS, PART_NAMES, SEGMENTS, SIDES
+from app.science.avatar.body.parts import FINGERS, PART_NAMES, SEGMENTS, SIDES
 from app.science.retargeting.joint_chains import is_below
 from app.science.retargeting.joint_map import propose_joint_map
 from app.science.rig import Rig

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from app.science.avatar.deleva import mass_fractions, segments_of
+from app.science.avatar.body.deleva import mass_fractions, segments_of
 from app.science.rig import RigMotion
 from app.science.rotations import FloatArray
 from app.science.walking.model import WalkingError

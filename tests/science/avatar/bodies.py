@@ -2,14 +2,14 @@
 
 import mujoco
 
-from app.science.avatar.axis_settings import AxisSettings
-from app.science.avatar.body import Body
-from app.science.avatar.gains import default_settings
-from app.science.avatar.masses import body_masses
-from app.science.avatar.mjcf import build_mjcf
-from app.science.avatar.model_options import ModelOptions
-from app.science.avatar.parts import FINGER_PARTS, PART_NAMES
-from app.science.avatar.scene import Scene, scene_of
+from app.science.avatar.body.body import Body
+from app.science.avatar.body.masses import body_masses
+from app.science.avatar.body.parts import FINGER_PARTS, PART_NAMES
+from app.science.avatar.configuration.axis_settings import AxisSettings
+from app.science.avatar.configuration.model_options import ModelOptions
+from app.science.avatar.mjcf.gains import default_settings
+from app.science.avatar.mjcf.mjcf import build_mjcf
+from app.science.avatar.mjcf.scene import Scene, scene_of
 from app.science.tasks.layout import BlockSpec, BoxSpec, Limb, build_layout
 
 NO_FINGERS = [part for part in PART_NAMES if part not in FINGER_PARTS]

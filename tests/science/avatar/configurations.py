@@ -4,11 +4,11 @@ import math
 
 from hypothesis import strategies as st
 
-from app.science.avatar.axis_settings import AxisSettings
-from app.science.avatar.configuration import ColliderKind, Configuration
-from app.science.avatar.groups import axes_of
-from app.science.avatar.parts import AXES_OF, PART_NAMES
-from app.science.avatar.templates import Drive, SingleJoint, primary_axis, shared_axes
+from app.science.avatar.body.parts import AXES_OF, PART_NAMES
+from app.science.avatar.configuration.axis_settings import AxisSettings
+from app.science.avatar.configuration.configuration import ColliderKind, Configuration
+from app.science.avatar.configuration.groups import axes_of
+from app.science.avatar.configuration.templates import Drive, SingleJoint, primary_axis, shared_axes
 
 DRIVEN = tuple(part for part in PART_NAMES if AXES_OF[part])
 FINE_SPRING = AxisSettings(300.0, 20.0, 150.0, math.radians(-41.0), math.radians(125.0))

@@ -4,12 +4,12 @@ from dataclasses import replace
 from functools import cache
 
 from app.adapters.humanoids import read_humanoid
-from app.science.avatar.colliders import ColliderKind
-from app.science.avatar.configuration import Hips
-from app.science.avatar.defaults import default_configuration
-from app.science.avatar.figure import Figure, figure_of
-from app.science.avatar.model import AvatarModel, avatar_model
-from app.science.avatar.scene import Scene
+from app.science.avatar.body.figure import Figure, figure_of
+from app.science.avatar.configuration.colliders import ColliderKind
+from app.science.avatar.configuration.configuration import Hips
+from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.model import AvatarModel, avatar_model
+from app.science.avatar.mjcf.scene import Scene
 from tests.support.humanoid_files import humanoid_file
 from tests.support.humanoid_model import Model, without
 

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.avatar.configuration import Hips
-from app.science.avatar.parts import AXES
-from app.science.avatar.scene import Scene, SceneBox
-from app.science.avatar.simulation import PhysicsAvatar
+from app.science.avatar.body.parts import AXES
+from app.science.avatar.configuration.configuration import Hips
+from app.science.avatar.mjcf.scene import Scene, SceneBox
+from app.science.avatar.simulation.simulation import PhysicsAvatar
 from app.science.rotations import normalise
 from tests.science.avatar.captured import RATE_HZ, STATURE_M
 from tests.science.avatar.simulated import EIGHT_BOXES, angles, avatar

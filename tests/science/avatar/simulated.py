@@ -5,14 +5,14 @@ from functools import cache
 
 import numpy as np
 
-from app.science.avatar.configuration import Configuration, Hips
-from app.science.avatar.defaults import default_configuration
-from app.science.avatar.following import Follower
-from app.science.avatar.model import AvatarModel, avatar_model
-from app.science.avatar.parts import AXES, AXIS_NAMES, FINGER_PARTS
-from app.science.avatar.scene import Scene, SceneBox
-from app.science.avatar.simulation import PhysicsAvatar
-from app.science.avatar.targets import TargetAngles, Targets
+from app.science.avatar.body.parts import AXES, AXIS_NAMES, FINGER_PARTS
+from app.science.avatar.configuration.configuration import Configuration, Hips
+from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.model import AvatarModel, avatar_model
+from app.science.avatar.mjcf.scene import Scene, SceneBox
+from app.science.avatar.simulation.following import Follower
+from app.science.avatar.simulation.simulation import PhysicsAvatar
+from app.science.avatar.targets.targets import TargetAngles, Targets
 from app.science.rotations import FloatArray
 from app.science.skeleton import Movement
 from tests.science.avatar.captured import RATE_HZ, STATURE_M

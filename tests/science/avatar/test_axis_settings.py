@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 
-from app.science.avatar.axis_settings import (
+from app.science.avatar.configuration.axis_settings import (
     AvatarSettingsError,
     AxisSettings,
     degrees_of,

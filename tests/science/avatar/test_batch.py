@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from app.science.avatar.limits import ANATOMIC
-from app.science.avatar.parts import AXES, AXIS_NAMES, PART_NAMES
-from app.science.avatar.targets import TargetAngles, Targets
+from app.science.avatar.body.parts import AXES, AXIS_NAMES, PART_NAMES
+from app.science.avatar.configuration.limits import ANATOMIC
+from app.science.avatar.targets.targets import TargetAngles, Targets
 from app.science.rotations import FloatArray, from_rotation_vector, multiply, normalise
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX
 

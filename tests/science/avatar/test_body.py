@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from app.science.avatar.body import REQUIRED_PARTS, Body, BodyError, build_body
-from app.science.avatar.parts import FINGER_PARTS, PARENT_OF, PART_NAMES, mirrored_name
-from app.science.avatar.proportions import SEGMENT_NAMES, segment_lengths
-from app.science.avatar.shapes import Box, Capsule
+from app.science.avatar.body.body import REQUIRED_PARTS, Body, BodyError, build_body
+from app.science.avatar.body.parts import FINGER_PARTS, PARENT_OF, PART_NAMES, mirrored_name
+from app.science.avatar.body.proportions import SEGMENT_NAMES, segment_lengths
+from app.science.avatar.body.shapes import Box, Capsule
 from app.science.rotations.scalars import v_add, v_length, v_subtract
 from app.science.skeleton import JOINT_NAMES, build_skeleton
 

@@ -9,18 +9,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.adapters.humanoids import HumanoidFileError, read_humanoid
-from app.science.avatar.body import BodyError
-from app.science.avatar.colliders import ColliderKind
-from app.science.avatar.configuration import Hips
-from app.science.avatar.defaults import default_configuration
-from app.science.avatar.figure import figure_of
-from app.science.avatar.following import Follower
-from app.science.avatar.humanoid import HumanoidError
-from app.science.avatar.model import AvatarModel, avatar_model
-from app.science.avatar.parts import AXES, PART_NAMES
-from app.science.avatar.scene import Scene, SceneBox
-from app.science.avatar.simulation import PhysicsAvatar
-from app.science.avatar.simulation_error import SimulationError
+from app.science.avatar.body.body import BodyError
+from app.science.avatar.body.figure import figure_of
+from app.science.avatar.body.humanoid import HumanoidError
+from app.science.avatar.body.parts import AXES, PART_NAMES
+from app.science.avatar.configuration.colliders import ColliderKind
+from app.science.avatar.configuration.configuration import Hips
+from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.model import AvatarModel, avatar_model
+from app.science.avatar.mjcf.scene import Scene, SceneBox
+from app.science.avatar.mjcf.simulation_error import SimulationError
+from app.science.avatar.simulation.following import Follower
+from app.science.avatar.simulation.simulation import PhysicsAvatar
 from app.science.rotations import identity, normalise
 from app.science.skeleton import JOINT_COUNT
 from tests.science.avatar.bodies import loaded

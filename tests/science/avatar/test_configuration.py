@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from app.science.avatar.axis_settings import AvatarSettingsError
-from app.science.avatar.configuration import Configuration
-from app.science.avatar.defaults import default_configuration
-from app.science.avatar.editing import (
+from app.science.avatar.body.parts import AXIS_NAMES, PART_NAMES, mirrored_name
+from app.science.avatar.configuration.axis_settings import AvatarSettingsError
+from app.science.avatar.configuration.configuration import Configuration
+from app.science.avatar.configuration.editing import (
     lock,
     mirror_left_to_right,
     unlock,
@@ -16,8 +16,8 @@ from app.science.avatar.editing import (
     with_global,
     without_parts,
 )
-from app.science.avatar.groups import GROUP_NAMES, GROUPS, axes_of, parts_of
-from app.science.avatar.parts import AXIS_NAMES, PART_NAMES, mirrored_name
+from app.science.avatar.configuration.groups import GROUP_NAMES, GROUPS, axes_of, parts_of
+from app.science.avatar.mjcf.defaults import default_configuration
 from tests.science.avatar.configurations import FINE_SPRING, whole_body
 
 BODY = whole_body()

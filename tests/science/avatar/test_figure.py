@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from app.adapters.humanoids import read_humanoid
-from app.science.avatar.body import BodyError, build_body
-from app.science.avatar.figure import figure_of
-from app.science.avatar.hinges import hinges_of
-from app.science.avatar.masses import body_masses
-from app.science.avatar.model import avatar_model
-from app.science.avatar.parts import AXES_OF, FINGER_PARTS, PART_NAMES
-from app.science.avatar.proportions import segment_lengths
-from app.science.avatar.shapes import Capsule
+from app.science.avatar.body.body import BodyError, build_body
+from app.science.avatar.body.figure import figure_of
+from app.science.avatar.body.masses import body_masses
+from app.science.avatar.body.parts import AXES_OF, FINGER_PARTS, PART_NAMES
+from app.science.avatar.body.proportions import segment_lengths
+from app.science.avatar.body.shapes import Capsule
+from app.science.avatar.mjcf.hinges import hinges_of
+from app.science.avatar.mjcf.model import avatar_model
 from tests.science.avatar.bodies import loaded
 from tests.science.avatar.configurations import whole_body
 from tests.science.avatar.figures import HASH, STATURE_M, figure, model

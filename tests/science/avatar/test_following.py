@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from app.science.avatar.configuration import TargetSpace
-from app.science.avatar.following import Follower
-from app.science.avatar.parts import AXIS_NAMES
+from app.science.avatar.body.parts import AXIS_NAMES
+from app.science.avatar.configuration.configuration import TargetSpace
+from app.science.avatar.simulation.following import Follower
 from app.science.rotations import geodesic_angle, identity
 from app.science.skeleton import JOINT_INDEX
 from tests.science.avatar.captured import RATE_HZ

@@ -7,13 +7,13 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from app.science.avatar.axis_settings import AxisSettings
-from app.science.avatar.defaults import default_configuration
-from app.science.avatar.editing import lock
-from app.science.avatar.hinge_reference import GAP_S, HingeReference
-from app.science.avatar.limits import ANATOMIC, FREE
-from app.science.avatar.parts import AXES_OF, AXIS_NAMES, PART_NAMES
-from app.science.avatar.targets import TargetAngles, joint_rotations
+from app.science.avatar.body.parts import AXES_OF, AXIS_NAMES, PART_NAMES
+from app.science.avatar.configuration.axis_settings import AxisSettings
+from app.science.avatar.configuration.editing import lock
+from app.science.avatar.configuration.limits import ANATOMIC, FREE
+from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.targets.hinge_reference import GAP_S, HingeReference
+from app.science.avatar.targets.targets import TargetAngles, joint_rotations
 from app.science.joint_error import ERROR_JOINTS, joint_error_summary
 from app.science.recorded_error import Asked, Recorded, recorded_errors
 from app.science.rotations import FloatArray, from_rotation_vector, geodesic_angle, identity

@@ -4,9 +4,9 @@ from math import degrees, pi
 
 import pytest
 
-from app.science.avatar.layers import COLLIDING, LAYER_OF, LAYERS, collide, collision_bits
-from app.science.avatar.limits import ANATOMIC, ESTIMATE, FREE, limits_of
-from app.science.avatar.parts import AXIS_NAMES, PART_NAMES, mirrored_name
+from app.science.avatar.body.layers import COLLIDING, LAYER_OF, LAYERS, collide, collision_bits
+from app.science.avatar.body.parts import AXIS_NAMES, PART_NAMES, mirrored_name
+from app.science.avatar.configuration.limits import ANATOMIC, ESTIMATE, FREE, limits_of
 
 
 @pytest.mark.parametrize("limits", [ANATOMIC, FREE])

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.science.avatar.body import Body, BodyError, build_body
-from app.science.avatar.deleva import FEMALE, MALE, Population, Segment, segments_of
-from app.science.avatar.inertial import Inertial, combined, of_shape, remainder
-from app.science.avatar.masses import ESTIMATES, BodyMasses, body_masses
-from app.science.avatar.parts import FINGER_PARTS, PART_NAMES, mirrored_name
-from app.science.avatar.shapes import Box, Capsule
+from app.science.avatar.body.body import Body, BodyError, build_body
+from app.science.avatar.body.deleva import FEMALE, MALE, Population, Segment, segments_of
+from app.science.avatar.body.inertial import Inertial, combined, of_shape, remainder
+from app.science.avatar.body.masses import ESTIMATES, BodyMasses, body_masses
+from app.science.avatar.body.parts import FINGER_PARTS, PART_NAMES, mirrored_name
+from app.science.avatar.body.shapes import Box, Capsule
 
 POPULATIONS: tuple[Population, ...] = ("male", "female", "average")
 

@@ -11,12 +11,12 @@ import mujoco
 import numpy as np
 import pytest
 
-from app.science.avatar.body import BodyError, build_body
-from app.science.avatar.gains import default_settings
-from app.science.avatar.hinges import hinges_of
-from app.science.avatar.masses import body_masses
-from app.science.avatar.mjcf import driven_axes
-from app.science.avatar.parts import AXES_OF, PART_NAMES, mirrored_name
+from app.science.avatar.body.body import BodyError, build_body
+from app.science.avatar.body.masses import body_masses
+from app.science.avatar.body.parts import AXES_OF, PART_NAMES, mirrored_name
+from app.science.avatar.mjcf.gains import default_settings
+from app.science.avatar.mjcf.hinges import hinges_of
+from app.science.avatar.mjcf.mjcf import driven_axes
 from app.science.rotations import from_rotation_vector, multiply
 from app.science.skeleton import JOINT_NAMES, build_skeleton, forward_kinematics
 from tests.science.avatar.bodies import (
@@ -114,7 +114,7 @@ def test_the_text_is_the_same_to_the_byte_in_every_process() -> None:
     code = (
         "import hashlib;"
         "from tests.science.avatar.bodies import STUDY_BOXES, mjcf_of;"
-        "from app.science.avatar.body import build_body;"
+        "from app.science.avatar.body.body import build_body;"
         "print(hashlib.sha256(mjcf_of(build_body(1.75), scene=STUDY_BOXES).encode()).hexdigest())"
     )
     digests = {

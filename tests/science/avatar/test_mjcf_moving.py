@@ -7,13 +7,13 @@ import mujoco
 import numpy as np
 import pytest
 
-from app.science.avatar.body import build_body
-from app.science.avatar.gains import default_settings
-from app.science.avatar.masses import body_masses
-from app.science.avatar.mjcf import build_mjcf, driven_axes
-from app.science.avatar.model_options import TIMESTEP_S, ModelOptions
-from app.science.avatar.parts import FINGER_PARTS, PART_NAMES
-from app.science.avatar.scene import Scene, SceneBox
+from app.science.avatar.body.body import build_body
+from app.science.avatar.body.masses import body_masses
+from app.science.avatar.body.parts import FINGER_PARTS, PART_NAMES
+from app.science.avatar.configuration.model_options import TIMESTEP_S, ModelOptions
+from app.science.avatar.mjcf.gains import default_settings
+from app.science.avatar.mjcf.mjcf import build_mjcf, driven_axes
+from app.science.avatar.mjcf.scene import Scene, SceneBox
 from tests.science.avatar.bodies import (
     CARRIED,
     EMPTY,

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from app.science.achieved_latency import achieved_latency
-from app.science.avatar.configuration import Configuration, Hips
-from app.science.avatar.defaults import default_configuration
-from app.science.avatar.model import avatar_model
-from app.science.avatar.scene import FLOOR_ONLY, Scene
-from app.science.avatar.targets import joint_rotations
+from app.science.avatar.configuration.configuration import Configuration, Hips
+from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.model import avatar_model
+from app.science.avatar.mjcf.scene import FLOOR_ONLY, Scene
+from app.science.avatar.targets.targets import joint_rotations
 from app.science.avatar.tuning import TuningReport, track, tune
 from app.science.avatar.tuning.tracking import NOTHING
 from app.science.rotations import rotate

@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from app.science.avatar.groups import axes_of
-from app.science.avatar.parts import AXES, AXIS_NAMES
-from app.science.avatar.scene import Scene, SceneBox
-from app.science.avatar.simulation_error import SimulationError
+from app.science.avatar.body.parts import AXES, AXIS_NAMES
+from app.science.avatar.configuration.groups import axes_of
+from app.science.avatar.mjcf.scene import Scene, SceneBox
+from app.science.avatar.mjcf.simulation_error import SimulationError
 from tests.science.avatar.captured import RATE_HZ
 from tests.science.avatar.simulated import angle_of, angles, avatar, run
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.science.avatar.limits import ANATOMIC
-from app.science.avatar.parts import AXES_OF, AXIS_NAMES, FINGER_PARTS, PART_NAMES
-from app.science.avatar.targets import (
+from app.science.avatar.body.parts import AXES_OF, AXIS_NAMES, FINGER_PARTS, PART_NAMES
+from app.science.avatar.configuration.limits import ANATOMIC
+from app.science.avatar.targets.targets import (
     TargetAngles,
     TargetError,
     joint_rotations,

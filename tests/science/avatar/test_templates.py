@@ -6,9 +6,13 @@ from dataclasses import replace
 import pytest
 from hypothesis import assume, given
 
-from app.science.avatar.axis_settings import AvatarSettingsError, AxisSettings, degrees_of
-from app.science.avatar.parts import AXES_OF
-from app.science.avatar.templates import (
+from app.science.avatar.body.parts import AXES_OF
+from app.science.avatar.configuration.axis_settings import (
+    AvatarSettingsError,
+    AxisSettings,
+    degrees_of,
+)
+from app.science.avatar.configuration.templates import (
     Drive,
     SingleJoint,
     edited,

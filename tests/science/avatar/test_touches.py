@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from app.science.avatar.scene import Scene, SceneBox
-from app.science.avatar.simulation import PhysicsAvatar
-from app.science.avatar.simulation_error import SimulationError
-from app.science.avatar.touches import SurfaceTouches
+from app.science.avatar.mjcf.scene import Scene, SceneBox
+from app.science.avatar.mjcf.simulation_error import SimulationError
+from app.science.avatar.simulation.simulation import PhysicsAvatar
+from app.science.avatar.simulation.touches import SurfaceTouches
 from app.science.rotations import identity
 from app.science.skeleton import JOINT_INDEX
 from tests.science.avatar.captured import RATE_HZ

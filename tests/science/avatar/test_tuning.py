@@ -6,9 +6,9 @@ from statistics import median
 
 import pytest
 
-from app.science.avatar.configuration import Configuration
-from app.science.avatar.defaults import default_configuration
-from app.science.avatar.groups import axes_of
+from app.science.avatar.configuration.configuration import Configuration
+from app.science.avatar.configuration.groups import axes_of
+from app.science.avatar.mjcf.defaults import default_configuration
 from app.science.avatar.tuning import (
     HEURISTICS,
     AxisTuning,

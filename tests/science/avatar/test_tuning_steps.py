@@ -5,9 +5,9 @@ from math import degrees, exp, log, pi, radians, sqrt
 import numpy as np
 import pytest
 
-from app.science.avatar.body import build_body
-from app.science.avatar.limits import ANATOMIC
-from app.science.avatar.masses import body_masses
+from app.science.avatar.body.body import build_body
+from app.science.avatar.body.masses import body_masses
+from app.science.avatar.configuration.limits import ANATOMIC
 from app.science.avatar.tuning.evaluation import Trial, jump_of
 from app.science.avatar.tuning.plant import bare
 from app.science.avatar.tuning.step_response import StepFigures, step_figures

@@ -21,12 +21,12 @@ from app.features.record.sessions.service import apply_command, protocol_of_sess
 from app.platform.context import AppContext
 from app.protocol.avatar import file_of
 from app.protocol.tasks import Tasks
-from app.science.avatar.configuration import Configuration
-from app.science.avatar.figure import Figure
-from app.science.avatar.model import AvatarModel, avatar_model
-from app.science.avatar.model_options import DEFAULT_OPTIONS
-from app.science.avatar.proportions import BodyError
-from app.science.avatar.scene import scene_of
+from app.science.avatar.body.figure import Figure
+from app.science.avatar.body.proportions import BodyError
+from app.science.avatar.configuration.configuration import Configuration
+from app.science.avatar.configuration.model_options import DEFAULT_OPTIONS
+from app.science.avatar.mjcf.model import AvatarModel, avatar_model
+from app.science.avatar.mjcf.scene import scene_of
 
 CONTENT = "avatar"
 """Kind of the contents that hold models."""

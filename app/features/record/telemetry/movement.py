@@ -22,7 +22,7 @@ from app.features.record.telemetry.frames import (
 )
 from app.features.record.telemetry.hinges import hinges_of
 from app.models import TelemetryChunk
-from app.science.avatar.hinge_reference import HingeReference
+from app.science.avatar.targets.hinge_reference import HingeReference
 from app.science.recorded_error import Asked
 from app.wire import StreamName
 

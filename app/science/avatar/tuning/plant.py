@@ -14,13 +14,13 @@ from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING, Literal
 
-from app.science.avatar.axis_settings import AxisSettings
-from app.science.avatar.body import Body
-from app.science.avatar.masses import BodyMasses
-from app.science.avatar.mjcf import build_mjcf
-from app.science.avatar.model_options import ModelOptions
-from app.science.avatar.parts import AXES
-from app.science.avatar.scene import Scene
+from app.science.avatar.body.body import Body
+from app.science.avatar.body.masses import BodyMasses
+from app.science.avatar.body.parts import AXES
+from app.science.avatar.configuration.axis_settings import AxisSettings
+from app.science.avatar.configuration.model_options import ModelOptions
+from app.science.avatar.mjcf.mjcf import build_mjcf
+from app.science.avatar.mjcf.scene import Scene
 
 if TYPE_CHECKING:
     import mujoco

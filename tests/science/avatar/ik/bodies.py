@@ -5,14 +5,14 @@ from functools import cache
 import mujoco
 import numpy as np
 
-from app.science.avatar.body import build_body
-from app.science.avatar.gains import default_settings
+from app.science.avatar.body.body import build_body
+from app.science.avatar.body.masses import body_masses
+from app.science.avatar.configuration.model_options import ModelOptions
 from app.science.avatar.ik import GOAL_PARTS, REST_POSE_RAD, Goals
 from app.science.avatar.ik.chain import Chain
-from app.science.avatar.masses import body_masses
-from app.science.avatar.mjcf import build_mjcf
-from app.science.avatar.model_options import ModelOptions
-from app.science.avatar.scene import Scene, SceneBox
+from app.science.avatar.mjcf.gains import default_settings
+from app.science.avatar.mjcf.mjcf import build_mjcf
+from app.science.avatar.mjcf.scene import Scene, SceneBox
 from app.science.rotations import FloatArray, from_rotation_vector
 
 STATURE_M, MASS_KG = 1.75, 72.0

@@ -1,0 +1,1 @@
+"""The body: its 52 parts, proportions, masses and shapes."""

@@ -1,0 +1,192 @@
+"""What is kept of a humanoid model for its body: joints, lengths, and a convex piece per part.
+
+Lengths are measured where the tables of masses want them, by the names of
+`proportions.SEGMENT_NAMES`; a trunk without a neck joint, and the head, are expected from the
+stature. A length that is not a person's is refused. One that is unusual, as of many drawn
+characters, counts for masses as the nearest that a person may have, with a note; joints and pieces
+stay where the model has them.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from math import dist
+from types import MappingProxyType
+
+import numpy as np
+
+from app.science.avatar.body.hulls import Piece, piece_of
+from app.science.avatar.body.humanoid import Humanoid, HumanoidError
+from app.science.avatar.body.parts import FINGERS, PART_NAMES, SIDES
+from app.science.avatar.body.proportions import LEAST, MOST, BodyError, segment_lengths
+from app.science.rotations.scalars import Vector, v_scale
+
+_SHORTEST, _LONGEST = 0.3, 3.0
+_DIGITS = 6
+_JUST_INSIDE = 1e-4
+"""Lengths are rounded and scaled after this."""
+_KNUCKLES = 0.446
+"""From the wrist to the middle knuckle, of the length of the hand: `fingers`."""
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A model's measures in the T-pose; frames as in `app.science.avatar.body.parts`.
+
+    Attributes:
+        stature_m: of the model itself.
+        places_m: part -> its joint over the floor, in the order of `PART_NAMES`.
+        segments_m: lengths by the names of `proportions.SEGMENT_NAMES`, as far as it has them.
+        pieces: part -> its convex piece; parts whose skin encloses nothing are absent.
+        notes: what a reader should know, each a sentence.
+    """
+
+    stature_m: float
+    places_m: Mapping[str, Vector]
+    segments_m: Mapping[str, float]
+    pieces: Mapping[str, Piece]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def absent(self) -> tuple[str, ...]:
+        """Body parts that the model lacks."""
+        return tuple(part for part in PART_NAMES if part not in self.places_m)
+
+    @property
+    def without_piece(self) -> tuple[str, ...]:
+        """Parts that it has, but with too little skin for a piece."""
+        return tuple(part for part in self.places_m if part not in self.pieces)
+
+    def finger_count(self, side: str) -> int:
+        """Fingers of the left or right hand."""
+        return sum(f"{side}{finger}Proximal" in self.places_m for finger in FINGERS)
+
+    def scaled(self, stature_m: float) -> "Figure":
+        """The same as large as a person."""
+        factor = stature_m / self.stature_m
+        return Figure(
+            stature_m,
+            {part: v_scale(place, factor) for part, place in self.places_m.items()},
+            {name: length * factor for name, length in self.segments_m.items()},
+            {part: piece.scaled(factor) for part, piece in self.pieces.items()},
+            self.notes,
+        )
+
+
+def figure_of(humanoid: Humanoid) -> Figure:
+    """Measure a model.
+
+    Raises:
+        HumanoidError: its stature or a length of it is no person's.
+    """
+    stature = round(humanoid.stature_m, _DIGITS)
+    try:
+        expected = segment_lengths(stature)
+    except BodyError as error:
+        raise HumanoidError(f"The model is no human body: {error}") from error
+    notes = list(humanoid.notes)
+    segments: dict[str, float] = {}
+    for name, length in _measured(humanoid):
+        ratio = length / expected[name]
+        if not _SHORTEST <= ratio <= _LONGEST:
+            raise HumanoidError(
+                f"Of a model {stature:g} m tall the {_WORDS[name]} cannot be {length:.3f} m:"
+                f" expected are about {expected[name]:.3f} m. Check the bones it was measured"
+                f" between: {_BETWEEN[name]}."
+            )
+        counted = min(max(ratio, LEAST + _JUST_INSIDE), MOST - _JUST_INSIDE) * expected[name]
+        if abs(counted - length) > _JUST_INSIDE * length:
+            notes.append(
+                f"The {_WORDS[name]} of {length:.3f} m is unusual; for masses it counts as"
+                f" {counted:.3f} m."
+            )
+        segments[name] = round(counted, _DIGITS)
+    pieces = {part: piece_of(own.vertices_m) for part, own in humanoid.parts.items()}
+    return Figure(
+        stature,
+        MappingProxyType({part: _rounded(own.place_m) for part, own in humanoid.parts.items()}),
+        MappingProxyType(segments),
+        MappingProxyType({part: one for part, one in pieces.items() if one is not None}),
+        tuple(notes),
+    )
+
+
+_BETWEEN: Mapping[str, str] = {
+    "upper_arm": "UpperArm and LowerArm",
+    "forearm": "LowerArm and Hand",
+    "hand": "Hand and the fingertips",
+    "thigh": "UpperLeg and LowerLeg",
+    "shank": "LowerLeg and Foot",
+    "foot": "the skin of Foot and Toes",
+    "trunk": "Hips and Neck",
+    "shoulders": "LeftUpperArm and RightUpperArm",
+    "hips": "LeftUpperLeg and RightUpperLeg",
+}
+_WORDS = {name: name.replace("_", " ") for name in _BETWEEN} | {
+    "shoulders": "breadth of the shoulders",
+    "hips": "breadth of the hips",
+}
+_BONES = {
+    "upper_arm": ("UpperArm", "LowerArm"),
+    "forearm": ("LowerArm", "Hand"),
+    "thigh": ("UpperLeg", "LowerLeg"),
+    "shank": ("LowerLeg", "Foot"),
+}
+
+
+def _measured(humanoid: Humanoid) -> Iterator[tuple[str, float]]:
+    """(segment, length); of both sides the mean."""
+    places = {part: own.place_m for part, own in humanoid.parts.items()}
+    for name, (start, end) in _BONES.items():
+        yield name, _mean(dist(places[f"{s}{start}"], places[f"{s}{end}"]) for s in SIDES)
+    for name, part in (("shoulders", "UpperArm"), ("hips", "UpperLeg")):
+        yield name, places[f"Right{part}"][0] - places[f"Left{part}"][0]
+    if "Neck" in places:
+        yield "trunk", places["Neck"][1] - places["Hips"][1]
+    hands = [length for side in SIDES for length in _hand(humanoid, side)]
+    if hands:
+        yield "hand", _mean(iter(hands))
+    feet = [length for side in SIDES for length in _foot(humanoid, side)]
+    if feet:
+        yield "foot", _mean(iter(feet))
+
+
+def _hand(humanoid: Humanoid, side: str) -> Iterator[float]:
+    """From the wrist to the fingertips, by the skin; else by the knuckles."""
+    outwards = -1.0 if side == "Left" else 1.0
+    wrist = humanoid.parts[f"{side}Hand"].place_m[0]
+    names = [f"{side}Hand", *(part for part in PART_NAMES if _is_finger(part, side))]
+    reaches = [
+        float((outwards * (own.vertices_m[:, 0] + own.place_m[0] - wrist)).max())
+        for own in (humanoid.parts[name] for name in names if name in humanoid.parts)
+        if len(own.vertices_m)
+    ]
+    if reaches:
+        yield max(reaches)
+    elif f"{side}MiddleProximal" in humanoid.parts:
+        knuckle = humanoid.parts[f"{side}MiddleProximal"].place_m[0]
+        yield outwards * (knuckle - wrist) / _KNUCKLES
+
+
+def _foot(humanoid: Humanoid, side: str) -> Iterator[float]:
+    skins = [
+        own.vertices_m[:, 2] + own.place_m[2]
+        for name in (f"{side}Foot", f"{side}Toes")
+        if (own := humanoid.parts.get(name)) is not None and len(own.vertices_m)
+    ]
+    if skins:
+        along = np.concatenate(skins)
+        yield float(along.max() - along.min())
+
+
+def _is_finger(part: str, side: str) -> bool:
+    return any(part.startswith(f"{side}{finger}") for finger in FINGERS)
+
+
+def _mean(lengths: Iterator[float]) -> float:
+    values = list(lengths)
+    return sum(values) / len(values)
+
+
+def _rounded(place: Vector) -> Vector:
+    x, y, z = (round(value, _DIGITS) + 0.0 for value in place)
+    return (x, y, z)

@@ -1,0 +1,216 @@
+"""How heavy each body part is, where its centre of mass lies, how it resists to being turned.
+
+De Leva's segments (see `deleva`) are laid on the bones and divided among the 52 parts so that the
+parts of a segment together keep its mass, its centre of mass and its radii of gyration. What a
+model lacks goes, with its place, to the part it hangs on; so the whole body keeps its inertia.
+
+The mass of the upper trunk is shared in equal parts by upper chest and shoulders (Karas 2020,
+section 6.4.1). Everything the tables do not tell is estimated by us and listed in `ESTIMATES`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import fsum, sqrt
+from types import MappingProxyType
+
+from app.science.avatar.body.body import Body
+from app.science.avatar.body.deleva import Population, Segment, mass_fractions, segments_of
+from app.science.avatar.body.inertial import Inertial, combined, of_shape, remainder
+from app.science.avatar.body.parts import PART_NAMES, SIDES
+from app.science.avatar.body.proportions import BodyError, Proportions
+from app.science.avatar.body.shapes import fingers_of, shapes_of
+from app.science.rotations.scalars import Vector, v_add, v_subtract
+
+ESTIMATES: tuple[str, ...] = (
+    ("Trunk, landmarks from the hip joints up to the head's joint: navel at .26, lower end of the"
+    " breastbone at .61, seventh neck vertebra at 1."),
+    "Lower trunk: all of it belongs to the hips.",
+    ("Middle trunk: its lower half is the Spine's, its upper half the Chest's; their centres lie a"
+    " quarter of the segment below and above its own."),
+    ("Upper trunk: the shoulders' shares lie beside the upper chest's, at the same height, .39 of"
+    " the way to the shoulder joint, or nearer where a narrow trunk demands it."),
+    ("Head: it ends at its joint, where the tables have the angle of the jaw; .12 of it is the"
+    " neck's, in the middle of its bone, with the inertia of its capsule."),
+    ("Hand: .20 of it is the fingers', shared by the volumes of their capsules, with the inertia of"
+    " these; more would leave the palm less inertia than the tables have."),
+    ("Foot: .12 of it is the toes', with the inertia of their box; its centre of mass lies at half"
+    " the height of its box."),
+)  # fmt: skip
+"""What de Leva's tables do not tell."""
+
+_NAVEL, _BREASTBONE = 0.26, 0.61
+_SHOULDER_SHARE_AT = 0.39
+_NECK_SHARE, _FINGERS_SHARE, _TOES_SHARE = 0.12, 0.20, 0.12
+_LIGHTEST_KG, _HEAVIEST_KG = 1.0, 500.0
+# Which of a segment's axes lie along x, y, z in the T-pose: the trunk and the legs stand, an arm
+# lies along x with its elbow bending about y, a hand lies flat, a foot points forward.
+_STANDING = ("transverse", "longitudinal", "sagittal")
+_ARM = ("longitudinal", "transverse", "sagittal")
+_HAND = ("longitudinal", "sagittal", "transverse")
+_FOOT = ("transverse", "sagittal", "longitudinal")
+
+
+@dataclass(frozen=True)
+class BodyMasses:
+    """Mass and inertia of every present part, each in the part's own frame."""
+
+    population: Population
+    parts: Mapping[str, Inertial]
+
+    @property
+    def total_kg(self) -> float:
+        """Mass of the whole body."""
+        return fsum(part.mass_kg for part in self.parts.values())
+
+
+def body_masses(body: Body, total_kg: float, *, population: Population = "average") -> BodyMasses:
+    """Share out a body's mass among its parts.
+
+    Args:
+        body: whose lengths scale the radii of gyration.
+        total_kg: 1 to 500 kg.
+        population: whose relative masses are taken.
+
+    Raises:
+        BodyError: the mass is out of range.
+    """
+    if not _LIGHTEST_KG <= total_kg <= _HEAVIEST_KG:
+        raise BodyError(
+            f"A mass of {total_kg} kg is outside {_LIGHTEST_KG:g} to {_HEAVIEST_KG:g} kg: give the"
+            " mass of the whole body in kilograms."
+        )
+    whole = _Sharing(body.proportions, total_kg, population).parts()
+    places = body.proportions.places_m()
+    gathered: dict[str, list[Inertial]] = {part: [] for part in body.parts}
+    for part in PART_NAMES:
+        stand_in = body.stand_in(part)
+        gathered[stand_in].append(whole[part].moved(v_subtract(places[part], places[stand_in])))
+    parts = {part: combined(pieces) for part, pieces in gathered.items()}
+    return BodyMasses(population, MappingProxyType(parts))
+
+
+class _Sharing:
+    """The complete body; everything in the world's frame of the T-pose until `parts`."""
+
+    def __init__(self, bones: Proportions, total_kg: float, population: Population) -> None:
+        self._bones = bones
+        self._places = bones.places_m()
+        self._rows = segments_of(population)
+        self._kg = {name: share * total_kg for name, share in mass_fractions(population).items()}
+        self._found: dict[str, Inertial] = {}
+
+    def parts(self) -> dict[str, Inertial]:
+        """Every part in its own frame."""
+        self._trunk()
+        self._head()
+        for side in SIDES:
+            self._limb(side, "Upper arm", ("UpperArm", "LowerArm"), _ARM)
+            self._limb(side, "Forearm", ("LowerArm", "Hand"), _ARM)
+            self._limb(side, "Thigh", ("UpperLeg", "LowerLeg"), _STANDING)
+            self._limb(side, "Shank", ("LowerLeg", "Foot"), _STANDING)
+            self._hand(side)
+            self._foot(side)
+        return {
+            part: found.moved(v_subtract((0.0, 0.0, 0.0), self._places[part]))
+            for part, found in self._found.items()
+        }
+
+    def _segment(
+        self, name: str, proximal: Vector, distal: Vector, along: tuple[str, str, str]
+    ) -> Inertial:
+        row = self._rows[name]
+        center = _between(proximal, distal, row.center)
+        span = v_subtract(distal, proximal)
+        length = sqrt(span[0] ** 2 + span[1] ** 2 + span[2] ** 2)
+        x, y, z = (self._kg[name] * (getattr(row, axis) * length) ** 2 for axis in along)
+        return Inertial(self._kg[name], center, (x, y, z, 0.0, 0.0, 0.0))
+
+    def _limb(
+        self, side: str, name: str, ends: tuple[str, str], along: tuple[str, str, str]
+    ) -> None:
+        start, end = (self._places[f"{side}{part}"] for part in ends)
+        self._found[f"{side}{ends[0]}"] = self._segment(name, start, end, along)
+
+    def _trunk(self) -> None:
+        foot = _between(self._places["LeftUpperLeg"], self._places["RightUpperLeg"], 0.5)
+        top = self._places["Head"]
+        navel, breastbone = _between(foot, top, _NAVEL), _between(foot, top, _BREASTBONE)
+        self._found["Hips"] = self._segment("Lower trunk", navel, foot, _STANDING)
+        middle = self._segment("Middle trunk", breastbone, navel, _STANDING)
+        quarter = (breastbone[1] - navel[1]) / 4.0
+        self._share(middle, {"Spine": (0.0, -quarter, 0.0), "Chest": (0.0, quarter, 0.0)})
+        upper = self._segment("Upper trunk 2", top, breastbone, _STANDING)
+        aside = self._shoulder_share_m(self._rows["Upper trunk 2"], breastbone, top)
+        self._share(
+            upper,
+            {
+                "UpperChest": (0.0, 0.0, 0.0),
+                "LeftShoulder": (-aside, 0.0, 0.0),
+                "RightShoulder": (aside, 0.0, 0.0),
+            },
+        )
+
+    def _shoulder_share_m(self, row: Segment, low: Vector, top: Vector) -> float:
+        # Two thirds of the mass at this distance must leave something of the segment's inertia.
+        length = top[1] - low[1]
+        most = sqrt(0.6) * min(row.sagittal, row.longitudinal) * length
+        return min(_SHOULDER_SHARE_AT * self._places["RightUpperArm"][0], most)
+
+    def _share(self, segment: Inertial, offsets: Mapping[str, Vector]) -> None:
+        """Cut a segment into equal parts that together keep mass, centre and inertia."""
+        count = len(offsets)
+        squares = [sum(offset[axis] ** 2 for offset in offsets.values()) for axis in range(3)]
+        mass = segment.mass_kg / count
+        own = [
+            segment.inertia_kg_m2[axis] / count
+            - mass / count * (squares[(axis + 1) % 3] + squares[(axis + 2) % 3])
+            for axis in range(3)
+        ]
+        for part, (x, y, z) in offsets.items():
+            cx, cy, cz = segment.center_m
+            center = (cx + x, cy + y, cz + z)
+            self._found[part] = Inertial(mass, center, (own[0], own[1], own[2], 0.0, 0.0, 0.0))
+
+    def _head(self) -> None:
+        top = self._tip("Head")
+        head = self._segment("Head", top, self._places["Head"], _STANDING)
+        neck = self._shaped("Neck", _NECK_SHARE * head.mass_kg)
+        self._found["Neck"], self._found["Head"] = neck, remainder(head, [neck])
+
+    def _hand(self, side: str) -> None:
+        hand = f"{side}Hand"
+        x, y, z = self._places[hand]
+        outwards = -1.0 if side == "Left" else 1.0
+        tip = (x + outwards * self._bones.segments_m["hand"], y, z)
+        whole = self._segment("Hand 2", self._places[hand], tip, _HAND)
+        volumes = {
+            part: shapes_of(self._bones, part)[0].volume_m3
+            for finger in fingers_of(hand)
+            for part in finger
+        }
+        density = _FINGERS_SHARE * whole.mass_kg / fsum(volumes.values())
+        fingers = {part: self._shaped(part, density * own) for part, own in volumes.items()}
+        self._found.update(fingers)
+        self._found[hand] = remainder(whole, list(fingers.values()))
+
+    def _foot(self, side: str) -> None:
+        part, toes_part = f"{side}Foot", f"{side}Toes"
+        x, y, z = self._places[part]
+        box = shapes_of(self._bones, part)[0].center_m
+        heel = (x, y + box[1], z + self._bones.heel_m)
+        tip = (x, y + box[1], z + self._bones.heel_m - self._bones.segments_m["foot"])
+        whole = self._segment("Foot", heel, tip, _FOOT)
+        toes = self._shaped(toes_part, _TOES_SHARE * whole.mass_kg)
+        self._found[toes_part], self._found[part] = toes, remainder(whole, [toes])
+
+    def _shaped(self, part: str, mass_kg: float) -> Inertial:
+        shape = shapes_of(self._bones, part)[0]
+        return of_shape(shape, mass_kg).moved(self._places[part])
+
+    def _tip(self, part: str) -> Vector:
+        return v_add(self._places[part], self._bones.ends_m[part])
+
+
+def _between(a: Vector, b: Vector, fraction: float) -> Vector:
+    x, y, z = (p + fraction * (q - p) for p, q in zip(a, b, strict=True))
+    return (x, y, z)

@@ -1,0 +1,1 @@
+"""What a laboratory sets: limits, gains, colliders and layers, joint by joint."""

@@ -1,0 +1,1 @@
+"""The body and its configuration as one MuJoCo model."""

@@ -1,0 +1,88 @@
+"""Where an avatar's hinges, motors and bodies lie in a MuJoCo model."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from app.science.avatar.body.parts import AXIS_NAMES, PART_NAMES
+from app.science.avatar.configuration.model_options import HIPS_TARGET
+from app.science.avatar.mjcf.simulation_error import SimulationError
+from app.science.skeleton.joints import JOINT_NAMES, PARENTS
+
+if TYPE_CHECKING:
+    import mujoco
+
+IndexArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class HingeTable:
+    """Addresses; n hinges in the model's order.
+
+    Attributes:
+        names: of the axes with a hinge.
+        columns: (n,) of these axes in `AXIS_NAMES`.
+        joints: (n,) rows of `jnt_range`.
+        angles: (n,) places in `qpos`.
+        speeds: (n,) places in `qvel`.
+        position_targets: (n,) places in `ctrl`; the speed's target is the next one.
+        bodies: part -> body.
+        joint_bodies: (22,) body that carries each joint of the skeleton; that of the part above
+            where the model lacks it.
+        parent_bodies: (22,) the same of the joint above; the world's, 0, for the hips.
+        mocap: row of the body that is placed: the hips themselves, or what they are welded to.
+        root_angles, root_speeds: first place of the welded hips in `qpos` and `qvel`; None where
+            the hips are carried.
+    """
+
+    names: tuple[str, ...]
+    columns: IndexArray
+    joints: IndexArray
+    angles: IndexArray
+    speeds: IndexArray
+    position_targets: IndexArray
+    bodies: dict[str, int]
+    joint_bodies: IndexArray
+    parent_bodies: IndexArray
+    mocap: int
+    root_angles: int | None
+    root_speeds: int | None
+
+
+def hinge_table(model: "mujoco.MjModel") -> HingeTable:
+    """Look everything up; raises SimulationError where the model is not one of `build_mjcf`."""
+    joints = {model.jnt(row).name: row for row in range(model.njnt)}
+    names = tuple(name for name in joints if name in AXIS_NAMES)
+    bodies = {model.body(row).name: row for row in range(model.nbody)}
+    parts = {part: bodies[part] for part in PART_NAMES if part in bodies}
+    if "Hips" not in parts or model.nmocap != 1:
+        raise SimulationError("The model has no hips to place: build it with build_mjcf.")
+    rows = np.array([joints[name] for name in names], dtype=np.int64)
+    carriers = _carriers(parts)
+    placed = bodies[HIPS_TARGET] if HIPS_TARGET in bodies else parts["Hips"]
+    root = joints.get("Hips")
+    return HingeTable(
+        names=names,
+        columns=np.array([AXIS_NAMES.index(name) for name in names], dtype=np.int64),
+        joints=rows,
+        angles=model.jnt_qposadr[rows].astype(np.int64),
+        speeds=model.jnt_dofadr[rows].astype(np.int64),
+        position_targets=np.array(
+            [model.actuator_ctrladr[model.actuator(name).id] for name in names], dtype=np.int64
+        ),
+        bodies=parts,
+        joint_bodies=carriers,
+        parent_bodies=np.array([0 if above < 0 else carriers[above] for above in PARENTS]),
+        mocap=int(model.body_mocapid[placed]),
+        root_angles=None if root is None else int(model.jnt_qposadr[root]),
+        root_speeds=None if root is None else int(model.jnt_dofadr[root]),
+    )
+
+
+def _carriers(parts: dict[str, int]) -> IndexArray:
+    found: list[int] = []
+    for joint, above in zip(JOINT_NAMES, PARENTS, strict=True):
+        found.append(parts[joint] if joint in parts else found[above])
+    return np.array(found, dtype=np.int64)

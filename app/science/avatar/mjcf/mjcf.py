@@ -1,0 +1,239 @@
+"""The avatar as a MuJoCo model, written as text that is the same to the byte everywhere.
+
+Each part is a rigid body in its parent's frame, and each of its axes a hinge in the order of
+`parts.AXES_OF`, so a part's rotation is the product of its axes' rotations. A hinge has a motor of
+its own name: a PD controller with a target angle and a target speed,
+
+    torque = kp (angle* - angle) + kd (speed* - speed),   clamped to the greatest torque,
+
+whose target angle is clamped to the hinge's limits. `data.ctrl` holds the two targets of a motor
+beside each other: angle, speed, angle, speed, in the order of `driven_axes`. A locked axis has
+neither hinge nor motor; the part is turned by the locked angle.
+
+A part's convex piece, where it has one, is a mesh beside its simple shapes; what a part does not
+collide with has empty masks (`colliders`).
+
+How the hips follow the participant is told in `model_options`.
+"""
+
+from collections.abc import Mapping
+
+from app.science.avatar.body.body import Body, BodyError, BodyPart
+from app.science.avatar.body.hulls import Piece
+from app.science.avatar.body.inertial import Inertial
+from app.science.avatar.body.layers import (
+    NO_COLLISION,
+    SCENE,
+    CollisionBits,
+    collision_bits,
+    excluded_pairs,
+)
+from app.science.avatar.body.masses import BodyMasses
+from app.science.avatar.body.parts import AXES_OF, Axis
+from app.science.avatar.body.shapes import Capsule, Shape
+from app.science.avatar.configuration.axis_settings import AxisSettings
+from app.science.avatar.configuration.colliders import SIMPLE, Colliders
+from app.science.avatar.configuration.locks import with_locks
+from app.science.avatar.configuration.model_options import (
+    DEFAULT_OPTIONS,
+    FRICTION,
+    HIPS_TARGET,
+    LIMIT_SOLREF,
+    TIMESTEP_S,
+    WALL_SOLIMP,
+    WALL_SOLREF,
+    WELD_SOLIMP,
+    WELD_SOLREF,
+    ModelOptions,
+)
+from app.science.avatar.mjcf.hinges import hinges_of
+from app.science.avatar.mjcf.mjcf_text import Element
+from app.science.avatar.mjcf.scene import FLOOR, FLOOR_ONLY, Scene
+from app.science.rotations.scalars import IDENTITY, Vector
+
+PIECE = "mesh"
+"""What the geom of a convex piece is called, after its part and a slash."""
+_NO_TORQUE_NM = 1e-9
+
+
+def driven_axes(body: Body, settings: Mapping[str, AxisSettings]) -> tuple[Axis, ...]:
+    """Return the axes that have a hinge and a motor, in the order of the model's hinges.
+
+    Raises:
+        BodyError: an axis of a present part has no settings.
+    """
+    driven: list[Axis] = []
+    for part in body.parts:
+        for axis in AXES_OF[part]:
+            if axis.name not in settings:
+                raise BodyError(
+                    f"The axis {axis.name} has no settings: give gains and limits for every axis"
+                    " of every part the body has."
+                )
+            if not settings[axis.name].locked:
+                driven.append(axis)
+    return tuple(driven)
+
+
+def build_mjcf(
+    body: Body,
+    masses: BodyMasses,
+    settings: Mapping[str, AxisSettings],
+    *,
+    scene: Scene = FLOOR_ONLY,
+    options: ModelOptions = DEFAULT_OPTIONS,
+    colliders: Colliders = SIMPLE,
+) -> str:
+    """Write the model of one avatar in one scene.
+
+    Bodies are named after parts, hinges and motors after axes, shapes `LeftHand/0`, convex pieces
+    `LeftHand/mesh`, blocks of the scene after themselves, the floor `floor`.
+
+    Raises:
+        BodyError: an axis of a present part has no settings.
+    """
+    return _Model(body, masses, settings, scene, options, colliders).text()
+
+
+class _Model:
+    def __init__(
+        self,
+        body: Body,
+        masses: BodyMasses,
+        settings: Mapping[str, AxisSettings],
+        scene: Scene,
+        options: ModelOptions,
+        colliders: Colliders,
+    ) -> None:
+        self._body, self._masses, self._settings = body, masses, settings
+        self._scene, self._options, self._colliders = scene, options, colliders
+        self._pieces: dict[str, Piece] = {
+            name: part.piece
+            for name, part in body.parts.items()
+            if colliders.both and part.piece is not None
+        }
+        self._driven = driven_axes(body, settings)
+        self._hinges = hinges_of(body, masses)
+
+    def text(self) -> str:
+        root = Element("mujoco", model="avatar")
+        root.add("compiler", angle="radian", autolimits="true")
+        gravity = (0.0, -9.81 if self._options.gravity else 0.0, 0.0)
+        option = root.add("option", timestep=TIMESTEP_S, gravity=gravity, integrator="implicitfast")
+        if self._pieces or "none" in self._colliders.kinds.values():
+            # The tree that it searches leaves out what touches nothing when the model is loaded,
+            # so what is switched on later would never be found.
+            option.add("flag", midphase="disable")
+        if self._pieces:
+            assets = root.add("asset")
+            for name, piece in self._pieces.items():
+                corners = (value for corner in piece.corners_m for value in corner)
+                assets.add("mesh", name=name, vertex=corners, inertia="convex")
+        world = root.add("worldbody")
+        self._add_scene(world)
+        self._add_body(world)
+        contact = root.add("contact")
+        parents = {name: part.parent for name, part in self._body.parts.items()}
+        for first, second in excluded_pairs(parents):
+            contact.add("exclude", body1=first, body2=second)
+        if self._options.hips == "welded":
+            root.add("equality").add(
+                "weld", body1=HIPS_TARGET, body2="Hips", relpose=(0, 0, 0, 1, 0, 0, 0),
+                solref=WELD_SOLREF, solimp=WELD_SOLIMP,
+            )  # fmt: skip
+        actuator = root.add("actuator")
+        for axis in self._driven:
+            self._add_motor(actuator, axis)
+        return root.text()
+
+    def _add_scene(self, world: Element) -> None:
+        solver = {"solref": WALL_SOLREF, "solimp": WALL_SOLIMP, "friction": FRICTION}
+        if self._scene.floor:
+            world.add(
+                "geom", name=FLOOR, type_="plane", size=(0, 0, 1), zaxis=(0, 1, 0),
+                **_masks(SCENE), priority=1, **solver,
+            )  # fmt: skip
+        for box in self._scene.boxes:
+            world.add(
+                "geom", name=box.name, type_="box", pos=box.center_m, size=box.half_size_m,
+                **_masks(SCENE if box.solid else NO_COLLISION), priority=1, **solver,
+            )  # fmt: skip
+
+    def _add_body(self, world: Element) -> None:
+        place = self._body.parts["Hips"].joint_m
+        welded = self._options.hips == "welded"
+        if welded:
+            world.add("body", name=HIPS_TARGET, mocap="true", pos=place)
+        elements: dict[str, Element] = {}
+        for name, part in self._body.parts.items():
+            above = world if part.parent is None else elements[part.parent]
+            carried = part.parent is None and not welded
+            axes = AXES_OF[name]
+            turn, hinges = with_locks(axes, [self._locked_rad(axis) for axis in axes])
+            elements[name] = element = above.add(
+                "body", name=name, mocap="true" if carried else None, pos=part.joint_m,
+                quat=None if turn == IDENTITY else turn,
+            )  # fmt: skip
+            if part.parent is None and welded:
+                element.add("freejoint", name="Hips")
+            self._fill(element, part, hinges)
+
+    def _fill(self, element: Element, part: BodyPart, hinges: list[tuple[Axis, Vector]]) -> None:
+        element.add("inertial", **_inertial(self._masses.parts[part.name]))
+        for axis, direction in hinges:
+            settings, hinge = self._settings[axis.name], self._hinges[axis.name]
+            element.add(
+                "joint", name=axis.name, axis=direction,
+                range_=(settings.low_rad, settings.high_rad), solreflimit=LIMIT_SOLREF,
+                damping=hinge.damping_nm_s, armature=hinge.armature_kg_m2,
+            )  # fmt: skip
+        self._add_shapes(element, part)
+
+    def _add_shapes(self, element: Element, part: BodyPart) -> None:
+        bits = collision_bits(part.name, self_collision=self._options.self_collision)
+        kind = self._colliders.of(part.name)
+        if kind == "mesh" and part.name not in self._pieces:
+            kind = "simple"
+        simple, mesh = (_masks(bits if kind == one else NO_COLLISION) for one in ("simple", "mesh"))
+        for index, shape in enumerate(part.shapes):
+            element.add("geom", name=f"{part.name}/{index}", **_shape(shape), **simple)
+        if part.name in self._pieces:
+            element.add("geom", name=f"{part.name}/{PIECE}", type_="mesh", mesh=part.name, **mesh)
+
+    def _locked_rad(self, axis: Axis) -> float | None:
+        settings = self._settings[axis.name]
+        return settings.low_rad if settings.locked else None
+
+    def _add_motor(self, actuator: Element, axis: Axis) -> None:
+        settings = self._settings[axis.name]
+        # A force range of zero would mean: no bound at all.
+        torque = max(settings.max_torque_nm, _NO_TORQUE_NM)
+        delay = self._options.longest_delay_s
+        samples = round(delay / TIMESTEP_S) + 1 if delay > 0.0 else None
+        actuator.add(
+            "pid", name=axis.name, joint=axis.name, input="pos vel", kp=settings.kp, kv=settings.kd,
+            posrange=(settings.low_rad, settings.high_rad), forcerange=(-torque, torque),
+            delay=None if samples is None else 0.0, nsample=samples,
+        )  # fmt: skip
+
+
+def _masks(bits: CollisionBits) -> dict[str, float]:
+    return {"contype": bits.contype, "conaffinity": bits.conaffinity}
+
+
+def _inertial(part: Inertial) -> dict[str, float | tuple[float, ...]]:
+    xx, yy, zz, xy, xz, yz = part.inertia_kg_m2
+    # Off the axes nothing but rounding, or a limb that lies askew.
+    askew = max(abs(xy), abs(xz), abs(yz)) > 1e-9 * max(xx, yy, zz)
+    kind = "fullinertia" if askew else "diaginertia"
+    values = part.inertia_kg_m2 if askew else (xx, yy, zz)
+    return {"pos": part.center_m, "mass": part.mass_kg, kind: values}
+
+
+def _shape(shape: Shape) -> dict[str, str | float | Vector | tuple[float, ...]]:
+    if not isinstance(shape, Capsule):
+        return {"type_": "box", "pos": shape.center_m, "size": shape.half_size_m}
+    if shape.start_m == shape.end_m:
+        return {"type_": "sphere", "pos": shape.start_m, "size": shape.radius_m}
+    ends = (*shape.start_m, *shape.end_m)
+    return {"type_": "capsule", "fromto": ends, "size": shape.radius_m}

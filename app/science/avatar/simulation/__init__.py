@@ -1,0 +1,1 @@
+"""Stepping the model: the avatar's state, contacts, delay and switches."""

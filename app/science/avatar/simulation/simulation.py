@@ -1,0 +1,250 @@
+"""The avatar under forces: one body in one scene, stepped on the study's clock.
+
+Its motors pull each hinge towards a target angle and a target speed; limits, contacts and greatest
+torques decide how far they get. Time runs in steps of 2 ms. A frame tells where the participant is
+at its time, and `step_to` simulates what led there: over the steps since the last frame, target
+angles and hips go in a straight line from where they were to where they are now, and the target
+speed is the slope of that line. Nothing is predicted, and at the frame's own time the target is the
+frame's own.
+
+What a tracker may do to it:
+
+- A target that jumps moves at most at `MAX_SPEED_RAD_S`, faster than people turn their joints;
+  and no motor exceeds its greatest torque. So a limb follows a jump at once, but not without bound.
+- Hips that jump by more than `hips_path.TELEPORT_M` or `TELEPORT_RAD` are teleported: put there at
+  once, at rest, with all the limbs as they are.
+- A value that is not finite is not taken over; that hinge, or the hips, keep their target.
+- A part that is then deep in a wall, or in another part, is pushed out gently (`soft_contacts`).
+- Should the simulation fail all the same (a state that is not finite, which MuJoCo would answer by
+  starting all over at time zero, or speeds above `WILD_RAD_S`), the angles before the frame are put
+  back, at rest and within their limits, and the clock goes on.
+
+Each is counted in `health`. Added latency (`switches.set_delay`) delays the motors' targets by
+whole steps, inside the simulation; the hips are never delayed, and zero bypasses the buffer.
+"""
+
+import logging
+from math import isfinite
+
+import numpy as np
+
+from app.science.avatar.body.parts import AXES
+from app.science.avatar.mjcf.hinge_table import HingeTable, hinge_table
+from app.science.avatar.mjcf.simulation_error import SimulationError
+from app.science.avatar.simulation.avatar_state import AvatarState, Health
+from app.science.avatar.simulation.boxes import Boxes
+from app.science.avatar.simulation.contacts import Contact, read_contacts
+from app.science.avatar.simulation.hips_path import HipsPath
+from app.science.avatar.simulation.soft_contacts import SoftContacts
+from app.science.avatar.simulation.switches import Switches
+from app.science.rotations import FloatArray
+
+MAX_SPEED_RAD_S = 40.0
+WILD_RAD_S = 1000.0
+"""Length of the vector of all speeds; poses thrown at a body at random reach 500."""
+_FARTHEST = 1e5
+_log = logging.getLogger(__name__)
+
+
+class PhysicsAvatar:
+    """One avatar of `build_mjcf`; it begins in the T-pose, or as near as its limits let it.
+
+    Attributes:
+        model, data: MuJoCo's, for those who look closer.
+        switches: what can be changed while it runs.
+        hips, boxes: the hips' path; the scene's blocks, which can be shown and taken away.
+
+    Raises:
+        SimulationError: the text is no model, or not one of an avatar.
+    """
+
+    def __init__(self, mjcf: str) -> None:
+        import mujoco  # a server that never simulates loads neither it nor the compiler
+
+        from app.science.avatar.simulation import frame_kernels
+
+        try:
+            self.model: mujoco.MjModel = mujoco.MjModel.from_xml_string(mjcf)
+        except ValueError as error:
+            raise SimulationError(f"MuJoCo cannot load the model: {error}") from error
+        self._mujoco, self._kernels = mujoco, frame_kernels
+        # MuJoCo would write them to a file in whatever folder this is.
+        mujoco.set_mju_user_warning(_log.warning)
+        # Failures are answered here, not by MuJoCo's return to time zero.
+        self.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+        self.data: mujoco.MjData = mujoco.MjData(self.model)
+        self._table: HingeTable = hinge_table(self.model)
+        # MuJoCo's own arrays; looking them up at every step costs as much as filling them.
+        self._qpos, self._qvel, self._ctrl = self.data.qpos, self.data.qvel, self.data.ctrl
+        self._step_s = float(self.model.opt.timestep)
+        mujoco.mj_kinematics(self.model, self.data)
+        self.hips = HipsPath(self.data, self._table)
+        self.switches = Switches(self.model, self.data, self._table)
+        self._touch = SoftContacts(self.model, self.data, self._table)
+        self.boxes = Boxes(self.model, self._touch.soften_all)
+        self._steps = self._restored = self._ignored = self._limited = 0
+        self._speeds: FloatArray | None = None
+        self._no_angles = np.full(len(AXES), np.nan)
+        self._goal: FloatArray
+        self._command: FloatArray
+        self._take_up(self._clamped(np.zeros(len(self._table.names))))
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time: steps taken times the step."""
+        return self._steps * self._step_s
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The body parts that the model has."""
+        return tuple(self._table.bodies)
+
+    @property
+    def axis_names(self) -> tuple[str, ...]:
+        """The axes that have a hinge, in the model's order."""
+        return self._table.names
+
+    @property
+    def health(self) -> Health:
+        """What happened since the beginning."""
+        return Health(self._restored, self._ignored, self._limited, self.hips.teleports)
+
+    def start_at(
+        self, position_m: FloatArray, rotation: FloatArray, angles_rad: FloatArray
+    ) -> None:
+        """Take up a pose at once and at rest; the latency buffer then holds nothing else.
+
+        Args:
+            position_m: (3,) the hips in the world.
+            rotation: (4,) world_from_hips.
+            angles_rad: (91,) finite, in the order of `AXIS_NAMES`; clamped to the limits.
+
+        Raises:
+            SimulationError: a value is not finite.
+        """
+        angles = angles_rad[self._table.columns]
+        if not np.isfinite(angles).all():
+            raise SimulationError("A pose to start at must be finite in every angle.")
+        self.hips.teleport(position_m, rotation)
+        self._touch.soften_all()
+        self._take_up(self._clamped(angles))
+
+    def set_hips(self, position_m: FloatArray, rotation: FloatArray) -> None:
+        """Say where the hips are at the time of the next `step_to`: (3,) and (4,) wxyz."""
+        teleports = self.hips.teleports
+        self._ignored += not self.hips.go_to(position_m, rotation)
+        if self.hips.teleports > teleports:
+            self._touch.soften_all()
+
+    def set_targets(self, angles_rad: FloatArray, speeds_rad_s: FloatArray | None = None) -> None:
+        """Say which angles are wanted at the time of the next `step_to`.
+
+        Args:
+            angles_rad: (91,) in the order of `AXIS_NAMES`; clamped to the limits.
+            speeds_rad_s: (91,) where they are known better than by how the angles change.
+        """
+        angles = angles_rad[self._table.columns]
+        known = np.isfinite(angles)
+        if not known.all():
+            self._ignored += 1
+            angles = np.where(known, angles, self._goal)
+        self._goal = angles
+        self._speeds = None
+        if speeds_rad_s is not None:
+            speeds = np.nan_to_num(speeds_rad_s[self._table.columns])
+            self._speeds = np.clip(speeds, -MAX_SPEED_RAD_S, MAX_SPEED_RAD_S)
+
+    def step_to(self, time_s: float) -> None:
+        """Simulate up to the step nearest to this time.
+
+        Raises:
+            SimulationError: the time is not finite, or lies before the avatar's.
+        """
+        step_s = self._step_s
+        if not isfinite(time_s) or time_s < self.time_s - step_s:
+            raise SimulationError(f"Time {time_s} s lies before the avatar's, {self.time_s:g} s.")
+        count = round(time_s / step_s) - self._steps
+        if count < 1:
+            return
+        good = self._qpos.copy()
+        self._walk(count, step_s)
+        self._steps += count
+        self.hips.go(1.0)
+        if self._failed():
+            self._restore(good)
+        else:
+            self._touch.watch()
+        self._mujoco.mj_kinematics(self.model, self.data)
+
+    def state(self) -> AvatarState:
+        """Return where the body is, as joints and as angles."""
+        table, data = self._table, self.data
+        angles, command = self._no_angles.copy(), self._no_angles.copy()
+        angles[table.columns] = self._qpos[table.angles]
+        command[table.columns] = self._command
+        return AvatarState(
+            self.time_s,
+            data.xpos[table.joint_bodies[0]].copy(),
+            self._kernels.local_rotations(data.xquat, table.parent_bodies, table.joint_bodies),
+            angles,
+            command,
+        )
+
+    def contacts(self) -> tuple[Contact, ...]:
+        """Return what the body touched during the last step."""
+        return read_contacts(self.model, self.data)
+
+    def _clamped(self, angles: FloatArray) -> FloatArray:
+        ranges = self.switches.ranges_rad
+        return np.clip(angles, ranges[:, 0], ranges[:, 1])
+
+    def _walk(self, count: int, step_s: float) -> None:
+        """Take the steps of one frame, with targets and hips on their way."""
+        slots = self._table.position_targets
+        controls = np.empty((count, self._ctrl.shape[0]))
+        after, limited = self._kernels.ramp(
+            self._goal, self.switches.ranges_rad, self._command, slots,
+            count * step_s, MAX_SPEED_RAD_S, controls,
+        )  # fmt: skip
+        self._limited += limited
+        if self._speeds is not None:
+            controls[:, slots + 1] = self._speeds
+        step, model, data, ctrl = self._mujoco.mj_step, self.model, self.data, self._ctrl
+        for row in range(count):
+            ctrl[:] = controls[row]
+            self.hips.go((row + 1) / count)
+            step(model, data)
+        self._command = after
+
+    def _failed(self) -> bool:
+        qpos, qvel = self._qpos, self._qvel
+        # A comparison with NaN is false.
+        return not (np.dot(qvel, qvel) < WILD_RAD_S**2 and np.dot(qpos, qpos) < _FARTHEST**2)
+
+    def _restore(self, good: FloatArray) -> None:
+        self._restored += 1
+        data = self.data
+        data.qpos[:] = good
+        data.qpos[self._table.angles] = self._clamped(good[self._table.angles])
+        data.qvel[:] = 0.0
+        data.qacc_warmstart[:] = 0.0
+        data.time = self.time_s
+        self.hips.put_root()
+        self._touch.soften_all()
+
+    def _take_up(self, angles: FloatArray) -> None:
+        self._goal = self._command = angles
+        self._speeds = None
+        data, table = self.data, self._table
+        data.qpos[table.angles] = angles
+        data.qvel[:] = 0.0
+        data.qacc_warmstart[:] = 0.0
+        data.ctrl[table.position_targets] = angles
+        data.ctrl[table.position_targets + 1] = 0.0
+        for actuator in range(self.model.actuator_history.shape[0]):
+            samples = int(self.model.actuator_history[actuator, 0])
+            if samples:
+                at = int(self.model.actuator_ctrladr[actuator])
+                values = np.tile(data.ctrl[at : at + 2], (samples, 1))
+                self._mujoco.mj_initCtrlHistory(self.model, data, actuator, None, values)
+        self._mujoco.mj_kinematics(self.model, data)

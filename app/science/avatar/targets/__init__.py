@@ -1,0 +1,1 @@
+"""From a pose to what the motors are asked for."""

@@ -1,0 +1,126 @@
+"""What the way from a pose to angles needs to know about a body, as arrays for compiled code."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.science.avatar.body.parts import (
+    AXES_OF,
+    AXIS_NAMES,
+    PARENT_OF,
+    PART_NAMES,
+    SIDES,
+    Letter,
+)
+from app.science.rotations import FloatArray
+
+IndexArray = npt.NDArray[np.int64]
+# Part above, hinge, letters of the hinge's bend and of the bone's own axis.
+_BENDS: tuple[tuple[str, str, Letter, Letter], ...] = (
+    ("UpperArm", "LowerArm", "Y", "X"),
+    ("UpperLeg", "LowerLeg", "X", "Y"),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class TargetPlan:
+    """D driven parts in the order of the body.
+
+    Attributes:
+        rows: (D,) their rows in `PART_NAMES`.
+        folded: (D, K) rows of the part itself and of what lies between it and the driven part it
+            hangs on, upwards; -1 where there is nothing.
+        columns: (D,) each part's first column in `AXIS_NAMES`.
+        counts: (D,) its number of axes.
+        frames: (D, 3, 3) its axes as columns, completed right-handed to three.
+        hands: (D,) 1 for a right-handed frame, -1 for a left-handed one.
+        bends: (H, 2) of the bone above each hinge and of the hinge, in 0 to D - 1.
+        bend_frames: (H, 3, 3) the bend's axis, the one across, the bone's own, as columns.
+        wrists: (W, 2) columns of the wrist's and the forearm's turn about the forearm.
+    """
+
+    rows: IndexArray
+    folded: IndexArray
+    columns: IndexArray
+    counts: IndexArray
+    frames: FloatArray
+    hands: FloatArray
+    bends: IndexArray
+    bend_frames: FloatArray
+    wrists: IndexArray
+
+
+def plan_targets(parts: Collection[str], locked: Collection[str]) -> TargetPlan:
+    """Plan for a body of these parts, some axes of which cannot turn."""
+    driven = [part for part in PART_NAMES if part in parts and AXES_OF[part]]
+    frames = np.array([_frame(part) for part in driven])
+    bends = [
+        (f"{side}{above}", f"{side}{hinge}", bend, bone)
+        for side in SIDES
+        for above, hinge, bend, bone in _BENDS
+        if {f"{side}{above}", f"{side}{hinge}"} <= set(driven)
+        # An elbow that turns about its third axis can bend in any plane.
+        and (hinge == "LowerLeg" or f"{side}{hinge}Z" in locked)
+    ]
+    return TargetPlan(
+        rows=_indices([PART_NAMES.index(part) for part in driven]),
+        folded=_folded(driven),
+        columns=_indices([AXIS_NAMES.index(AXES_OF[part][0].name) for part in driven]),
+        counts=_indices([len(AXES_OF[part]) for part in driven]),
+        frames=frames,
+        hands=np.round(np.linalg.det(frames)),
+        bends=_indices([(driven.index(above), driven.index(hinge)) for above, hinge, *_ in bends]),
+        bend_frames=np.array(
+            [_bend_frame(hinge, bend, bone) for _, hinge, bend, bone in bends]
+        ).reshape(-1, 3, 3),
+        wrists=_indices(
+            [
+                (AXIS_NAMES.index(f"{side}HandX"), AXIS_NAMES.index(f"{side}LowerArmX"))
+                for side in SIDES
+                if {f"{side}Hand", f"{side}LowerArm"} <= set(driven)
+            ]
+        ),
+    )
+
+
+def _indices(values: object) -> IndexArray:
+    found = np.array(values, dtype=np.int64)
+    return found if found.size else np.zeros((0, 2), dtype=np.int64)
+
+
+def _folded(driven: list[str]) -> IndexArray:
+    chains = [[part, *_not_turning(part, frozenset(driven))] for part in driven]
+    longest = max(len(chain) for chain in chains)
+    return _indices(
+        [
+            [PART_NAMES.index(part) for part in chain] + [-1] * (longest - len(chain))
+            for chain in chains
+        ]
+    )
+
+
+def _not_turning(part: str, driven: frozenset[str]) -> list[str]:
+    """What lies between a part and the driven part, or the hips, that it hangs on."""
+    found: list[str] = []
+    above = PARENT_OF[part]
+    while above is not None and above != "Hips" and above not in driven:
+        found.append(above)
+        above = PARENT_OF[above]
+    return found
+
+
+def _frame(part: str) -> FloatArray:
+    columns = [np.array(axis.direction) for axis in AXES_OF[part]]
+    if len(columns) == 1:
+        columns.append(np.roll(columns[0], 1))
+    if len(columns) == 2:
+        columns.append(np.cross(columns[0], columns[1]))
+    return np.stack(columns, axis=-1)
+
+
+def _bend_frame(hinge: str, bend: Letter, bone: Letter) -> FloatArray:
+    axes = {axis.letter: np.array(axis.direction) for axis in AXES_OF[hinge]}
+    across = np.cross(axes[bone], axes[bend])
+    return np.stack((axes[bend], across, axes[bone]), axis=-1)
