@@ -8,13 +8,17 @@ import numpy as np
 
 from app.adapters.walks.model_file import read_model, write_model
 from app.cli.walk_input import People, planned, read_people, read_scene, read_walks
-from app.science.walking.database import check_persons, database_of
-from app.science.walking.evaluation import Evaluation, evaluate
-from app.science.walking.fitting import FitOptions, FittedWalking, fitted
-from app.science.walking.following import SteeringFollower
-from app.science.walking.grid_planner import LazyThetaPlanner
-from app.science.walking.maps import MapMaker, maps_of
-from app.science.walking.model import (
+from app.science.walking.evaluation.evaluation import Evaluation, evaluate
+from app.science.walking.evaluation.synthetic_walks import straight_path
+from app.science.walking.following.following import SteeringFollower
+from app.science.walking.maps.database import check_persons, database_of
+from app.science.walking.maps.maps import MapMaker, maps_of
+from app.science.walking.maps.suitability import PAPER, TIME_AWARE, SuitabilityOptions
+from app.science.walking.models.fitting import FitOptions, FittedWalking, fitted
+from app.science.walking.models.prediction import Prediction, Predictor
+from app.science.walking.planning.grid_planner import LazyThetaPlanner
+from app.science.walking.recording.walks import dependencies_of
+from app.science.walking.records.model import (
     LENGTH,
     STATURE,
     TURNING,
@@ -23,12 +27,8 @@ from app.science.walking.model import (
     Walk,
     WalkingError,
 )
-from app.science.walking.prediction import Prediction, Predictor
-from app.science.walking.protocols import Point
-from app.science.walking.scene import Scene
-from app.science.walking.suitability import PAPER, TIME_AWARE, SuitabilityOptions
-from app.science.walking.synthetic_walks import straight_path
-from app.science.walking.walks import dependencies_of
+from app.science.walking.records.protocols import Point
+from app.science.walking.scene.scene import Scene
 
 READINGS: dict[str, SuitabilityOptions | None] = {
     "chosen": None,

@@ -5,10 +5,10 @@ from dataclasses import asdict
 import numpy as np
 
 from app.cli.walk_orders import Fitted, Sampled
-from app.science.walking.evaluation import Evaluation
-from app.science.walking.fitting import FittedWalking
-from app.science.walking.scoring import COVERAGES, PERCENTILES
-from app.science.walking.suitability import SuitabilityOptions
+from app.science.walking.evaluation.evaluation import Evaluation
+from app.science.walking.evaluation.scoring import COVERAGES, PERCENTILES
+from app.science.walking.maps.suitability import SuitabilityOptions
+from app.science.walking.models.fitting import FittedWalking
 
 
 def fit_json(done: Fitted) -> dict[str, object]:

@@ -14,14 +14,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.following import SteeringFollower
-from app.science.walking.grid_planner import LazyThetaPlanner
-from app.science.walking.maps import MapMaker, maps_of
-from app.science.walking.metrics import EuclideanMetric
-from app.science.walking.model import PlannedWalk
-from app.science.walking.scene import SceneError
-from app.science.walking.visibility import VisibilityPlanner
-from app.science.walking.walks import planned_walk
+from app.science.walking.following.following import SteeringFollower
+from app.science.walking.following.metrics import EuclideanMetric
+from app.science.walking.maps.maps import MapMaker, maps_of
+from app.science.walking.planning.grid_planner import LazyThetaPlanner
+from app.science.walking.planning.visibility import VisibilityPlanner
+from app.science.walking.recording.walks import planned_walk
+from app.science.walking.records.model import PlannedWalk
+from app.science.walking.scene.scene import SceneError
 from tests.benchmarks.report import Figure
 from tests.science.walking.random_scenes import random_scene
 from tests.science.walking.walkers import population

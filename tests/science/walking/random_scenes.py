@@ -5,9 +5,9 @@ import math
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.protocols import Point
-from app.science.walking.scene import Obstacle, Scene, SceneError
-from app.science.walking.shapes import box_corners, convex_hull, disc_corners
+from app.science.walking.records.protocols import Point
+from app.science.walking.scene.scene import Obstacle, Scene, SceneError
+from app.science.walking.scene.shapes import box_corners, convex_hull, disc_corners
 
 SIDE_M = 4.0
 

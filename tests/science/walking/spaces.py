@@ -3,12 +3,12 @@
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.blending import BlendingSpace, blending_space
-from app.science.walking.database import WalkDatabase
-from app.science.walking.densifying import MAP_FLOATS
-from app.science.walking.dependencies import scaling_of
-from app.science.walking.model import LENGTH, STATURE
-from app.science.walking.parameters import PAPER_PARAMETERS, ParameterGrid, regular_grid
+from app.science.walking.maps.blending import BlendingSpace, blending_space
+from app.science.walking.maps.database import WalkDatabase
+from app.science.walking.maps.densifying import MAP_FLOATS
+from app.science.walking.records.dependencies import scaling_of
+from app.science.walking.records.model import LENGTH, STATURE
+from app.science.walking.records.parameters import PAPER_PARAMETERS, ParameterGrid, regular_grid
 
 NAMES = (LENGTH, STATURE)
 GRID = regular_grid(PAPER_PARAMETERS, 5)

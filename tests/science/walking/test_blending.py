@@ -5,11 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from app.science.walking.blending import blending_space
-from app.science.walking.densifying import drawn_blends, drawn_weights
-from app.science.walking.dependencies import dependency_vectors, scaling_of
-from app.science.walking.model import WalkingError
-from app.science.walking.neighbours import LEAF, neighbours, tree_of
+from app.science.walking.maps.blending import blending_space
+from app.science.walking.maps.densifying import drawn_blends, drawn_weights
+from app.science.walking.maps.neighbours import LEAF, neighbours, tree_of
+from app.science.walking.records.dependencies import dependency_vectors, scaling_of
+from app.science.walking.records.model import WalkingError
 from tests.science.walking.spaces import GRID, NAMES, dependency_rows, made_up_space
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from app.science.walking.census import census
-from app.science.walking.model import WalkingError
+from app.science.walking.recording.census import census
+from app.science.walking.records.model import WalkingError
 
 
 def test_lengths_are_counted_in_their_intervals() -> None:

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from app.science.walking.following import FollowingRules, SteeringFollower, course_of
-from app.science.walking.grid_planner import LazyThetaPlanner
-from app.science.walking.laboratory import pole_scene
-from app.science.walking.model import PlannedPath, Walk, WalkingError
-from app.science.walking.parameters import PAPER_GRID
-from app.science.walking.protocols import Course
-from app.science.walking.shapes import contains
+from app.science.walking.following.following import FollowingRules, SteeringFollower, course_of
+from app.science.walking.planning.grid_planner import LazyThetaPlanner
+from app.science.walking.records.model import PlannedPath, Walk, WalkingError
+from app.science.walking.records.parameters import PAPER_GRID
+from app.science.walking.records.protocols import Course
+from app.science.walking.scene.laboratory import pole_scene
+from app.science.walking.scene.shapes import contains
 from tests.science.walking.random_scenes import random_scene
 from tests.science.walking.walkers import walker
 

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from scipy.interpolate import Rbf, RegularGridInterpolator
 
-from app.science.walking.interpolation import (
+from app.science.walking.maps.interpolation import (
     axes_of,
     basis_matrix,
     multilinear,
     radial_basis,
     width_of,
 )
-from app.science.walking.model import WalkingError
-from app.science.walking.parameters import (
+from app.science.walking.records.model import WalkingError
+from app.science.walking.records.parameters import (
     PAPER_GRID,
     PAPER_PARAMETERS,
     ParameterGrid,

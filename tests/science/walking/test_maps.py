@@ -6,22 +6,22 @@ from functools import partial
 import numpy as np
 import pytest
 
-from app.science.walking.following import SteeringFollower
-from app.science.walking.grid_planner import LazyThetaPlanner
-from app.science.walking.laboratory import pole_scene, straight_scene
-from app.science.walking.maps import MapMaker, maps_of
-from app.science.walking.metrics import EuclideanMetric, PaceMetric
-from app.science.walking.model import PlannedWalk, Walk, WalkingError
-from app.science.walking.parameters import (
+from app.science.walking.following.following import SteeringFollower
+from app.science.walking.following.metrics import EuclideanMetric, PaceMetric
+from app.science.walking.maps.maps import MapMaker, maps_of
+from app.science.walking.maps.suitability import PAPER, TIME_AWARE, DeviationMap, SuitabilityOptions
+from app.science.walking.planning.grid_planner import LazyThetaPlanner
+from app.science.walking.recording.walks import planned_walk
+from app.science.walking.records.model import PlannedWalk, Walk, WalkingError
+from app.science.walking.records.parameters import (
     PAPER_PARAMETERS,
     ParameterGrid,
     SteeringParameter,
     regular_grid,
 )
-from app.science.walking.protocols import Course, Metric, Trajectories, reference_of
-from app.science.walking.scene import Scene
-from app.science.walking.suitability import PAPER, TIME_AWARE, DeviationMap, SuitabilityOptions
-from app.science.walking.walks import planned_walk
+from app.science.walking.records.protocols import Course, Metric, Trajectories, reference_of
+from app.science.walking.scene.laboratory import pole_scene, straight_scene
+from app.science.walking.scene.scene import Scene
 from tests.science.walking.walkers import walker
 
 GRID = regular_grid(PAPER_PARAMETERS, 4)

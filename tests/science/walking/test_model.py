@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from app.science.walking.model import PlannedPath, PlannedWalk, Track, Walk, WalkingError
-from app.science.walking.parameters import PAPER_GRID, VELOCITY, ParameterGrid, SteeringParameter
+from app.science.walking.records.model import PlannedPath, PlannedWalk, Track, Walk, WalkingError
+from app.science.walking.records.parameters import (
+    PAPER_GRID,
+    VELOCITY,
+    ParameterGrid,
+    SteeringParameter,
+)
 
 TIMES = np.arange(5) / 10.0
 LINE = np.stack([np.zeros(5), np.arange(5) * 0.1], axis=-1)

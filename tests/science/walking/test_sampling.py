@@ -5,10 +5,10 @@ import pytest
 from scipy import stats
 
 from app.science.rotations import FloatArray
-from app.science.walking.interpolation import axes_of, multilinear
-from app.science.walking.model import WalkingError
-from app.science.walking.parameters import SteeringParameter, regular_grid
-from app.science.walking.sampling import MixtureSampler, density_of
+from app.science.walking.maps.interpolation import axes_of, multilinear
+from app.science.walking.models.sampling import MixtureSampler, density_of
+from app.science.walking.records.model import WalkingError
+from app.science.walking.records.parameters import SteeringParameter, regular_grid
 from tests.science.walking.spaces import made_up_space
 
 DRAWS, ALPHA = 20_000, 0.001

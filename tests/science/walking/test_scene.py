@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from app.science.walking.laboratory import POLE_DEG, pole_scene, straight_scene
-from app.science.walking.model import WalkingError
-from app.science.walking.scene import Obstacle, Scene, SceneError, ScenePath, box
-from app.science.walking.shapes import area_m2, contains, disc_corners, distance_m, widened
+from app.science.walking.records.model import WalkingError
+from app.science.walking.scene.laboratory import POLE_DEG, pole_scene, straight_scene
+from app.science.walking.scene.scene import Obstacle, Scene, SceneError, ScenePath, box
+from app.science.walking.scene.shapes import area_m2, contains, disc_corners, distance_m, widened
 
 BOUNDS = (-2.0, -2.0, 2.0, 2.0)
 TABLE = box("table", (0.0, 0.0), (1.0, 1.0))

@@ -4,24 +4,24 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from app.science.walking.crps import covers, crps_s
-from app.science.walking.database import database_of
-from app.science.walking.evaluation import evaluate, pooled
-from app.science.walking.fitting import FitOptions, fitted, space_of
-from app.science.walking.following import SteeringFollower
-from app.science.walking.laboratory import straight_scene
-from app.science.walking.leave_one_out import (
+from app.science.walking.evaluation.evaluation import evaluate, pooled
+from app.science.walking.evaluation.leave_one_out import (
     neighbours_left_out,
     nodes_left_out,
     people_left_out,
 )
-from app.science.walking.maps import MapMaker, maps_of
-from app.science.walking.model import LENGTH, STATURE, TURNING, WalkingError
-from app.science.walking.parameters import PAPER_PARAMETERS, regular_grid
-from app.science.walking.populations import POPULATIONS
-from app.science.walking.scoring import comparison, error_summary, signed_rank_power
-from app.science.walking.suitability import PAPER, TIME_AWARE
-from app.science.walking.synthetic_walks import Sample, synthetic_walks
+from app.science.walking.evaluation.populations import POPULATIONS
+from app.science.walking.evaluation.scoring import comparison, error_summary, signed_rank_power
+from app.science.walking.evaluation.synthetic_walks import Sample, synthetic_walks
+from app.science.walking.following.following import SteeringFollower
+from app.science.walking.maps.database import database_of
+from app.science.walking.maps.maps import MapMaker, maps_of
+from app.science.walking.maps.suitability import PAPER, TIME_AWARE
+from app.science.walking.models.crps import covers, crps_s
+from app.science.walking.models.fitting import FitOptions, fitted, space_of
+from app.science.walking.records.model import LENGTH, STATURE, TURNING, WalkingError
+from app.science.walking.records.parameters import PAPER_PARAMETERS, regular_grid
+from app.science.walking.scene.laboratory import straight_scene
 from tests.science.walking.spaces import made_up_database, made_up_space
 
 

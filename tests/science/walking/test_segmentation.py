@@ -5,9 +5,9 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from app.science.rotations import FloatArray
-from app.science.walking.model import Track, WalkingError
-from app.science.walking.segmentation import SegmentationRules, walks_of
-from app.science.walking.smoothing import smoothed
+from app.science.walking.recording.segmentation import SegmentationRules, walks_of
+from app.science.walking.recording.smoothing import smoothed
+from app.science.walking.records.model import Track, WalkingError
 
 RATE_HZ = 120.0
 

@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from app.science.walking.annealing import annealed, static_fit
-from app.science.walking.fitting import FitOptions, fitted, restored
-from app.science.walking.following import SteeringFollower
-from app.science.walking.model import LENGTH, STATURE, PlannedPath, WalkingError
-from app.science.walking.prediction import Predictor
-from app.science.walking.reading_choice import person_folds, ranked_readings
-from app.science.walking.steering_models import AdaptiveModel, ProbabilisticModel
-from app.science.walking.submodels import holding, without_dependency
-from app.science.walking.suitability import PAPER, TIME_AWARE
-from app.science.walking.synthetic_walks import straight_path
+from app.science.walking.evaluation.synthetic_walks import straight_path
+from app.science.walking.following.following import SteeringFollower
+from app.science.walking.maps.suitability import PAPER, TIME_AWARE
+from app.science.walking.models.annealing import annealed, static_fit
+from app.science.walking.models.fitting import FitOptions, fitted, restored
+from app.science.walking.models.prediction import Predictor
+from app.science.walking.models.reading_choice import person_folds, ranked_readings
+from app.science.walking.models.steering_models import AdaptiveModel, ProbabilisticModel
+from app.science.walking.models.submodels import holding, without_dependency
+from app.science.walking.records.model import LENGTH, STATURE, PlannedPath, WalkingError
 from tests.science.walking.spaces import GRID, PEOPLE, made_up_database, made_up_space
 
 ASKED = {LENGTH: 2.0, STATURE: 1.75}
@@ -61,8 +61,8 @@ def test_models_differ_as_they_should() -> None:
 
 def test_the_adaptive_model_is_at_the_top_of_its_map() -> None:
     """No random place of the map is higher; of equal ones the largest last parameter is taken."""
-    from app.science.walking.interpolation import radial_basis
-    from app.science.walking.sampling import density_of
+    from app.science.walking.maps.interpolation import radial_basis
+    from app.science.walking.models.sampling import density_of
 
     space = made_up_space()
     model, rng = AdaptiveModel(space), np.random.default_rng(1)

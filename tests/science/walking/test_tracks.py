@@ -10,11 +10,11 @@ from app.adapters.captures.door import read_capture
 from app.science.rig import BodyMotion, MarkerMotion, Rig, RigMotion
 from app.science.rotations import from_rotation_vector, identity
 from app.science.skeleton import JOINT_INDEX
-from app.science.walking.capture_tracks import Followed, track_of_motion
-from app.science.walking.centre_of_mass import centre_of_mass
-from app.science.walking.model import WalkingError
-from app.science.walking.segmentation import walks_of
-from app.science.walking.tracks import Walker, bridged, track_of_belt, track_of_rig
+from app.science.walking.recording.capture_tracks import Followed, track_of_motion
+from app.science.walking.recording.centre_of_mass import centre_of_mass
+from app.science.walking.recording.segmentation import walks_of
+from app.science.walking.recording.tracks import Walker, bridged, track_of_belt, track_of_rig
+from app.science.walking.records.model import WalkingError
 from tests.science.retargeting.bodies import SAME, own_body
 
 WALKER = Walker("7", "made", 1.75, "synthetic")

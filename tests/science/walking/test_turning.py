@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from app.science.rotations import FloatArray
-from app.science.walking.model import WalkingError
-from app.science.walking.turning import by_length, total_turning, turning_per_m
+from app.science.walking.records.model import WalkingError
+from app.science.walking.scene.turning import by_length, total_turning, turning_per_m
 
 
 def _arc(angle: float, radius_m: float, samples: int) -> FloatArray:

@@ -9,17 +9,17 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from app.science.rotations import FloatArray
-from app.science.walking.grid_planner import LazyThetaPlanner
-from app.science.walking.laboratory import (
+from app.science.walking.planning.grid_planner import LazyThetaPlanner
+from app.science.walking.records.model import PlannedPath, Walk
+from app.science.walking.scene.laboratory import (
     POLE_DEG,
     POLE_M,
     STRAIGHT_M,
     pole_scene,
     straight_scene,
 )
-from app.science.walking.model import PlannedPath, Walk
-from app.science.walking.scene import Scene
-from app.science.walking.turning import by_length
+from app.science.walking.scene.scene import Scene
+from app.science.walking.scene.turning import by_length
 
 RATE_HZ, ROUNDED_M, SWAY_M = 120.0, 0.15, 0.015
 FASTEST_M_S, NEAR_M = 1.464, 1.879

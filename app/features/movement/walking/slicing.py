@@ -6,10 +6,10 @@ import numpy as np
 
 from app.features.movement.walking.sources import Cannot, SliceQuestion, Store
 from app.features.movement.walking.telling import opened
-from app.science.walking.fitting import FittedWalking
-from app.science.walking.interpolation import multilinear
-from app.science.walking.model import WalkingError
-from app.science.walking.sampling import density_of
+from app.science.walking.maps.interpolation import multilinear
+from app.science.walking.models.fitting import FittedWalking
+from app.science.walking.models.sampling import density_of
+from app.science.walking.records.model import WalkingError
 
 Json = dict[str, Any]
 

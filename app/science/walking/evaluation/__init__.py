@@ -1,0 +1,1 @@
+"""How well predictions hold against walks that a model has not seen."""

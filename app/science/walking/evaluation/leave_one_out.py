@@ -1,0 +1,100 @@
+"""How well maps are interpolated: over dependencies by neighbours, between nodes by radial bases.
+
+As the paper does it: one entry of the densified space is left out and guessed from its neighbours,
+the median over the nodes of guess minus truth is one figure, and mean and deviation are over all
+entries. The entry's own blends are still there, and it is a blend of others itself, so this says
+how smooth the space is and not how a new person is predicted. That is `people_left_out`.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.walking.maps.blending import BlendingSpace
+from app.science.walking.maps.database import WalkDatabase
+from app.science.walking.maps.densifying import IntArray
+from app.science.walking.maps.interpolation import radial_basis
+from app.science.walking.maps.neighbours import neighbours
+from app.science.walking.maps.suitability import SuitabilityOptions
+from app.science.walking.models.fitting import space_of
+from app.science.walking.models.reading_choice import person_folds
+
+NODES = 100
+"""Random nodes of each map at which the radial basis is tried."""
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Deviations of suitability, in percent of its range.
+
+    Attributes:
+        mean, sd: over the entries.
+        entries: how many.
+    """
+
+    mean: float
+    sd: float
+    entries: int
+
+
+def neighbours_left_out(space: BlendingSpace) -> LeftOut:
+    """Leave each entry out in turn and guess its map from its k nearest others."""
+    from app.science.walking.models.sampling_kernels import blend_rows
+
+    count = len(space.z)
+    k = min(space.k, count - 1)
+    medians = np.empty(count)
+    for at in range(count):
+        indices, _ = neighbours(space.tree, space.z[at], k + 1)
+        others = indices[indices != at][:k]
+        guess = blend_rows(others, _weights(space.z, others, at), space.values)
+        medians[at] = np.median(guess - space.values[at])
+    return _summary(medians)
+
+
+def _weights(z: FloatArray, others: IntArray, at: int) -> FloatArray:
+    apart = np.linalg.norm(z[others] - z[at], axis=1)
+    weights = 1.0 - apart / apart.max() if apart.max() > 0.0 else np.ones(len(apart))
+    total = weights.sum()
+    found: FloatArray = weights / total if total > 0.0 else np.full(len(apart), 1 / len(apart))
+    return found
+
+
+def people_left_out(
+    database: WalkDatabase,
+    reading: SuitabilityOptions,
+    rng: np.random.Generator,
+    *,
+    entries: int,
+    k: int,
+    folds: int = 4,
+) -> LeftOut:
+    """Guess each walk's map from the maps of other people, densified among themselves."""
+    from app.science.walking.models.sampling_kernels import blend_rows
+
+    values, medians = database.suitability(reading), []
+    for fold in person_folds(database, rng, folds):
+        out = database.is_of(fold)
+        space = space_of(database.only(~out), reading, rng, entries=entries, k=k)
+        for at in np.flatnonzero(out):
+            indices, weights = space.neighbours(space.scaling.z(database.vectors[at]))
+            guess = blend_rows(indices, weights, space.values)
+            medians.append(float(np.median(guess - values[at])))
+    return _summary(np.array(medians))
+
+
+def nodes_left_out(space: BlendingSpace, rng: np.random.Generator) -> LeftOut:
+    """Leave nodes out of each map and guess them by the radial basis through the others."""
+    basis = radial_basis(space.grid)
+    medians = np.empty(len(space.values))
+    for first in range(0, len(space.values), 512):
+        part = slice(first, first + 512)
+        errors = basis.leave_one_out(space.values[part].astype(np.float64))
+        tried = rng.integers(0, space.grid.size, size=(len(errors), NODES))
+        medians[part] = -np.median(np.take_along_axis(errors, tried, axis=1), axis=1)
+    return _summary(medians)
+
+
+def _summary(medians: FloatArray) -> LeftOut:
+    return LeftOut(100.0 * float(medians.mean()), 100.0 * float(medians.std()), len(medians))

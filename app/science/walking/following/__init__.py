@@ -1,0 +1,1 @@
+"""Following a path: speed along it, and the metrics of a walk."""

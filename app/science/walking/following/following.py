@@ -1,0 +1,162 @@
+"""The agent: follows a planned path with limited speed, acceleration and curvature.
+
+Steering after Reynolds (1999), "Steering behaviors for autonomous characters" (path following and
+arrival). At each step of `dt_s`, with parameters v_max, a_max and omega:
+
+    aim      the point of the path `lookahead_m` ahead of the agent's nearest one
+    turn     towards it, by at most omega * v * dt: angular velocity is tied to velocity, which
+             makes omega the largest curvature (1/m)
+    speed    towards min(v_max, sqrt(2 a_max d)), d the way left, by at most a_max * dt: it can
+             always stop at the goal; never slower than `floor_m_s`. Within a step the
+             acceleration is constant, and d is counted so that braking ends at the goal
+    arrival  within `radius_m` of the goal, its time interpolated within the step; then it stays
+
+It begins along the path. What the paper leaves open (step, look-ahead, radius, floor) is fixed in
+`FollowingRules` and printed with every result. An agent that cannot turn enough circles the goal,
+and has not arrived when its time is over.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.walking.records.model import PlannedPath, Walk, WalkingError
+from app.science.walking.records.parameters import PAPER_PARAMETERS, SteeringParameter
+from app.science.walking.records.protocols import Course, Trajectories
+
+
+@dataclass(frozen=True)
+class FollowingRules:
+    """What is the same for all agents."""
+
+    dt_s: float = 1.0 / 60.0
+    lookahead_m: float = 0.4
+    radius_m: float = 0.05
+    floor_m_s: float = 0.02
+
+    def __post_init__(self) -> None:
+        """Raises WalkingError where one is not positive."""
+        for name in ("dt_s", "lookahead_m", "radius_m", "floor_m_s"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise WalkingError(f"{name} is {getattr(self, name)}; it must be positive.")
+
+
+class Way(NamedTuple):
+    """A path as the agents see it: P points, P - 1 legs.
+
+    Attributes:
+        points: (P, 2).
+        units: (P - 1, 2) direction of each leg.
+        lengths: (P - 1,).
+        before: (P,) way up to each point.
+    """
+
+    points: FloatArray
+    units: FloatArray
+    lengths: FloatArray
+    before: FloatArray
+
+
+class Pace(NamedTuple):
+    """Numbers of one simulation: the rules, speed at the start, whether it brakes, most steps."""
+
+    dt: float
+    lookahead: float
+    radius: float
+    floor: float
+    begin: float
+    brakes: bool
+    steps: int
+
+
+@dataclass(frozen=True)
+class SteeringFollower:
+    """Follows paths with (v_max, a_max, omega); a `PathFollower`.
+
+    Attributes:
+        rules: fixed for all agents.
+        backend: compiled, or the same in NumPy over all agents at once, to check it against.
+    """
+
+    rules: FollowingRules = FollowingRules()
+    backend: Literal["compiled", "numpy"] = "compiled"
+
+    @property
+    def parameters(self) -> tuple[SteeringParameter, ...]:
+        """Velocity, acceleration, angular."""
+        return PAPER_PARAMETERS
+
+    @property
+    def dt_s(self) -> float:
+        """The step."""
+        return self.rules.dt_s
+
+    def follow(self, course: Course, vectors: FloatArray) -> Trajectories:
+        """Let one agent for each vector (K, 3) follow the course.
+
+        Raises:
+            WalkingError: vectors of another shape or not positive, or a course without samples.
+        """
+        vectors = np.ascontiguousarray(vectors, dtype=np.float64)
+        if vectors.ndim != 2 or vectors.shape[1] != 3:
+            raise WalkingError(f"Vectors (K, 3) of v, a, omega are needed, got {vectors.shape}.")
+        if not (np.isfinite(vectors).all() and (vectors > 0.0).all()):
+            raise WalkingError("Velocity, acceleration and angular must be positive numbers.")
+        if course.samples < 1 or not 0.0 < course.time_limit_s < np.inf:
+            raise WalkingError(
+                f"A course of {course.samples} samples and {course.time_limit_s} s is none."
+            )
+        if len(course.path.points_m) > 2:
+            return self._followed(course, vectors)
+        # Who never turns does not feel omega: on one straight leg, equal v and a walk alike.
+        _, first, like = np.unique(vectors[:, :2], axis=0, return_index=True, return_inverse=True)
+        few = self._followed(course, vectors[first])
+        return Trajectories(few.xy_m[like], few.arrival_s[like])
+
+    def _followed(self, course: Course, vectors: FloatArray) -> Trajectories:
+        places = np.empty((len(vectors), course.samples, 2))
+        arrival = np.full(len(vectors), np.nan)
+        self._move(way_of(course.path), vectors, self._pace(course), places, arrival)
+        return Trajectories(places, arrival)
+
+    def _pace(self, course: Course) -> Pace:
+        rules = self.rules
+        steps = int(np.ceil(course.time_limit_s / rules.dt_s - 1e-9))
+        begin = max(rules.floor_m_s, course.initial_speed_m_s)
+        fixed = (rules.dt_s, rules.lookahead_m, rules.radius_m, rules.floor_m_s)
+        return Pace(*fixed, begin, course.brakes, steps)
+
+    def _move(
+        self, way: Way, vectors: FloatArray, pace: Pace, places: FloatArray, arrival: FloatArray
+    ) -> None:
+        if self.backend == "numpy":
+            from app.science.walking.following.following_numpy import move_all
+        else:
+            from app.science.walking.following.following_kernels import move_all
+        move_all(way, vectors, pace, places, arrival)
+
+
+def way_of(path: PlannedPath) -> Way:
+    """The path in legs."""
+    legs = np.diff(path.points_m, axis=0)
+    lengths = np.linalg.norm(legs, axis=1)
+    points = np.ascontiguousarray(path.points_m, dtype=np.float64)
+    return Way(points, legs / lengths[:, None], lengths, path.arc_m)
+
+
+TIMES_REFERENCE = 2.0
+EXTRA_S = 1.0
+
+
+def course_of(walk: Walk, path: PlannedPath, dt_s: float) -> Course:
+    """The course by which a walk is re-simulated.
+
+    An agent that takes more than twice as long and a second has not arrived: its suitability in
+    time is below exp(-10) by then. A walk that a recording cuts begins, or ends, at speed.
+    """
+    samples = int(np.floor(walk.duration_s / dt_s + 1e-9)) + 1
+    begin_m_s = 0.0 if walk.begins_still else float(walk.speeds_m_s[0])
+    limit_s = TIMES_REFERENCE * walk.duration_s + EXTRA_S
+    return Course(path, samples, limit_s, begin_m_s, walk.ends_still)

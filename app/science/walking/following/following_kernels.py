@@ -1,0 +1,125 @@
+"""The agents of `following`, compiled: one after the other, each to its end."""
+
+import math
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.walking.compiling import compiled
+from app.science.walking.following.following import Pace, Way
+
+
+@compiled
+def _off(x: float, y: float, way: Way, leg: int) -> tuple[float, float]:
+    """Along and squared distance of a place to a leg."""
+    dx, dy = x - way.points[leg, 0], y - way.points[leg, 1]
+    along = dx * way.units[leg, 0] + dy * way.units[leg, 1]
+    along = min(max(along, 0.0), way.lengths[leg])
+    ox, oy = dx - along * way.units[leg, 0], dy - along * way.units[leg, 1]
+    return along, ox * ox + oy * oy
+
+
+@compiled
+def _progress(x: float, y: float, way: Way, leg: int, lookahead: float) -> tuple[int, float]:
+    """The leg that the agent is on, and how far along it."""
+    along, apart = _off(x, y, way, leg)
+    while leg + 1 < len(way.lengths) and way.lengths[leg] - along <= lookahead:
+        next_along, next_apart = _off(x, y, way, leg + 1)
+        if next_apart > apart:
+            break
+        leg, along, apart = leg + 1, next_along, next_apart
+    return leg, along
+
+
+@compiled
+def _aim(way: Way, leg: int, ahead: float) -> tuple[float, float]:
+    """The point of the path at a way from its start, at most its end."""
+    while leg + 1 < len(way.lengths) and way.before[leg + 1] < ahead:
+        leg += 1
+    along = min(ahead - way.before[leg], way.lengths[leg])
+    x = way.points[leg, 0] + along * way.units[leg, 0]
+    return x, way.points[leg, 1] + along * way.units[leg, 1]
+
+
+@compiled
+def _turned(hx: float, hy: float, dx: float, dy: float, most: float) -> tuple[float, float]:
+    """A heading (hx, hy) turned towards (dx, dy) by an angle at most; no trigonometry.
+
+    tan(most / 2) by its series: an angle of a few hundredths of a radian is right to 1e-10.
+    """
+    distance = math.sqrt(dx * dx + dy * dy)
+    if distance < 1e-9:
+        return hx, hy
+    dx, dy = dx / distance, dy / distance
+    half = most * 0.5
+    half = half + half * half * half / 3.0
+    scale = 1.0 / (1.0 + half * half)
+    cosine, sine = (1.0 - half * half) * scale, 2.0 * half * scale
+    if hx * dx + hy * dy >= cosine:
+        return dx, dy
+    if hx * dy - hy * dx < 0.0:
+        sine = -sine
+    return hx * cosine - hy * sine, hx * sine + hy * cosine
+
+
+@compiled
+def _left(x: float, y: float, way: Way, leg: int) -> float:
+    """The way left: to the leg's end and on from there."""
+    dx, dy = way.points[leg + 1, 0] - x, way.points[leg + 1, 1] - y
+    left: float = math.sqrt(dx * dx + dy * dy) + (way.before[-1] - way.before[leg + 1])
+    return left
+
+
+@compiled
+def _stoppable(left: float, speed: float, rate: float, dt: float) -> float:
+    """The speed after this step from which braking at a rate ends in the way left."""
+    room, change = max(left - 0.5 * speed * dt, 0.0), rate * dt
+    return math.sqrt(0.25 * change * change + 2.0 * rate * room) - 0.5 * change
+
+
+@compiled
+def move(way: Way, vector: FloatArray, pace: Pace, places: FloatArray) -> float:
+    """Move one agent; fills `places` (N, 2) and returns its arrival time, NaN for none."""
+    fastest, change, slope = vector[0], vector[1] * pace.dt, vector[2] * pace.dt
+    x, y = way.points[0, 0], way.points[0, 1]
+    hx, hy = way.units[0, 0], way.units[0, 1]
+    speed, leg = pace.begin, 0
+    samples = len(places)
+    apart = _left(x, y, way, len(way.lengths) - 1)
+    places[0, 0], places[0, 1] = x, y
+    for step in range(1, pace.steps + 1):
+        leg, along = _progress(x, y, way, leg, pace.lookahead)
+        ax, ay = _aim(way, leg, way.before[leg] + along + pace.lookahead)
+        hx, hy = _turned(hx, hy, ax - x, ay - y, slope * speed)
+        wanted = fastest
+        if pace.brakes:
+            wanted = min(fastest, _stoppable(_left(x, y, way, leg), speed, vector[1], pace.dt))
+        before_speed = speed
+        speed = max(pace.floor, speed + min(max(wanted - speed, -change), change))
+        stride = 0.5 * (before_speed + speed) * pace.dt
+        x, y = x + stride * hx, y + stride * hy
+        if step < samples:
+            places[step, 0], places[step, 1] = x, y
+        before, apart = apart, _left(x, y, way, len(way.lengths) - 1)
+        if apart <= pace.radius:
+            for rest in range(step + 1, samples):
+                places[rest, 0], places[rest, 1] = x, y
+            share = (before - pace.radius) / (before - apart) if before > pace.radius else 0.0
+            return (step - 1 + share) * pace.dt
+        if step >= samples:
+            # All samples are told; who is too far to come in time need not go on.
+            swiftest = max(max(speed, fastest), pace.floor)
+            if apart - pace.radius > (pace.steps - step + 1) * swiftest * pace.dt:
+                return np.nan
+    for rest in range(pace.steps + 1, samples):
+        places[rest, 0], places[rest, 1] = x, y
+    return np.nan
+
+
+@compiled
+def move_all(
+    way: Way, vectors: FloatArray, pace: Pace, places: FloatArray, arrival: FloatArray
+) -> None:
+    """Move K agents: vectors (K, 3), places (K, N, 2), arrival (K,), the last two filled here."""
+    for agent in range(len(vectors)):
+        arrival[agent] = move(way, vectors[agent], pace, places[agent])

@@ -1,0 +1,1 @@
+"""Maps of suitability over the parameters, and how they are interpolated."""

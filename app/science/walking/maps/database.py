@@ -1,0 +1,153 @@
+"""The database: walks with their dependencies and maps, as plain tables.
+
+Everything a model is fitted from, and all that is kept of the walks: no trajectory. Maps are kept
+as deviations and travel times, so that they can be read as suitability anew, for another choice or
+for part of the walks.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.science.rotations import FloatArray
+from app.science.walking.maps.densifying import MAP_FLOATS, IntArray, MapArray
+from app.science.walking.maps.suitability import DeviationMap, SuitabilityOptions
+from app.science.walking.records.dependencies import dependency_vectors
+from app.science.walking.records.model import PlannedWalk, WalkingError
+from app.science.walking.records.parameters import ParameterGrid
+
+PERSONS = 2
+"""Fewer cannot tell how people differ, nor be told apart for validation."""
+
+
+@dataclass(frozen=True, eq=False)
+class WalkDatabase:
+    """N walks.
+
+    Attributes:
+        grid: combinations of steering parameters, K of them.
+        metric: measure of deviation.
+        names: m dependencies.
+        vectors: (N, m) their values.
+        deviations: (N, K).
+        arrivals_s: (N, K) travel times, NaN where an agent did not arrive.
+        durations_s: (N,) travel times of the walks themselves.
+        lengths_m: (N,) of the planned paths.
+        subjects, sources, kinds: N each.
+    """
+
+    grid: ParameterGrid
+    metric: str
+    names: tuple[str, ...]
+    vectors: FloatArray
+    deviations: MapArray
+    arrivals_s: MapArray
+    durations_s: FloatArray
+    lengths_m: FloatArray
+    subjects: tuple[str, ...]
+    sources: tuple[str, ...]
+    kinds: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """Raises WalkingError where tables do not fit each other."""
+        count, shape = len(self.subjects), (len(self.subjects), self.grid.size)
+        fits = (
+            count > 0
+            and self.vectors.shape == (count, len(self.names))
+            and self.deviations.shape == shape == self.arrivals_s.shape
+            and self.durations_s.shape == (count,) == self.lengths_m.shape
+            and len(self.sources) == count == len(self.kinds)
+        )
+        if not fits:
+            raise WalkingError("The tables of a database of walks do not fit each other.")
+
+    def __len__(self) -> int:
+        """N."""
+        return len(self.subjects)
+
+    @property
+    def persons(self) -> tuple[str, ...]:
+        """Everybody who walked, sorted."""
+        return tuple(sorted(set(self.subjects)))
+
+    def only(self, chosen: IntArray | npt.NDArray[np.bool_]) -> "WalkDatabase":
+        """Part of the walks, by indices or flags."""
+        at = np.arange(len(self))[chosen]
+        return WalkDatabase(
+            self.grid,
+            self.metric,
+            self.names,
+            self.vectors[at],
+            self.deviations[at],
+            self.arrivals_s[at],
+            self.durations_s[at],
+            self.lengths_m[at],
+            tuple(self.subjects[i] for i in at),
+            tuple(self.sources[i] for i in at),
+            tuple(self.kinds[i] for i in at),
+        )
+
+    def is_of(self, persons: Iterable[str]) -> npt.NDArray[np.bool_]:
+        """(N,) whether a walk is of one of them."""
+        wanted = set(persons)
+        return np.array([subject in wanted for subject in self.subjects])
+
+    def suitability(self, options: SuitabilityOptions) -> MapArray:
+        """Read all maps, (N, K)."""
+        values = np.empty((len(self), self.grid.size), dtype=MAP_FLOATS)
+        for at in range(len(self)):
+            values[at] = self.map_at(at).read(options).values.ravel()
+        return values
+
+    def map_at(self, at: int) -> DeviationMap:
+        """One walk's map."""
+        shape = self.grid.shape
+        return DeviationMap(
+            self.grid,
+            self.metric,
+            self.deviations[at].astype(np.float64).reshape(shape),
+            self.arrivals_s[at].astype(np.float64).reshape(shape),
+            float(self.durations_s[at]),
+        )
+
+
+def database_of(
+    entries: Sequence[PlannedWalk], maps: Sequence[DeviationMap], names: Sequence[str]
+) -> WalkDatabase:
+    """Put entries and their maps into tables.
+
+    Raises:
+        WalkingError: no walk, a walk without one of the dependencies, or maps of several kinds.
+    """
+    if not entries or len(entries) != len(maps):
+        raise WalkingError(f"{len(entries)} walks with {len(maps)} maps make no database.")
+    grid, metric = maps[0].grid, maps[0].metric
+    if any(one.grid != grid or one.metric != metric for one in maps):
+        raise WalkingError("Maps over several grids, or by several metrics, cannot be mixed.")
+    walks = [entry.walk for entry in entries]
+    sources = [walk.source for walk in walks]
+    return WalkDatabase(
+        grid,
+        metric,
+        tuple(names),
+        dependency_vectors(names, [entry.dependencies for entry in entries], sources),
+        np.stack([one.deviations.ravel() for one in maps]).astype(MAP_FLOATS),
+        np.stack([one.arrival_s.ravel() for one in maps]).astype(MAP_FLOATS),
+        np.array([walk.duration_s for walk in walks]),
+        np.array([entry.path.length_m for entry in entries]),
+        tuple(walk.subject for walk in walks),
+        tuple(sources),
+        tuple(walk.kind for walk in walks),
+    )
+
+
+def check_persons(database: WalkDatabase) -> None:
+    """Raise WalkingError for a database of too few people."""
+    if len(database.persons) < PERSONS:
+        raise WalkingError(
+            f"All {len(database)} walks are of one subject, {database.persons[0]!r}. How people"
+            f" differ cannot be learnt from one: give walks of {PERSONS} or more, and name who"
+            " walks in each."
+        )

@@ -1,0 +1,98 @@
+"""Densifying a database: blends of neighbouring walks fill the space between them.
+
+After Kovar and Gleicher (2004), "Automated extraction and parameterization of motions in large data
+sets": a target is drawn evenly from the space, its nearest walks are blended with random weights
+that sum to 1, each from -.1 to 1.1, so that blends reach a little beyond what was captured, and the
+same weights give the blend's dependencies and its map.
+
+A blend knows its parents. Densify the training walks of a fold, never all walks before they are
+parted: blends of a held-out person would be in the training set.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.science.rotations import FloatArray
+from app.science.walking.records.model import WalkingError
+
+LEAST_WEIGHT, MOST_WEIGHT = -0.1, 1.1
+MAP_FLOATS = np.float32
+"""Suitability, a number from 0 to 1, is kept with seven digits."""
+IntArray = npt.NDArray[np.int64]
+MapArray = npt.NDArray[np.float32]
+_AT_ONCE = 512
+"""Blends made together, to keep the memory small."""
+
+
+@dataclass(frozen=True, eq=False)
+class Blends:
+    """B blends of N walks, each of p parents.
+
+    Attributes:
+        parents: (B, p) indices into the walks.
+        weights: (B, p) each in [-.1, 1.1], a row sums to 1.
+    """
+
+    parents: IntArray
+    weights: FloatArray
+
+    def of_vectors(self, vectors: FloatArray) -> FloatArray:
+        """Blend vectors (N, m) to (B, m)."""
+        blended: FloatArray = np.einsum("bp,bpm->bm", self.weights, vectors[self.parents])
+        return blended
+
+    def of_maps(self, values: MapArray) -> MapArray:
+        """Blend maps (N, K) to (B, K), clipped to [0, 1]."""
+        blended = np.empty((len(self.parents), values.shape[1]), dtype=MAP_FLOATS)
+        for first in range(0, len(self.parents), _AT_ONCE):
+            part = slice(first, first + _AT_ONCE)
+            weights = self.weights[part].astype(MAP_FLOATS)
+            sums = np.zeros((len(weights), values.shape[1]), dtype=MAP_FLOATS)
+            for parent in range(weights.shape[1]):
+                sums += weights[:, parent, None] * values[self.parents[part, parent]]
+            blended[part] = np.clip(sums, 0.0, 1.0)
+        return blended
+
+    def as_matrix(self, walks: int) -> FloatArray:
+        """(B, N) how much each walk has of each blend."""
+        matrix = np.zeros((len(self.parents), walks))
+        np.add.at(matrix, (np.arange(len(self.parents))[:, None], self.parents), self.weights)
+        return matrix
+
+
+def drawn_blends(z: FloatArray, count: int, rng: np.random.Generator) -> Blends:
+    """Draw blends.
+
+    Args:
+        z: (N, m) where the walks are in the space.
+        count: how many.
+        rng: of the targets and the weights.
+
+    Raises:
+        WalkingError: fewer than two walks, or a negative count.
+    """
+    walks, dimensions = z.shape
+    if walks < 2 or count < 0:
+        raise WalkingError(f"{count} blends of {walks} walks cannot be made: two or more walks.")
+    parents = min(dimensions + 1, walks)
+    targets = rng.uniform(z.min(axis=0), z.max(axis=0), size=(count, dimensions))
+    nearest = np.empty((count, parents), dtype=np.int64)
+    for first in range(0, count, _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        apart = ((targets[part, None, :] - z[None, :, :]) ** 2).sum(axis=-1)
+        nearest[part] = np.argpartition(apart, parents - 1, axis=1)[:, :parents]
+    return Blends(nearest, drawn_weights(count, parents, rng))
+
+
+def drawn_weights(count: int, parents: int, rng: np.random.Generator) -> FloatArray:
+    """Weights (count, parents) evenly from those in [-.1, 1.1] that sum to 1."""
+    weights = np.empty((0, parents))
+    while len(weights) < count:
+        free = rng.uniform(LEAST_WEIGHT, MOST_WEIGHT, size=(4 * count + 16, parents - 1))
+        last = 1.0 - free.sum(axis=1, keepdims=True)
+        fits = ((last >= LEAST_WEIGHT) & (last <= MOST_WEIGHT))[:, 0]
+        weights = np.concatenate([weights, np.hstack([free, last])[fits]])
+    chosen: FloatArray = weights[:count]
+    return chosen

@@ -1,0 +1,100 @@
+"""Maps of whole databases: in parallel, with progress, stop and resume.
+
+`maps_of` is an iterator: whoever takes its maps keeps them, and goes on later by naming those that
+are `done`. A map depends on nothing but its entry, so an interrupted run gives the same maps as one
+in one go, whatever the number of threads. Threads suffice, since compiled agents hold no lock.
+"""
+
+import os
+from collections import deque
+from collections.abc import Callable, Collection, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+from app.science.walking.following.following import SteeringFollower, course_of
+from app.science.walking.following.metrics import EuclideanMetric
+from app.science.walking.maps.suitability import DeviationMap
+from app.science.walking.records.model import PlannedWalk, WalkingError
+from app.science.walking.records.parameters import PAPER_GRID, ParameterGrid
+from app.science.walking.records.protocols import Metric, PathFollower, reference_of
+
+AHEAD = 2
+"""Maps begun ahead of the one that is taken next, for each thread."""
+
+
+@dataclass(frozen=True)
+class MapMaker:
+    """What maps are made with; the defaults are the paper's.
+
+    Attributes:
+        grid: combinations of the follower's parameters.
+        follower: moves the agents.
+        metric: compares them with the walk.
+    """
+
+    grid: ParameterGrid = PAPER_GRID
+    follower: PathFollower = field(default_factory=SteeringFollower)
+    metric: Metric = field(default_factory=EuclideanMetric)
+
+    def __post_init__(self) -> None:
+        """Raises WalkingError where the grid is not over the follower's parameters."""
+        names = [parameter.name for parameter in self.grid.parameters]
+        wanted = [parameter.name for parameter in self.follower.parameters]
+        if names != wanted:
+            raise WalkingError(f"The follower is steered by {wanted}, the grid is over {names}.")
+
+    def map_of(self, entry: PlannedWalk) -> DeviationMap:
+        """Re-simulate one walk with every combination."""
+        reference = reference_of(entry.walk, self.follower.dt_s)
+        course = course_of(entry.walk, entry.path, self.follower.dt_s)
+        trajectories = self.follower.follow(course, self.grid.nodes)
+        deviations = self.metric.deviations(reference, trajectories)
+        return DeviationMap(
+            self.grid,
+            self.metric.name,
+            deviations.reshape(self.grid.shape),
+            trajectories.arrival_s.reshape(self.grid.shape),
+            reference.duration_s,
+        )
+
+
+def maps_of(
+    entries: Sequence[PlannedWalk],
+    maker: MapMaker,
+    *,
+    done: Collection[int] = (),
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+    stop: Callable[[], bool] | None = None,
+) -> Iterator[tuple[int, DeviationMap]]:
+    """Make the maps of a database, in its order.
+
+    Args:
+        entries, maker: the database, and what its maps are made with.
+        done: indices of entries whose maps exist already.
+        threads: how many at once, all processors by default.
+        progress: told (finished, of all) after each map, those done before included.
+        stop: asked before each map; True ends the iterator, and no further map is begun.
+
+    Yields:
+        (index, map) of each entry that was not done.
+    """
+    left = sorted(set(range(len(entries))) - set(done))
+    finished = len(entries) - len(left)
+    workers = threads or os.cpu_count() or 1
+    waiting: deque[tuple[int, Future[DeviationMap]]] = deque()
+    upcoming = iter(left)
+    pool = ThreadPoolExecutor(workers, thread_name_prefix="maps")
+    try:
+        while True:
+            while len(waiting) < AHEAD * workers and (index := next(upcoming, -1)) >= 0:
+                waiting.append((index, pool.submit(maker.map_of, entries[index])))
+            if not waiting or (stop is not None and stop()):
+                return
+            index, future = waiting.popleft()
+            made, finished = future.result(), finished + 1
+            if progress is not None:
+                progress(finished, len(entries))
+            yield index, made
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)

@@ -1,0 +1,1 @@
+"""Models of how people walk: fitting, sampling, prediction."""

@@ -1,0 +1,132 @@
+"""From a database to the three models."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.science.walking.maps.blending import ENTRIES, NEIGHBOURS, BlendingSpace, blending_space
+from app.science.walking.maps.database import WalkDatabase, check_persons
+from app.science.walking.maps.suitability import TIME_AWARE, SuitabilityOptions
+from app.science.walking.models.annealing import StaticFit, static_fit
+from app.science.walking.models.reading_choice import READINGS, ReadingScore, ranked_readings
+from app.science.walking.models.steering_models import (
+    AdaptiveModel,
+    ProbabilisticModel,
+    StaticModel,
+    SteeringModel,
+)
+from app.science.walking.records.dependencies import scaling_of
+
+LEAST_TO_CHOOSE = 8
+"""Fewer people left out in turn tell readings apart by chance: then it is the time-aware one."""
+
+
+@dataclass(frozen=True)
+class FitOptions:
+    """How a model is fitted; the defaults are the paper's, but for the reading.
+
+    Attributes:
+        seed: of the blends, the folds and the annealing; the same seed gives the same model.
+        k: neighbours.
+        entries: of the densified space.
+        reading: of maps as suitability; None to choose by people left out, where there are
+            `LEAST_TO_CHOOSE` of them.
+    """
+
+    seed: int = 1
+    k: int = NEIGHBOURS
+    entries: int = ENTRIES
+    reading: SuitabilityOptions | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class FittedWalking:
+    """A fitted model.
+
+    Attributes:
+        database: what it was fitted from.
+        options: as asked for.
+        reading: the one that was chosen, or given.
+        scores: of all readings tried, best first; none where none were.
+        space: of P_adapt and P_prob.
+        static: P_stat.
+    """
+
+    database: WalkDatabase
+    options: FitOptions
+    reading: SuitabilityOptions
+    scores: tuple[ReadingScore, ...]
+    space: BlendingSpace
+    static: StaticFit
+
+    @property
+    def stat(self) -> StaticModel:
+        """P_stat."""
+        return StaticModel(self.static.vector)
+
+    @property
+    def adapt(self) -> AdaptiveModel:
+        """P_adapt."""
+        return AdaptiveModel(self.space)
+
+    @property
+    def prob(self) -> ProbabilisticModel:
+        """P_prob."""
+        return ProbabilisticModel(self.space)
+
+    @property
+    def models(self) -> tuple[SteeringModel, ...]:
+        """All three, in the paper's order."""
+        return self.stat, self.adapt, self.prob
+
+
+def fitted(
+    database: WalkDatabase,
+    options: FitOptions = FitOptions(),
+    readings: Sequence[SuitabilityOptions] = READINGS,
+) -> FittedWalking:
+    """Fit all three models; raises WalkingError for walks of one person alone."""
+    check_persons(database)
+    seeds = np.random.default_rng(options.seed).spawn(3)
+    scores: tuple[ReadingScore, ...] = ()
+    reading = options.reading
+    if reading is None and len(database.persons) < LEAST_TO_CHOOSE:
+        reading = TIME_AWARE
+    if reading is None:
+        ranked = ranked_readings(
+            database, seeds[0], readings=readings, entries=options.entries, k=options.k
+        )
+        scores, reading = tuple(ranked), ranked[0].options
+    space = space_of(database, reading, seeds[1], entries=options.entries, k=options.k)
+    static = static_fit(database, seeds[2])
+    return FittedWalking(database, options, reading, scores, space, static)
+
+
+def restored(
+    database: WalkDatabase,
+    options: FitOptions,
+    reading: SuitabilityOptions,
+    scores: Sequence[ReadingScore],
+    static: StaticFit,
+) -> FittedWalking:
+    """The same model again, from what is kept of it: blends are drawn anew with the same seed."""
+    seed = np.random.default_rng(options.seed).spawn(3)[1]
+    space = space_of(database, reading, seed, entries=options.entries, k=options.k)
+    return FittedWalking(database, options, reading, tuple(scores), space, static)
+
+
+def space_of(
+    database: WalkDatabase,
+    reading: SuitabilityOptions,
+    rng: np.random.Generator,
+    *,
+    entries: int = ENTRIES,
+    k: int = NEIGHBOURS,
+) -> BlendingSpace:
+    """The densified space of a database under one reading."""
+    scaling = scaling_of(database.names, database.vectors)
+    values = database.suitability(reading)
+    return blending_space(
+        database.grid, scaling, database.vectors, values, rng=rng, entries=entries, k=k
+    )

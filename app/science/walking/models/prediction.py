@@ -1,0 +1,123 @@
+"""From a model and a path to a distribution of travel times, and to walkers.
+
+Vectors are drawn, and an agent walks the path with each. Agents that do not arrive, because their
+turns are too wide or their pace too slow, are no walk; they are drawn again, which makes the
+prediction one of walks that arrive, and are counted. A model that does not draw gives its next best
+vector instead, where it has one.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.walking.models.steering_models import SteeringModel
+from app.science.walking.records.model import PlannedPath, Walk, WalkingError
+from app.science.walking.records.protocols import Course, PathFollower, Trajectories
+
+EXTRA_S, SLOWEST_S_PER_M = 10.0, 12.0
+"""An agent is given 10 s, and 12 s for each metre: slower than the grid's slowest."""
+ROUNDS, ALTERNATIVES = 20, 200
+
+
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """Walks that a model expects on a path.
+
+    Attributes:
+        vectors: (S, n) steering parameters of those that arrived.
+        durations_s: (S,) their travel times.
+        lost: how many were drawn that did not arrive.
+    """
+
+    vectors: FloatArray
+    durations_s: FloatArray
+    lost: int
+
+
+@dataclass(frozen=True, eq=False)
+class Predictor:
+    """Predicts with one model and one follower.
+
+    Attributes:
+        model: gives the vectors.
+        follower: the one that the model's maps were made with.
+        begin_m_s, brakes: 0 and True from rest to rest; else the walk is part of a longer one.
+    """
+
+    model: SteeringModel
+    follower: PathFollower
+    begin_m_s: float = 0.0
+    brakes: bool = True
+
+    def predict(
+        self,
+        path: PlannedPath,
+        dependencies: Mapping[str, float],
+        count: int,
+        rng: np.random.Generator,
+    ) -> Prediction:
+        """Draw `count` walks along a path; models that do not draw give one.
+
+        Raises:
+            WalkingError: after `ROUNDS` rounds too few have arrived.
+        """
+        found = (
+            self._drawn(path, dependencies, count, rng)
+            if self.model.draws
+            else self._best(path, dependencies, rng)
+        )
+        if len(found.durations_s) < (count if self.model.draws else 1):
+            raise WalkingError(
+                f"Only {len(found.durations_s)} of {len(found.durations_s) + found.lost} agents of"
+                f" model {self.model.name} arrive on a path of {path.length_m:.2f} m: it is too"
+                " winding, or too far from the walks that the model was fitted on."
+            )
+        return found
+
+    def _drawn(
+        self,
+        path: PlannedPath,
+        dependencies: Mapping[str, float],
+        count: int,
+        rng: np.random.Generator,
+    ) -> Prediction:
+        vectors: list[FloatArray] = []
+        durations: list[FloatArray] = []
+        missing, lost = count, 0
+        for _ in range(ROUNDS):
+            drawn = self.model.vectors(dependencies, missing, rng)
+            arrival_s = self.walked(path, drawn, samples=1).arrival_s
+            arrived = np.isfinite(arrival_s)
+            vectors.append(drawn[arrived])
+            durations.append(arrival_s[arrived])
+            lost += missing - len(durations[-1])
+            missing -= len(durations[-1])
+            if not missing:
+                break
+        return Prediction(np.concatenate(vectors), np.concatenate(durations), lost)
+
+    def _best(
+        self, path: PlannedPath, dependencies: Mapping[str, float], rng: np.random.Generator
+    ) -> Prediction:
+        for count in (1, ALTERNATIVES):
+            vectors = self.model.vectors(dependencies, count, rng)
+            arrival_s = self.walked(path, vectors, samples=1).arrival_s
+            arrived = np.flatnonzero(np.isfinite(arrival_s))
+            if len(arrived):
+                first = slice(arrived[0], arrived[0] + 1)
+                return Prediction(vectors[first], arrival_s[first], int(arrived[0]))
+        return Prediction(vectors[:0], arrival_s[:0], len(vectors))
+
+    def walked(self, path: PlannedPath, vectors: FloatArray, samples: int) -> Trajectories:
+        """Let agents with vectors (S, n) walk a path from rest to rest."""
+        limit_s = EXTRA_S + SLOWEST_S_PER_M * path.length_m
+        course = Course(path, samples, limit_s, self.begin_m_s, self.brakes)
+        return self.follower.follow(course, vectors)
+
+
+def predictor_for(walk: Walk, model: SteeringModel, follower: PathFollower) -> Predictor:
+    """Predict a walk as it was recorded: one cut from a longer one begins, or ends, at speed."""
+    begin_m_s = 0.0 if walk.begins_still else float(walk.speeds_m_s[0])
+    return Predictor(model, follower, begin_m_s, walk.ends_still)

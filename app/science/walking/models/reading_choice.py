@@ -1,0 +1,137 @@
+"""Which reading of maps predicts best, decided on the training people alone.
+
+Each person is left out in turn (or in groups), and every walk of theirs is predicted from the
+others' maps. A walk's own map has the travel time of every combination on its own path, so nothing
+is simulated again: the others' blended suitability is drawn from, and each draw's travel time is
+read from the walk's map. Between nodes it is the pace 1 / T that is interpolated, nearly linear in
+speed; combinations that do not arrive have pace 0 and are left out.
+
+Readings are then compared by mean CRPS. People who are predicted later never took part.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.walking.maps.blending import ENTRIES, NEIGHBOURS, BlendingSpace, blending_space
+from app.science.walking.maps.database import WalkDatabase, check_persons
+from app.science.walking.maps.densifying import IntArray
+from app.science.walking.maps.interpolation import Axes, axes_of
+from app.science.walking.maps.suitability import PAPER, TIME_AWARE, SuitabilityOptions
+from app.science.walking.models.crps import crps_s
+from app.science.walking.records.dependencies import scaling_of
+
+DRAWS = 200
+FOLDS = 4
+SLOWEST_PACE = 1e-3
+"""1/s; slower is not arrived."""
+READINGS: tuple[SuitabilityOptions, ...] = (
+    PAPER,
+    SuitabilityOptions(power=4.0),
+    SuitabilityOptions(normalisation="min-max", power=4.0),
+    SuitabilityOptions(normalisation="min-max", power=16.0),
+    TIME_AWARE,
+    SuitabilityOptions(time_constant_s=0.2),
+    SuitabilityOptions(time_constant_s=0.05),
+    SuitabilityOptions(power=2.0, time_constant_s=0.1),
+    SuitabilityOptions(power=4.0, time_constant_s=0.1),
+    SuitabilityOptions(normalisation="min-max", power=2.0, time_constant_s=0.1),
+)
+"""Those that are tried."""
+
+
+@dataclass(frozen=True)
+class ReadingScore:
+    """How a reading predicts people who were left out.
+
+    Attributes:
+        options: the reading.
+        crps_s: mean over the walks.
+    """
+
+    options: SuitabilityOptions
+    crps_s: float
+
+
+def person_folds(
+    database: WalkDatabase, rng: np.random.Generator, folds: int = FOLDS
+) -> list[tuple[str, ...]]:
+    """Share people out over folds, about equally many in each; all walks of one stay together."""
+    check_persons(database)
+    shuffled = list(rng.permutation(np.array(database.persons, dtype=object)))
+    count = min(folds, len(shuffled))
+    return [tuple(str(name) for name in shuffled[at::count]) for at in range(count)]
+
+
+def ranked_readings(
+    database: WalkDatabase,
+    rng: np.random.Generator,
+    *,
+    readings: Sequence[SuitabilityOptions] = READINGS,
+    entries: int = ENTRIES,
+    k: int = NEIGHBOURS,
+) -> list[ReadingScore]:
+    """Score readings, best first; raises WalkingError for one person alone."""
+    parts = [
+        (np.flatnonzero(database.is_of(fold)), np.flatnonzero(~database.is_of(fold)))
+        for fold in person_folds(database, rng)
+    ]
+    origins = [_origins(database, out, kept, rng, entries, k) for out, kept in parts]
+    uniforms = rng.random((DRAWS, 1 + 2 * len(database.grid.shape)))
+    scores = []
+    for options in readings:
+        values = database.suitability(options)
+        found: list[float] = []
+        for (out, kept), own in zip(parts, origins, strict=True):
+            blended = np.clip(own.astype(np.float32) @ values[kept], 0.0, None)
+            found += [
+                _score(database, int(at), row, uniforms)
+                for at, row in zip(out, blended, strict=True)
+            ]
+        scores.append(ReadingScore(options, float(np.mean(found))))
+    return sorted(scores, key=lambda score: score.crps_s)
+
+
+def _origins(
+    database: WalkDatabase,
+    out: IntArray,
+    kept: IntArray,
+    rng: np.random.Generator,
+    entries: int,
+    k: int,
+) -> FloatArray:
+    """(left out, kept) how much each kept walk answers for each one left out."""
+    scaling = scaling_of(database.names, database.vectors[kept])
+    # Where each walk is does not depend on its map: one empty map stands for all.
+    nothing = np.zeros((len(kept), database.grid.size), dtype=np.float32)
+    space: BlendingSpace = blending_space(
+        database.grid,
+        scaling,
+        database.vectors[kept],
+        nothing,
+        rng=rng,
+        entries=entries,
+        k=k,
+    )
+    return np.stack([space.origins(z) for z in scaling.z(database.vectors[out])])
+
+
+def _score(database: WalkDatabase, at: int, blended: FloatArray, uniforms: FloatArray) -> float:
+    """CRPS of a walk by a blended map (K,)."""
+    from app.science.walking.maps.interpolation_kernels import multilinear_at
+    from app.science.walking.models.sampling_kernels import tent_draws
+
+    axes: Axes = axes_of(database.grid)
+    cumulative = np.cumsum(blended.astype(np.float64) * axes.node_weights)
+    truth_s = float(database.durations_s[at])
+    if not cumulative[-1] > 0.0:
+        return truth_s
+    vectors = np.empty((len(uniforms), len(axes.shape)))
+    tent_draws(cumulative, axes.values, axes.shape, uniforms, vectors)
+    arrivals = database.arrivals_s[at].astype(np.float64)
+    paces = np.where(np.isfinite(arrivals), 1.0 / arrivals, 0.0)
+    found = multilinear_at(paces, axes.values, axes.shape, vectors)
+    found = found[found > SLOWEST_PACE]
+    return crps_s(1.0 / found, truth_s) if len(found) else truth_s

@@ -1,0 +1,178 @@
+"""The planner: Lazy Theta* on a lattice of one centimetre, then pulled tight.
+
+Nash, Koenig and Tovey (2010), "Lazy Theta*: any-angle path planning and path length analysis in
+3D". Lines of sight are checked against the obstacles themselves and not against the lattice, so a
+path never cuts a corner; start and goal are where they are and not on the nearest node.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.walking.planning.shortest import passable, shortest_way
+from app.science.walking.records.model import PlannedPath
+from app.science.walking.records.protocols import BoolArray, Point
+from app.science.walking.scene.outlines import FREE, Lattice, Outlines, outlines_of
+from app.science.walking.scene.scene import Scene, SceneError
+from app.science.walking.scene.shapes import FLAT_M2, area_m2, contains
+
+CELL_M = 0.01
+MOST_NODES = 16_000_000
+"""A floor of 40 x 40 m; a search then holds about 800 MB."""
+SAME_M = 1e-6
+BESIDE_M, MOST_PULLS = 0.15, 8
+"""Corners so near to a path's bend are tried instead of it, and how often."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Floor:
+    corners: list[FloatArray]
+    outlines: Outlines
+    scene: Scene
+    cell_m: float
+
+    @cached_property
+    def lattice(self) -> Lattice:
+        """Made when first needed: who sees the goal needs none."""
+        from app.science.walking.planning.lattice_kernels import block
+
+        left, near, _, _ = self.scene.bounds_m
+        shape = _shape(self.scene, self.cell_m)
+        lattice = Lattice(
+            np.zeros(shape, dtype=np.uint8), np.empty((*shape, 2)), left, near, self.cell_m
+        )
+        block(lattice, self.outlines)
+        return lattice
+
+
+@dataclass(frozen=True, eq=False)
+class LazyThetaPlanner:
+    """Plans paths in one scene.
+
+    Attributes:
+        scene: where.
+        cell_m: how far apart the lattice's nodes are.
+    """
+
+    scene: Scene
+    cell_m: float = CELL_M
+
+    def __post_init__(self) -> None:
+        """Raises SceneError where the lattice would not fit into memory."""
+        if not self.cell_m > 0.0:
+            raise SceneError(f"A lattice of cells of {self.cell_m} m is none: take .01.")
+        rows, columns = _shape(self.scene, self.cell_m)
+        if rows * columns > MOST_NODES:
+            raise SceneError(
+                f"A lattice of {self.cell_m} m over scene {self.scene.name!r} has {rows * columns}"
+                f" nodes, at most {MOST_NODES} are possible: take wider cells or a smaller floor."
+            )
+
+    def plan(self, start_m: Point, goal_m: Point) -> PlannedPath:
+        """Find the way from a start to a goal.
+
+        Raises:
+            SceneError: start or goal is out of bounds, inside an obstacle, or both are the same
+                place; or obstacles leave no way between them.
+        """
+        from app.science.walking.planning import planner_kernels as kernels
+
+        check_ends(self.scene, start_m, goal_m)
+        floor = self._floor_of(start_m, goal_m)
+        ends = np.array([start_m, goal_m], dtype=np.float64)
+        if kernels.sees(*start_m, *goal_m, floor.outlines):
+            return PlannedPath(ends)
+        start, goal = self._node(start_m), self._node(goal_m)
+        lattice = _with_ends(floor.lattice, start, goal, ends)
+        nodes = kernels.lazy_theta(lattice, start, goal, floor.outlines)
+        if start == goal or not len(nodes):
+            raise no_way(self.scene, start_m, goal_m)
+        points = lattice.places.reshape(-1, 2)[nodes]
+        return PlannedPath(_pulled_tight(points, floor))
+
+    def _node(self, point_m: Point) -> int:
+        left, near, _, _ = self.scene.bounds_m
+        rows, columns = _shape(self.scene, self.cell_m)
+        row = min(rows - 1, round((point_m[1] - near) / self.cell_m))
+        return row * columns + min(columns - 1, round((point_m[0] - left) / self.cell_m))
+
+    def _floor_of(self, start_m: Point, goal_m: Point) -> _Floor:
+        if self.scene.crowds(start_m) or self.scene.crowds(goal_m):
+            return self._made(start_m, goal_m)
+        return self._roomy
+
+    @cached_property
+    def _roomy(self) -> _Floor:
+        return self._made()
+
+    def _made(self, *standing_m: Point) -> _Floor:
+        corners = self.scene.widened_obstacles(*standing_m)
+        return _Floor(corners, outlines_of(corners), self.scene, self.cell_m)
+
+
+def _shape(scene: Scene, cell_m: float) -> tuple[int, int]:
+    """Rows and columns of a scene's lattice."""
+    left, near, right, far = scene.bounds_m
+    # A hair more than the bounds counts as within: 4 m are 400 cells, not 399.999.
+    rows = math.floor((far - near) / cell_m + SAME_M) + 1
+    return rows, math.floor((right - left) / cell_m + SAME_M) + 1
+
+
+def _with_ends(lattice: Lattice, start: int, goal: int, ends: FloatArray) -> Lattice:
+    """A copy in which two nodes are free and stand for start and goal, exactly there."""
+    state, places = lattice.state.copy(), lattice.places.copy()
+    flat = places.reshape(-1, 2)
+    state.reshape(-1)[[start, goal]] = FREE
+    flat[start], flat[goal] = ends
+    return lattice._replace(state=state, places=places)
+
+
+def check_ends(scene: Scene, start_m: Point, goal_m: Point) -> None:
+    """Raise SceneError where nobody can walk from the one to the other by their places alone."""
+    scene.check_point(start_m, "The start")
+    scene.check_point(goal_m, "The goal")
+    if math.dist(start_m, goal_m) < SAME_M:
+        raise SceneError(f"Start and goal are the same place, ({start_m[0]:g}, {start_m[1]:g}) m.")
+
+
+def no_way(scene: Scene, start_m: Point, goal_m: Point) -> SceneError:
+    """The error for a scene that is closed between two places."""
+    return SceneError(
+        f"In scene {scene.name!r} there is no way from ({start_m[0]:.2f}, {start_m[1]:.2f}) to"
+        f" ({goal_m[0]:.2f}, {goal_m[1]:.2f}) m: obstacles, widened by {scene.clearance_m:g} m,"
+        " close it. Open a gap, or lower the scene's clearance."
+    )
+
+
+def _pulled_tight(points_m: FloatArray, floor: _Floor) -> FloatArray:
+    """Pull a path round the corners that hold it, as if it were a string.
+
+    A path on a lattice bends beside the corner it goes round, or short of it in the open. The
+    shortest way that leaves the obstacles on the same sides bends at corners inside the triangles
+    of neighbouring points, and so on until nothing changes.
+    """
+    corners = passable(floor.corners, floor.corners, floor.scene.bounds_m)
+    for _ in range(MOST_PULLS):
+        inside = _near_bends(corners, points_m)
+        places = np.concatenate([points_m[:1], points_m[-1:], points_m[1:-1], corners[inside]])
+        way = shortest_way(places, floor.outlines)
+        if way is None or np.array_equal(way, points_m):
+            break
+        points_m = way
+    return points_m
+
+
+def _near_bends(corners: FloatArray, points_m: FloatArray) -> BoolArray:
+    """Which corners lie right beside a bend, or in the triangle of it and its neighbours."""
+    found = np.zeros(len(corners), dtype=np.bool_)
+    for before, bend, after in zip(points_m[:-2], points_m[1:-1], points_m[2:], strict=True):
+        triangle = np.array([before, bend, after])
+        if area_m2(triangle) < 0.0:
+            triangle = triangle[::-1]
+        if area_m2(triangle) > FLAT_M2:
+            found |= contains(triangle, corners, margin_m=-SAME_M)
+        found |= np.linalg.norm(corners - bend, axis=1) < BESIDE_M
+    return found

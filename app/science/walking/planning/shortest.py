@@ -1,0 +1,56 @@
+"""The shortest way over given points that see each other (Dijkstra on the visibility graph)."""
+
+import heapq
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.walking.scene.outlines import IntArray, Outlines
+from app.science.walking.scene.shapes import contains
+
+HIDDEN_M = 1e-7
+"""A corner deeper than that inside another outline is never passed."""
+Bounds = tuple[float, float, float, float]
+
+
+def passable(places: list[FloatArray], corners: list[FloatArray], bounds_m: Bounds) -> FloatArray:
+    """Those of some places (each (K, 2)) that are within bounds and inside no outline."""
+    joined = np.concatenate([np.empty((0, 2)), *places])
+    kept = (joined >= bounds_m[:2]).all(axis=1) & (joined <= bounds_m[2:]).all(axis=1)
+    for own in corners:
+        kept = kept & ~contains(own, joined, margin_m=HIDDEN_M)
+    free: FloatArray = joined[kept]
+    return free
+
+
+def shortest_way(points_m: FloatArray, outlines: Outlines) -> FloatArray | None:
+    """Return the points (Q, 2) of the shortest way from the first to the second; None if closed."""
+    from app.science.walking.planning import planner_kernels as kernels
+
+    lengths = kernels.mutual_sight(points_m, outlines)
+    far, parent = np.full(len(points_m), np.inf), np.full(len(points_m), -1, dtype=np.int64)
+    far[0] = 0.0
+    queue = [(0.0, 0)]
+    while queue:
+        so_far, at = heapq.heappop(queue)
+        if at == 1:
+            return _unwound(points_m, parent)
+        if so_far > far[at]:
+            continue
+        through = so_far + lengths[at]
+        for other in np.flatnonzero(through < far):
+            far[other], parent[other] = through[other], at
+            heapq.heappush(queue, (float(through[other]), int(other)))
+    return None
+
+
+def _unwound(points_m: FloatArray, parent: IntArray) -> FloatArray:
+    order, at = [1], 1
+    while at != 0:
+        at = int(parent[at])
+        order.append(at)
+    way = points_m[order[::-1]]
+    # Two points of the graph may be one place, as where obstacles share a corner.
+    apart = np.linalg.norm(np.diff(way, axis=0), axis=1) > 0.0
+    chosen: FloatArray = way[np.concatenate([[True], apart])]
+    return chosen

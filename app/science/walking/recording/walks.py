@@ -1,0 +1,51 @@
+"""From walks to entries of the database: the planned path, and what the walk depends on."""
+
+from collections.abc import Mapping
+
+from app.science.walking.records.model import (
+    LENGTH,
+    STATURE,
+    TURNING,
+    PlannedPath,
+    PlannedWalk,
+    Walk,
+    WalkingError,
+    check_stature,
+)
+from app.science.walking.records.protocols import Planner
+from app.science.walking.scene.turning import turning_per_m
+
+NONE: Mapping[str, float] = {}
+
+
+def dependencies_of(
+    path: PlannedPath, stature_m: float | None = None, others: Mapping[str, float] = NONE
+) -> dict[str, float]:
+    """What a walk along a path depends on, for an entry and for a question to the model alike.
+
+    Args:
+        path: as planned.
+        stature_m: the person's height; None leaves it out.
+        others: any further numbers by name, such as a load in kilograms.
+
+    Raises:
+        WalkingError: another number has one of the three names, or a stature cannot be.
+    """
+    check_stature(stature_m)
+    own = {LENGTH: path.length_m, TURNING: turning_per_m(path.points_m)}
+    if stature_m is not None:
+        own[STATURE] = stature_m
+    clash = [name for name in others if name in (LENGTH, TURNING, STATURE)]
+    if clash:
+        raise WalkingError(f"{', '.join(clash)} is computed or given already: choose other names.")
+    return own | dict(others)
+
+
+def planned_walk(walk: Walk, planner: Planner, others: Mapping[str, float] = NONE) -> PlannedWalk:
+    """Plan the path between a walk's own start and goal, and make it an entry.
+
+    Raises:
+        SceneError: the planner finds none.
+    """
+    path = planner.plan(walk.start_m, walk.goal_m)
+    return PlannedWalk(walk, path, dependencies_of(path, walk.stature_m, others))

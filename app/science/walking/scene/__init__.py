@@ -1,0 +1,1 @@
+"""Obstacles, their shapes and outlines."""
