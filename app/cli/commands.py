@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from app.cli.analyse_command import analyse
+from app.cli.analyse.command import analyse
 from app.cli.failing import fail
-from app.cli.retarget_command import retarget
-from app.cli.tls_commands import tls
-from app.cli.tune_command import tune
-from app.cli.walk_command import walk
+from app.cli.retarget.command import retarget
+from app.cli.serve.tls_command import tls
+from app.cli.tune.command import tune
+from app.cli.walk.command import walk
 
 app = typer.Typer(
     help="Runs, watches and analyses VR re-embodiment studies.",
@@ -54,7 +54,7 @@ def serve(
     ] = False,
 ) -> None:
     """Serve the product on this machine, with --lan also on the lab's network."""
-    from app.cli.serving import serve_forever
+    from app.cli.serve.run import serve_forever
 
     given = {
         "port": port,

@@ -27,7 +27,7 @@ KNOWINGLY = (
     "-c",
     """
 import sys
-from app.cli.serving import serve_forever
+from app.cli.serve.run import serve_forever
 serve_forever({"port": int(sys.argv[3])}, new_database=True)
 """,
 )

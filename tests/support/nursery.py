@@ -29,7 +29,7 @@ CHEAP_PASSWORDS = "TESTS_HAVE_CHEAP_PASSWORDS"
 """Set where servers need not take a sixth of a second for each password."""
 EAGER = (
     "app.cli.commands",
-    "app.cli.serving",
+    "app.cli.serve.run",
     "sqlalchemy.dialects.sqlite",
     "psycopg",
     "uvicorn.lifespan.on",

@@ -27,9 +27,9 @@ def analyse(
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Compare within-subject conditions: Friedman, Wilcoxon with Holm, Page, repeated ANOVA."""
-    from app.cli import analyse_texts as texts
-    from app.cli.analyse_json import as_json as told
-    from app.cli.analysing import AnalyseOrder, carry_out
+    from app.cli.analyse import output as texts
+    from app.cli.analyse.output_json import as_json as told
+    from app.cli.analyse.run import AnalyseOrder, carry_out
 
     order = AnalyseOrder(table, subject, within, measure, reference, seed, art)
     try:

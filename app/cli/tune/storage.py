@@ -4,7 +4,7 @@ from pydantic import TypeAdapter, ValidationError
 from sqlalchemy.orm import Session
 
 from app.cli.installation import opened_database
-from app.cli.tune_texts import report_json
+from app.cli.tune.output import report_json
 from app.clock import Clock
 from app.features.care.rights.service import COMMAND_LINE
 from app.features.movement.avatar.schemas import AvatarKey, NewAvatar, NewAvatarVersion

@@ -4,7 +4,7 @@ from dataclasses import asdict
 
 import numpy as np
 
-from app.cli.walk_orders import Fitted, Sampled
+from app.cli.walk.run import Fitted, Sampled
 from app.science.walking.evaluation.evaluation import Evaluation
 from app.science.walking.evaluation.scoring import COVERAGES, PERCENTILES
 from app.science.walking.maps.suitability import SuitabilityOptions

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from app.cli.analyse_families import Family, families_of, mean_interval, tried
-from app.cli.analyse_input import read_tidy
+from app.cli.analyse.families import Family, families_of, mean_interval, tried
+from app.cli.analyse.inputs import read_tidy
 from app.science.statistics import (
     AlignedRanks,
     Cells,

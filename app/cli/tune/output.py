@@ -17,7 +17,7 @@ from app.science.avatar.tuning import (
 )
 
 if TYPE_CHECKING:
-    from app.cli.tuning import Tuned
+    from app.cli.tune.run import Tuned
 
 _NONE = "-"
 _MOST_TOUCHES = 8

@@ -8,7 +8,7 @@ import uvicorn
 from fastapi import FastAPI
 from sqlalchemy.exc import DBAPIError
 
-from app.cli.opened import addresses
+from app.cli.serve.banner import addresses
 from app.clock import Clock
 from app.collecting import settle
 from app.errors import ReembodyError

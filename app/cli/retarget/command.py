@@ -43,8 +43,8 @@ def retarget(
         return
     if clip is None or to is None:
         fail("a clip and --to are needed, as in: reembody retarget walk.bvh --to 165cm")
-    from app.cli import retarget_texts as texts
-    from app.cli.retargeting import RetargetOrder, carry_out
+    from app.cli.retarget import output as texts
+    from app.cli.retarget.run import RetargetOrder, carry_out
 
     order = RetargetOrder(
         clip=clip,
@@ -68,7 +68,7 @@ def _check(what: str, *, as_json: bool) -> None:
     """Compute a published table again."""
     if what != "table1":
         fail(f"--check {what!r}: table1 is valid")
-    from app.cli import retarget_texts as texts
+    from app.cli.retarget import output as texts
     from app.science.retargeting.table1 import check_table1
 
     rows = check_table1()

@@ -3,8 +3,8 @@
 import math
 from typing import Any
 
-from app.cli.analyse_families import Family
-from app.cli.analysing import Analysis, CellMean
+from app.cli.analyse.families import Family
+from app.cli.analyse.run import Analysis, CellMean
 from app.science.statistics import (
     AgainstReference,
     Comparison,

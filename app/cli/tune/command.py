@@ -44,8 +44,8 @@ def tune(
     as_json: Annotated[bool, typer.Option("--json", help="Print the result as JSON.")] = False,
 ) -> None:
     """Find gains for every axis of the avatar by relay experiments, and try them."""
-    from app.cli import tune_texts as texts
-    from app.cli.tuning import TuneOrder, carry_out
+    from app.cli.tune import output as texts
+    from app.cli.tune.run import TuneOrder, carry_out
     from app.errors import ReembodyError
     from app.science.avatar.tuning import TuningCancelled
 

@@ -1,6 +1,6 @@
 """What `reembody retarget` says: JSON for scripts, a table for people."""
 
-from app.cli.retargeting import Done
+from app.cli.retarget.run import Done
 from app.science.retargeting.gait import Walk
 from app.science.retargeting.pipeline import Walks
 from app.science.retargeting.table1 import TOLERANCE_DEG, Table1Row

@@ -43,8 +43,8 @@ def fit(
     as_json: _Json = False,
 ) -> None:
     """Fit a model of how people walk on walks of two people or more."""
-    from app.cli import walk_texts as texts
-    from app.cli.walk_orders import FitOrder, WalksOrder, carry_out_fit
+    from app.cli.walk import output as texts
+    from app.cli.walk.run import FitOrder, WalksOrder, carry_out_fit
 
     order = FitOrder(WalksOrder(tuple(walks), scene, people), out, seed, k, entries, reading)
     try:
@@ -75,8 +75,8 @@ def sample(
     as_json: _Json = False,
 ) -> None:
     """Draw steering parameters and travel times for a path."""
-    from app.cli import walk_texts as texts
-    from app.cli.walk_orders import SampleOrder, carry_out_sample
+    from app.cli.walk import output as texts
+    from app.cli.walk.run import SampleOrder, carry_out_sample
 
     order = SampleOrder(model, length, path, scene, start, goal, stature, count, which, seed)
     try:
@@ -100,8 +100,8 @@ def evaluate(
     as_json: _Json = False,
 ) -> None:
     """Compare predicted travel times with walks of other people."""
-    from app.cli import walk_texts as texts
-    from app.cli.walk_orders import WalksOrder, carry_out_evaluation
+    from app.cli.walk import output as texts
+    from app.cli.walk.run import WalksOrder, carry_out_evaluation
 
     order = WalksOrder(tuple(walks), scene, people)
     try:

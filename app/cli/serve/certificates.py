@@ -2,7 +2,7 @@
 
 import json
 
-from app.cli.serving import settings_with
+from app.cli.serve.run import settings_with
 from app.clock import Clock
 from app.errors import InvalidInput
 from app.lan.addresses import look_around

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterator
 
-from app.cli.analyse_families import Family
-from app.cli.analysing import Analysis
+from app.cli.analyse.families import Family
+from app.cli.analyse.run import Analysis
 from app.science.statistics import AgainstReference, AlignedRanks, Interval, RmAnova
 
 _NONE = "-"

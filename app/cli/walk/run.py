@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from app.adapters.walks.model_file import read_model, write_model
-from app.cli.walk_input import People, planned, read_people, read_scene, read_walks
+from app.cli.walk.inputs import People, planned, read_people, read_scene, read_walks
 from app.science.walking.evaluation.evaluation import Evaluation, evaluate
 from app.science.walking.evaluation.synthetic_walks import straight_path
 from app.science.walking.following.following import SteeringFollower

@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.cli.tune_progress import tell_progress
-from app.cli.tuned_storage import check_key, save_tuned, stored_avatar
+from app.cli.tune.progress import tell_progress
+from app.cli.tune.storage import check_key, save_tuned, stored_avatar
 from app.protocol.avatar import avatar_text
 from app.science.avatar.body.figure import Figure
 from app.science.avatar.configuration.configuration import Configuration

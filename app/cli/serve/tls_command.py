@@ -14,7 +14,7 @@ def tls_show(
     as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON.")] = False,
 ) -> None:
     """Show fingerprints, names and expiry."""
-    from app.cli.certificates import show_certificate
+    from app.cli.serve.certificates import show_certificate
     from app.errors import ReembodyError
 
     try:
@@ -32,7 +32,7 @@ def tls_renew(
     as_json: Annotated[bool, typer.Option("--json", help="Print it as JSON.")] = False,
 ) -> None:
     """Make a new certificate; devices notice nothing, and stay paired."""
-    from app.cli.certificates import renew_certificate
+    from app.cli.serve.certificates import renew_certificate
     from app.errors import ReembodyError
 
     try:

@@ -1,0 +1,1 @@
+"""`reembody analyse`: tests of any tidy table."""

@@ -1,0 +1,1 @@
+"""`reembody retarget`: a capture onto an avatar."""

@@ -1,0 +1,1 @@
+"""`reembody serve` and `reembody tls`."""

@@ -1,0 +1,1 @@
+"""`reembody tune`: the avatar's motors, axis by axis."""

@@ -1,0 +1,1 @@
+"""`reembody walk`: how people walk."""
