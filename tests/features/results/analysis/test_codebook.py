@@ -6,7 +6,7 @@ from pathlib import Path
 from app.features.results.analysis.codebook import CODEBOOK, TABLES, codebook_frame, data_dictionary
 from app.science.skeleton import JOINT_NAMES
 
-PAGE = Path(__file__).resolve().parents[3] / "docs" / "data-dictionary.md"
+PAGE = Path(__file__).resolve().parents[4] / "docs" / "data-dictionary.md"
 
 
 def test_a_column_has_exactly_one_entry() -> None:
