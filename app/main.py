@@ -2,7 +2,7 @@
 
 import logging
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import ExitStack, asynccontextmanager, closing
 
 from fastapi import FastAPI
 
@@ -18,10 +18,11 @@ from app.features.care.rights.service import finish_erasures
 from app.features.care.storage.measuring import StorageDesk
 from app.features.design.studies.service import add_shipped
 from app.features.movement.avatar.service import add_shipped_avatar
+from app.features.movement.captures.workbench import Workbench
+from app.features.movement.walking.bench import Bench
 from app.features.movement.walking.desk import FittingDesk
 from app.features.people.accounts.service import ensure_admin
 from app.features.record.sessions.recovery import stop_running_clocks
-from app.features.record.telemetry.encoder import Encoder
 from app.features.record.telemetry.fold import Folder
 from app.features.record.telemetry.summaries import Summariser
 from app.features.record.telemetry.writer import TelemetryWriter
@@ -30,7 +31,7 @@ from app.features.results.analysis.drawing import Drawings
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.replay.desk import ReplayDesk
 from app.lan.network import Network
-from app.platform.context import AppContext
+from app.platform.context import AppContext, PartMaker
 from app.platform.hub import Hub
 from app.platform.rate_limit import RateLimiter
 from app.platform.storage_health import StorageHealth
@@ -41,6 +42,20 @@ log = logging.getLogger(__name__)
 LOGIN_ATTEMPTS = 10
 PAIRING_ATTEMPTS = 20
 WINDOW_S = 60.0
+PARTS: tuple[PartMaker, ...] = (
+    Summariser,
+    TelemetryWriter.of,
+    Folder.of,
+    Drawings.of,
+    ReplayDesk.of,
+    Workbench.of,
+    Bench.of,
+    FittingDesk.of,
+    ExportDesk.of,
+    StorageDesk.of,
+    TryoutDesk.of,
+)
+"""What features keep alive between requests; started in this order, stopped in reverse."""
 
 
 def create_app(
@@ -58,57 +73,27 @@ def create_app(
     settings = settings or Settings()
     clock, hub = clock or Clock(), Hub()
     storage = StorageHealth(clock, settings.data_dir, settings.low_disk_bytes, hub.publish_storage)
-    database = open_database(settings.resolved_database_url, storage)
     context = AppContext(
         settings=settings,
-        database=database,
+        database=open_database(settings.resolved_database_url, storage),
         clock=clock,
         hub=hub,
         storage=storage,
         login_limiter=RateLimiter(LOGIN_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
         pairing_limiter=RateLimiter(PAIRING_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
-        drawings=Drawings(settings.resolved_database_url, clock.utc_now),
-        replays=ReplayDesk(database),
-        exports=ExportDesk(
-            settings.scratch_dir / "exports",
-            settings.resolved_database_url,
-            clock,
-            settings.low_disk_bytes,
-        ),
-        room=StorageDesk(database, settings, clock),
-        tryout=TryoutDesk(database, clock),
-        fits=FittingDesk(
-            settings.data_dir.resolve() / "walking",
-            settings.resolved_database_url,
-            database,
-            clock,
-        ),
         network=network or Network(),
     )
-    summariser = Summariser(context)
-    writer = TelemetryWriter(context, summariser.phase_ended)
-    folder = Folder(context, Encoder(settings.resolved_database_url))
+    for make in PARTS:
+        context.add(make(context))
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        _prepare(context, on_first_password)
-        writer.start()
-        folder.start()
-        summariser.catch_up()
-        context.exports.begin()
-        context.fits.begin()
-        yield
-        context.tryout.end()
-        writer.stop()
-        folder.stop()
-        summariser.stop()
-        context.drawings.end()
-        context.replays.end()
-        context.captures.end()
-        context.walking.end()
-        context.fits.end()
-        context.exports.end()
-        context.database.close()
+        with closing(context.database), ExitStack() as stopping:
+            _prepare(context, on_first_password)
+            for part in context.parts:
+                part.start()
+                stopping.callback(part.stop)
+            yield
 
     app = FastAPI(
         title="Reembody",
@@ -119,7 +104,6 @@ def create_app(
         openapi_url="/api/openapi.json",
     )
     app.state.context = context
-    app.state.writer = writer
     install_error_handler(app)
     add_routes(app)
     install_pages(app, static_dir())

@@ -139,7 +139,7 @@ def get_health(context: Context) -> Health:
 async def vr_stream(socket: WebSocket) -> None:
     """The headset's socket; see docs/protocol.md."""
     context: AppContext = socket.app.state.context
-    writer: TelemetryWriter = socket.app.state.writer
+    writer = context.part(TelemetryWriter)
     try:
         await serve_headset(socket, context, writer)
     except asyncio.CancelledError:

@@ -15,7 +15,7 @@ from app.database import Database
 from app.errors import NotDurable
 from app.features.care.backups.service import BackedUp, back_up
 from app.features.care.opening.service import existing_database
-from app.features.care.rights.service import COMMAND_LINE, record_copy
+from app.features.people.audit.copies import COMMAND_LINE, record_copy
 from app.schema_revisions import newest_revision
 from app.settings import Settings
 

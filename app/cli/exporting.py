@@ -6,8 +6,8 @@ from pathlib import Path
 from app.cli.installation import opened_database
 from app.clock import Clock
 from app.database import Database
-from app.features.care.rights.service import COMMAND_LINE, record_copy
 from app.features.design.studies.service import study_by_key
+from app.features.people.audit.copies import COMMAND_LINE, record_copy
 from app.features.results.analysis.tables import KINDS, Kind
 from app.features.results.exports.service import Exported, export_study, usual_kind
 

@@ -1,17 +1,16 @@
-"""What a running application is made of; built once in `create_app`, handed to every request."""
+"""What a running application is made of; built once in `create_app`, handed to every request.
 
+What every request may need has a name here. A feature that keeps something alive between requests
+(a process, a queue, a thread) brings a `Part`, which the application starts and stops with itself;
+the feature asks for it by its class. So nothing here knows any feature.
+"""
+
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 from app.clock import Clock
 from app.database import Database
-from app.features.care.storage.measuring import StorageDesk
-from app.features.movement.captures.workbench import Workbench
-from app.features.movement.walking.bench import Bench
-from app.features.movement.walking.desk import FittingDesk
-from app.features.record.tryout.desk import TryoutDesk
-from app.features.results.analysis.drawing import Drawings
-from app.features.results.exports.desk import ExportDesk
-from app.features.results.replay.desk import ReplayDesk
 from app.lan.network import Network
 from app.platform.hub import Hub
 from app.platform.rate_limit import RateLimiter
@@ -19,9 +18,24 @@ from app.platform.storage_health import StorageHealth
 from app.settings import Settings
 
 
+class Part:
+    """Something that lives as long as the server does."""
+
+    def start(self) -> None:
+        """Begin; the database is open and migrated."""
+        return
+
+    def stop(self) -> None:
+        """End, with every thread and process of its own."""
+        return
+
+
+P = TypeVar("P", bound=Part)
+
+
 @dataclass(frozen=True)
 class AppContext:
-    """The parts that services need, by name."""
+    """The parts that services need, by name, and those that features bring, by class."""
 
     settings: Settings
     database: Database
@@ -30,12 +44,24 @@ class AppContext:
     storage: StorageHealth
     login_limiter: RateLimiter
     pairing_limiter: RateLimiter
-    drawings: Drawings
-    replays: ReplayDesk
-    exports: ExportDesk
-    room: StorageDesk
-    tryout: TryoutDesk
-    fits: FittingDesk
-    captures: Workbench = field(default_factory=Workbench)
-    walking: Bench = field(default_factory=Bench)
     network: Network = field(default_factory=Network)
+    _parts: dict[type[Part], Part] = field(default_factory=dict)
+
+    def add(self, part: Part) -> None:
+        """Keep a feature's part; there is one of each class."""
+        self._parts[type(part)] = part
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """The features' parts, in the order in which they were added."""
+        return tuple(self._parts.values())
+
+    def part(self, kind: type[P]) -> P:
+        """The part of this class; raises KeyError where the application has none."""
+        part = self._parts[kind]
+        assert isinstance(part, kind)  # noqa: S101 - narrows what `add` keeps under its class
+        return part
+
+
+PartMaker = Callable[[AppContext], Part]
+"""Makes a feature's part of the context, which holds the parts that were made before."""

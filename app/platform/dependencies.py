@@ -11,13 +11,12 @@ from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
 from app.errors import KeptConflict, NotAllowed, NotSignedIn
-from app.features.people.accounts.service import account_of_token
-from app.features.record.devices.service import device_of_token
 from app.models import Device
 from app.platform.access import Caller, caller_of, require_object
 from app.platform.context import AppContext
 from app.platform.cookies import read_cookie
 from app.platform.policy import HEADSET, TABLET, allowed
+from app.platform.tokens import account_of_token, device_of_token
 
 LOGIN_COOKIE = "reembody_login"
 TABLET_COOKIE = "reembody_tablet"

@@ -12,11 +12,12 @@ from collections.abc import AsyncIterator, Callable, Hashable
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, ParamSpec, TypeVar
+from typing import Any, ClassVar, ParamSpec, Self, TypeVar
 
 from anyio.to_thread import run_sync
 
 from app.errors import InvalidInput, NotDurable
+from app.platform.context import AppContext, Part
 from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
@@ -48,7 +49,7 @@ class Words:
 
 
 @dataclass
-class WorkingLine(ABC):
+class WorkingLine(Part, ABC):
     """Has one thing done after the other; `within_s` is the time for each."""
 
     words: ClassVar[Words]
@@ -86,7 +87,12 @@ class WorkingLine(ABC):
         kept: T = self._kept[name]
         return kept
 
-    def end(self) -> None:
+    @classmethod
+    def of(cls, _: AppContext) -> Self:
+        """One for a server."""
+        return cls()
+
+    def stop(self) -> None:
         """Let the process go."""
         self._worker.end()
 
@@ -119,10 +125,10 @@ class WorkingLine(ABC):
         try:
             return await asyncio.wait_for(asyncio.wrap_future(future), self.within_s)
         except TimeoutError as error:
-            await run_sync(self.end)
+            await run_sync(self.stop)
             raise self._too_much(f"it takes longer than {self.within_s:g} s") from error
         except self.fill_the_process as error:
-            await run_sync(self.end)
+            await run_sync(self.stop)
             raise self._too_much("it takes too much memory") from error
         except BrokenProcessPool as error:
             raise self._too_much(self.words.ended) from error

@@ -8,6 +8,9 @@ FEATURES = Path(__file__).resolve().parents[2] / "app" / "features"
 ALWAYS = {"service", "schemas"}
 """What a feature does, and what travels in its name."""
 ALSO = {
+    "audit": {
+        "copies",  # whoever hands out a copy of data puts it on record
+    },
     "sessions": {
         "engine",  # commands and state are the words in which features speak of a session
         "contents",  # words beside the event log
@@ -35,6 +38,14 @@ ALSO = {
         "uploads",  # and taken in the same way
         "downloads",
         "binary",
+        "workbench",  # and measured in the same process
+    },
+    "erasure": {
+        "overwriting",  # imported answers are erased, too
+        "traces",
+    },
+    "exports": {
+        "desk",  # files of a study go when one of its participants is erased
     },
     "analysis": {
         "tables",  # an export is the tables
@@ -46,14 +57,14 @@ ALSO = {
 
 def imports() -> Iterator[tuple[str, str, str]]:
     """(importing file, other feature, its module) for every import across features."""
-    for file in sorted(FEATURES.glob("*/**/*.py")):
-        own = file.relative_to(FEATURES).parts[0]
+    for file in sorted(FEATURES.glob("*/*/**/*.py")):
+        own = file.relative_to(FEATURES).parts[1]
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if not isinstance(node, ast.ImportFrom) or node.module is None:
                 continue
             parts = node.module.split(".")
-            if parts[:2] == ["app", "features"] and len(parts) > 3 and parts[2] != own:
-                yield str(file.relative_to(FEATURES)), parts[2], parts[3]
+            if parts[:2] == ["app", "features"] and len(parts) > 4 and parts[3] != own:
+                yield str(file.relative_to(FEATURES)), parts[3], parts[4]
 
 
 def test_a_feature_uses_only_what_another_offers() -> None:

@@ -6,7 +6,6 @@ from sqlalchemy.orm import Session
 from app.cli.installation import opened_database
 from app.cli.tune.output import report_json
 from app.clock import Clock
-from app.features.care.rights.service import COMMAND_LINE
 from app.features.movement.avatar.schemas import AvatarKey, NewAvatar, NewAvatarVersion
 from app.features.movement.avatar.service import (
     SHIPPED,
@@ -19,6 +18,7 @@ from app.features.movement.avatar.service import (
     typed,
 )
 from app.features.movement.humanoids.service import figure_by_hash
+from app.features.people.audit.copies import COMMAND_LINE
 from app.models import AvatarVersion
 from app.protocol.avatar import file_of
 from app.science.avatar.body.figure import Figure

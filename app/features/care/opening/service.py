@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from sqlalchemy import Connection, func, inspect, make_url, select, table
+from sqlalchemy import Connection, func, inspect, select, table
 
 from app import __version__
 from app.clock import Clock
@@ -12,14 +12,9 @@ from app.features.care.backups.service import ENDING, back_up, stamped
 from app.features.care.opening.beginning import begin
 from app.features.care.opening.inspection import damage_of, foreign_tables, is_open_elsewhere
 from app.features.care.opening.quarantine import Quarantine
+from app.platform.folders import backups_of, database_file
 from app.schema_revisions import known_revisions, migrate, newest_revision, revision_of
 from app.settings import Settings
-
-
-def backups_of(settings: Settings) -> Path:
-    """The folder for backups that are made without being asked for."""
-    file = _file(settings)
-    return (settings.data_dir if file is None else file.parent).absolute() / "backups"
 
 
 def put_away_if_damaged(settings: Settings, clock: Clock) -> None:
@@ -29,7 +24,7 @@ def put_away_if_damaged(settings: Settings, clock: Clock) -> None:
     it in a process that has not opened the database yet. While another process works with it
     nothing is looked at: that process did so when it started.
     """
-    file = _file(settings)
+    file = database_file(settings)
     if file is None:
         return
     quarantine = Quarantine(file)
@@ -49,7 +44,7 @@ def refuse_to_begin_unasked(settings: Settings, *, new_database: bool) -> None:
     Raises Conflict as long as nobody has: neither `new_database`, nor a restored backup, nor a
     repaired file put in its place.
     """
-    file = _file(settings)
+    file = database_file(settings)
     if file is None:
         return
     quarantine = Quarantine(file)
@@ -67,7 +62,7 @@ def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
     program or of another one, which is left as it is, and NotDurable where the backup cannot be
     written: nothing is migrated then.
     """
-    url, file = settings.resolved_database_url, _file(settings)
+    url, file = settings.resolved_database_url, database_file(settings)
     if file is not None and not file.exists():
         begin(file)
         return None
@@ -95,7 +90,7 @@ def prepare_database(
 
 def existing_database(settings: Settings) -> Database:
     """The database as it is, to read from; raises NotFound where there is none."""
-    file = _file(settings)
+    file = database_file(settings)
     if file is not None and not file.is_file():
         raise NotFound(
             f"there is no database {file}",
@@ -103,14 +98,6 @@ def existing_database(settings: Settings) -> Database:
             remedy="Set REEMBODY_DATA_DIR or REEMBODY_DATABASE_URL as for the server.",
         )
     return open_database(settings.resolved_database_url)
-
-
-def _file(settings: Settings) -> Path | None:
-    """The embedded database's file; None for PostgreSQL, and for one in memory."""
-    url = make_url(settings.resolved_database_url)
-    if url.get_backend_name() != "sqlite" or url.database in (None, "", ":memory:"):
-        return None
-    return Path(str(url.database))
 
 
 def _revision(connection: Connection) -> str | None:

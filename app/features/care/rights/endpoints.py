@@ -20,19 +20,18 @@ from app.features.care.rights.schemas import (
 )
 from app.features.care.rights.service import (
     erase,
-    expect_erasure,
-    in_browser_of,
     keep_tombstones,
-    overwrite,
     participant_of,
-    record_copy,
     require_erasable,
 )
 from app.features.design.studies.service import study_by_key
+from app.features.people.audit.copies import in_browser_of, record_copy
 from app.features.people.audit.service import record
+from app.features.record.erasure.overwriting import expect_erasure, overwrite
 from app.features.record.questionnaires.schemas import StoredAnswers
 from app.features.record.questionnaires.service import stored_answers
 from app.features.record.sessions.service import session_by_id
+from app.features.results.exports.desk import ExportDesk
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
@@ -66,7 +65,7 @@ async def post_erasure(
 
         await run_in_threadpool(in_transaction)
     # Files that wait to be fetched may hold what was erased.
-    await run_in_threadpool(context.exports.forget_study, key)
+    await run_in_threadpool(context.part(ExportDesk).forget_study, key)
     return await run_in_threadpool(_finished, context, participant_id)
 
 

@@ -9,7 +9,6 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.care.rights.copies import copies_by_participant
-from app.features.care.rights.overwriting import is_overwritten
 from app.features.care.rights.schemas import (
     CopyLeft,
     CopyView,
@@ -17,6 +16,7 @@ from app.features.care.rights.schemas import (
     ParticipantSession,
     ParticipantView,
 )
+from app.features.record.erasure.overwriting import is_overwritten
 from app.models import CopyMade, Erasure, Participant, SessionEvent, Study, StudySession
 from app.settings import Settings
 

@@ -4,32 +4,22 @@ import logging
 
 from app.errors import NotDurable
 from app.features.care.rights.again import ErasuresKept, erase_again
-from app.features.care.rights.copies import COMMAND_LINE, in_browser_of, record_copy, sessions_in
 from app.features.care.rights.erasing import erase, erasure_of, participant_of, require_erasable
-from app.features.care.rights.overwriting import (
+from app.features.care.rights.tombstones import tombstone_file, tombstones_of
+from app.features.record.erasure.overwriting import (
     expect_erasure,
-    forget_erasure,
-    overwrite,
     overwrite_what_is_left,
 )
-from app.features.care.rights.tombstones import tombstone_file, tombstones_of
 from app.platform.context import AppContext
 
 __all__ = [
-    "COMMAND_LINE",
     "ErasuresKept",
     "erase",
     "erasure_of",
-    "expect_erasure",
     "finish_erasures",
-    "forget_erasure",
-    "in_browser_of",
     "keep_tombstones",
-    "overwrite",
     "participant_of",
-    "record_copy",
     "require_erasable",
-    "sessions_in",
 ]
 log = logging.getLogger(__name__)
 

@@ -16,8 +16,8 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import NotDurable
-from app.features.care.opening.service import backups_of
 from app.models import Erasure
+from app.platform.folders import home_of
 from app.settings import Settings
 
 NAME = "erasures.jsonl"
@@ -85,7 +85,7 @@ class TombstoneFile:
 
 def tombstone_file(settings: Settings) -> TombstoneFile:
     """The list of this installation, where its own backups are made, too."""
-    return TombstoneFile(backups_of(settings).parent)
+    return TombstoneFile(home_of(settings))
 
 
 def tombstones_of(db: Session) -> list[Tombstone]:

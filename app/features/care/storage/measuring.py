@@ -7,17 +7,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
+from typing import Self
 
 from sqlalchemy import select
 
 from app.clock import Clock
 from app.database import Database
-from app.features.care.opening.service import backups_of
 from app.features.care.storage.families import FAMILY_OF
 from app.features.care.storage.schemas import PartView, Place, SessionRoom
 from app.features.care.storage.shares import bytes_by_session
 from app.features.care.storage.tables import TableSizes, table_sizes
 from app.models import Participant, Study, StudySession
+from app.platform.context import AppContext, Part
+from app.platform.folders import backups_of
 from app.settings import Settings
 
 KEPT_NS = 60 * 1_000_000_000
@@ -44,7 +46,7 @@ class Measured:
 
 
 @dataclass(eq=False)
-class StorageDesk:
+class StorageDesk(Part):
     """Safe from any thread: one measures, the others wait for what it finds."""
 
     database: Database
@@ -53,6 +55,11 @@ class StorageDesk:
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _measured: Measured | None = None
     _measured_ns: int = 0
+
+    @classmethod
+    def of(cls, context: AppContext) -> Self:
+        """The measure of a server's database and disk."""
+        return cls(context.database, context.settings, context.clock)
 
     def measured(self, *, anew: bool = False) -> Measured:
         """What takes how much room; `anew` does not take what was seen a moment ago."""

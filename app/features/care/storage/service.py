@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.care.storage.measuring import Measured, MeasuredSession
+from app.features.care.storage.measuring import Measured, MeasuredSession, StorageDesk
 from app.features.care.storage.schemas import (
     DiskView,
     SessionKind,
@@ -26,7 +26,7 @@ MEASURED_BY: tuple[SessionKind, ...] = ("people", "test", "simulated")
 
 def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool) -> StorageView:
     """Everything, with the studies and sessions that are the caller's to see."""
-    measured = context.room.measured(anew=anew)
+    measured = context.part(StorageDesk).measured(anew=anew)
     disk = _disk(context, measured)
     studies = db.scalars(select(Study).where(is_theirs(caller)).order_by(Study.key)).all()
     own = {study.key for study in studies}

@@ -25,6 +25,7 @@ from app.features.movement.captures.schemas import (
 )
 from app.features.movement.captures.tasks import retargeted_positions, verification_json
 from app.features.movement.captures.verification_schemas import VerificationView
+from app.features.movement.captures.workbench import Workbench
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/captures", tags=["captures"])
@@ -71,7 +72,9 @@ async def get_verification(
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     wanted = tuple(dict.fromkeys(avatars))
     return Response(
-        await context.captures.computed(verification_json, mapped, wanted, lock_feet=lock_feet),
+        await context.part(Workbench).computed(
+            verification_json, mapped, wanted, lock_feet=lock_feet
+        ),
         media_type="application/json",
     )
 
@@ -117,6 +120,8 @@ async def get_retargeted_motion(
     """Positions over time of an avatar's joints, for a preview."""
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     return Response(
-        await context.captures.computed(retargeted_positions, mapped, avatar, lock_feet=lock_feet),
+        await context.part(Workbench).computed(
+            retargeted_positions, mapped, avatar, lock_feet=lock_feet
+        ),
         media_type=BYTES,
     )

@@ -14,6 +14,7 @@ from app.features.movement.captures.contents import plain_pieces
 from app.features.movement.captures.schemas import ExportFormat
 from app.features.movement.captures.service import capture_by_id
 from app.features.movement.captures.tasks import write_retargeted
+from app.features.movement.captures.workbench import Workbench
 from app.platform.context import AppContext
 
 
@@ -45,7 +46,7 @@ async def retargeted_file(
     """A file of the movement on an avatar, which the caller removes; raises InvalidInput."""
     path = await run_in_threadpool(_new_file)
     try:
-        await context.captures.run(
+        await context.part(Workbench).run(
             write_retargeted, mapped, avatar, format_, path, lock_feet=lock_feet
         )
     except BaseException:

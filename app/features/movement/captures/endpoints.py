@@ -28,6 +28,7 @@ from app.features.movement.captures.service import (
 )
 from app.features.movement.captures.tasks import recorded_positions
 from app.features.movement.captures.views import capture_page, capture_view
+from app.features.movement.captures.workbench import Workbench
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
@@ -124,7 +125,9 @@ async def get_motion(
     """Positions over time for a preview: as recorded, or of the capture's skeleton."""
     source = await run_in_threadpool(source_of_capture, context, capture_id)
     return Response(
-        await context.captures.computed(recorded_positions, store_of(context), source, shown),
+        await context.part(Workbench).computed(
+            recorded_positions, store_of(context), source, shown
+        ),
         media_type=BYTES,
     )
 

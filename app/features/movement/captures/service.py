@@ -21,6 +21,7 @@ from app.features.movement.captures.opening import Store
 from app.features.movement.captures.schemas import CaptureChange, ReadingChoice
 from app.features.movement.captures.source import Source, source_of
 from app.features.movement.captures.uploads import Uploaded, uploaded
+from app.features.movement.captures.workbench import Workbench
 from app.features.people.audit.service import record
 from app.models import CaptureRow
 from app.models.types import new_id
@@ -80,7 +81,7 @@ async def add_capture(
             return there, False
         paths = tuple(file.path for file in files)
         most = context.settings.max_capture_bytes
-        inspected = await context.captures.run(inspect_upload, most, source, paths)
+        inspected = await context.part(Workbench).run(inspect_upload, most, source, paths)
         async with context.database.writing_async() as db:
             return await run_sync(_keep, db, context, caller, wish, source, files, inspected)
 
@@ -92,7 +93,7 @@ async def change_capture(
     inspected: Inspected | None = None
     if wish.reading is not None:
         source = await run_sync(source_of_capture, context, capture_id, wish.reading)
-        inspected = await context.captures.run(inspect_stored, store_of(context), source)
+        inspected = await context.part(Workbench).run(inspect_stored, store_of(context), source)
     async with context.database.writing_async() as db:
         await run_sync(_change, db, context, caller, capture_id, wish, inspected)
 

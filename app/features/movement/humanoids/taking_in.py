@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput
 from app.features.movement.captures.contents import store
 from app.features.movement.captures.uploads import Uploaded, uploaded
+from app.features.movement.captures.workbench import Workbench
 from app.features.movement.humanoids.service import is_known
 from app.features.movement.humanoids.tasks import Measured, Refused, compressed_beside, measure
 from app.features.people.audit.service import record
@@ -43,7 +44,7 @@ async def add_humanoid(
 async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:
     try:
         most = context.settings.max_capture_bytes
-        found = await context.captures.run(measure, most, file.path)
+        found = await context.part(Workbench).run(measure, most, file.path)
     except InvalidInput as error:
         # Too much of something: the words of captures do not help here.
         raise InvalidInput(

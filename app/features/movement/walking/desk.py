@@ -14,7 +14,7 @@ from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session
@@ -26,6 +26,7 @@ from app.features.movement.walking.progress import FitFolder, Progress
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
 from app.features.movement.walking.tasks import fit_model
 from app.models import WalkingModelRow
+from app.platform.context import AppContext, Part
 from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
@@ -48,7 +49,7 @@ class _Fit:
 
 
 @dataclass(eq=False)
-class FittingDesk:
+class FittingDesk(Part):
     """Safe from any thread."""
 
     folder: Path
@@ -61,7 +62,18 @@ class FittingDesk:
         default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="fits")
     )
 
-    def begin(self) -> None:
+    @classmethod
+    def of(cls, context: AppContext) -> Self:
+        """The fits of a server, in its data folder."""
+        settings = context.settings
+        return cls(
+            settings.data_dir.resolve() / "walking",
+            settings.resolved_database_url,
+            context.database,
+            context.clock,
+        )
+
+    def start(self) -> None:
         """Fits that the last run of the server left are stopped; their maps are kept."""
         with self.database.reading() as db:
             fitting = select(WalkingModelRow.id).where(WalkingModelRow.state == "fitting")
@@ -74,12 +86,12 @@ class FittingDesk:
                     .values(state="stopped")
                 )
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Stop whatever is fitted; what is finished of it is kept."""
         with self._lock:
             fits = list(self._fits.values())
         for fit in fits:
-            self.stop(fit.model_id)
+            self.halt(fit.model_id)
         self._maker.shutdown(wait=True, cancel_futures=True)
 
     def order(self, model_id: str, order: FitOrder) -> None:
@@ -91,7 +103,7 @@ class FittingDesk:
             self._fits[model_id] = fit
         self._maker.submit(self._make, fit)
 
-    def stop(self, model_id: str) -> None:
+    def halt(self, model_id: str) -> None:
         """End the process of a fit, or take it out of the queue."""
         with self._lock:
             fit = self._fits.pop(model_id, None)
@@ -102,7 +114,7 @@ class FittingDesk:
 
     def forget(self, model_id: str) -> None:
         """Stop it and remove what is finished."""
-        self.stop(model_id)
+        self.halt(model_id)
         shutil.rmtree(self.folder / model_id, ignore_errors=True)
 
     def progress(self, model_id: str) -> Progress | None:

@@ -9,6 +9,8 @@ from starlette.concurrency import run_in_threadpool
 
 from app.features.movement.captures.binary import BYTES, binary
 from app.features.movement.captures.downloads import attachment, sent
+from app.features.movement.walking.bench import Bench
+from app.features.movement.walking.desk import FittingDesk
 from app.features.movement.walking.model_schemas import (
     ModelListed,
     ModelView,
@@ -63,14 +65,14 @@ def get_model(model_id: str, db: Reading, context: Context, _: SignedIn) -> Mode
 async def delete_model(model_id: str, context: Context, caller: SignedIn) -> None:
     """Delete a model, or give up fitting it."""
     await write(context, lambda db: remove_model(db, context, caller, model_id))
-    await run_in_threadpool(context.fits.forget, model_id)
+    await run_in_threadpool(context.part(FittingDesk).forget, model_id)
 
 
 @router.post("/models/{model_id}/stop")
 async def stop_model(model_id: str, context: Context, caller: SignedIn) -> ModelView:
     """Stop fitting; the maps that are finished are kept."""
     await write(context, lambda db: mark_stopped(db, context, caller, model_id))
-    await run_in_threadpool(context.fits.stop, model_id)
+    await run_in_threadpool(context.part(FittingDesk).halt, model_id)
     return await run_in_threadpool(_view, context, model_id)
 
 
@@ -98,7 +100,7 @@ def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingRes
 async def post_path(wish: PathAsked, context: Context, _: SignedIn) -> PathView:
     """The way between two points, or whether a drawn one is free of obstacles."""
     question = await run_in_threadpool(_question, context, wish)
-    points = await context.walking.computed(plan_way, question)
+    points = await context.part(Bench).computed(plan_way, question)
     length_m = sum(dist(a, b) for a, b in pairwise(points))
     return PathView(points_m=points, length_m=length_m)
 
@@ -110,7 +112,9 @@ async def post_prediction(
     """How long people take on a path: a distribution, and walks drawn from it."""
     content_hash = await run_in_threadpool(_content, context, model_id)
     question = await run_in_threadpool(_question, context, wish)
-    found = await context.walking.computed(predict_walk, store_of(context), content_hash, question)
+    found = await context.part(Bench).computed(
+        predict_walk, store_of(context), content_hash, question
+    )
     return PredictionView.model_validate(found)
 
 
@@ -119,7 +123,7 @@ async def post_slice(model_id: str, wish: SliceAsked, context: Context, _: Signe
     """How suitable steering parameters are for such a walk: a slice of the map."""
     content_hash = await run_in_threadpool(_content, context, model_id)
     question = SliceQuestion(tuple(sorted(wish.dependencies.items())), wish.held, wish.value)
-    found = await context.walking.computed(slice_of, store_of(context), content_hash, question)
+    found = await context.part(Bench).computed(slice_of, store_of(context), content_hash, question)
     return SliceView.model_validate(found)
 
 

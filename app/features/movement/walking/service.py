@@ -7,6 +7,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
 from app.features.movement.captures.contents import drop_unused, size_of
+from app.features.movement.walking.desk import FittingDesk
 from app.features.movement.walking.model_schemas import (
     FittedOn,
     ModelListed,
@@ -130,7 +131,7 @@ def begin_fit(context: AppContext, model_id: str) -> ModelView:
     """Hand a noted model to the desk."""
     with context.database.reading() as db:
         order = order_of(db, model_id)
-        context.fits.order(model_id, order)
+        context.part(FittingDesk).order(model_id, order)
         return model_view(db, context, model_id)
 
 
@@ -174,7 +175,7 @@ def _in_state(db: Session, model_id: str, *states: State) -> WalkingModelRow:
 
 
 def _listed(row: WalkingModelRow, context: AppContext) -> ModelListed:
-    progress = None if row.state == "ready" else context.fits.progress(row.id)
+    progress = None if row.state == "ready" else context.part(FittingDesk).progress(row.id)
     return ModelListed(
         id=row.id,
         title=row.title,

@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 from app.errors import Conflict, NotFound
 from app.features.movement.captures.contents import compress, drop_unused, store
 from app.features.movement.captures.uploads import uploaded
+from app.features.movement.walking.bench import Bench
 from app.features.movement.walking.schemas import (
     CapturesOrigin,
     Kind,
@@ -81,7 +82,7 @@ async def add_table(
     """Keep a table of tracks; raises InvalidInput with the line where it cannot be read."""
     async with uploaded(body, None) as (file,):
         source = tracks_source(wish.origin, wish.kind, file.hash)
-        found = await context.walking.run(inspected_tracks, source, file.path)
+        found = await context.part(Bench).run(inspected_tracks, source, file.path)
         row = _row(context, caller, wish.title, wish.kind, wish.origin, file.hash)
         row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
         return await _kept(context, caller, row, _storing(file.hash, file.path))
@@ -92,7 +93,7 @@ async def add_walk_set(context: AppContext, caller: Caller, wish: NewWalkSet) ->
     if isinstance(wish.origin, CapturesOrigin):
         return await _add_captured(context, caller, wish.title, wish.origin)
     source = await run_sync(population_source, context, wish.origin)
-    found = await context.walking.run(inspected_population, source)
+    found = await context.part(Bench).run(inspected_population, source)
     row = _row(context, caller, wish.title, "synthetic", wish.origin, None)
     row.summary = WalksSummary.model_validate(found).model_dump(mode="json")
     return await _kept(context, caller, row, lambda _: None)
@@ -123,7 +124,7 @@ async def _add_captured(
     context: AppContext, caller: Caller, title: str, origin: CapturesOrigin
 ) -> WalkSetView:
     captures = await run_sync(captured_walks, context, origin)
-    found = await context.walking.run(
+    found = await context.part(Bench).run(
         captured_table, store_of(context), captures, captures_source(origin, "")
     )
     content_hash = hashlib.sha256(found.table).hexdigest()

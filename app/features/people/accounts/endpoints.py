@@ -15,7 +15,6 @@ from app.features.people.accounts.schemas import (
 )
 from app.features.people.accounts.service import (
     check_password,
-    hash_token,
     issue_token,
     revoke_token,
 )
@@ -33,6 +32,7 @@ from app.platform.dependencies import (
     known_caller,
 )
 from app.platform.hub import after_commit
+from app.platform.tokens import hash_token
 
 router = APIRouter(tags=["accounts"])
 

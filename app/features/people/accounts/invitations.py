@@ -15,8 +15,9 @@ from sqlalchemy.orm import Session
 from app.errors import Gone, NotFound
 from app.features.people.accounts.passwords import require_good
 from app.features.people.accounts.people import give_studies, study_ids
-from app.features.people.accounts.service import create_account, hash_token
+from app.features.people.accounts.service import create_account
 from app.models import Account, Invitation, Study
+from app.platform.tokens import hash_token
 
 
 @dataclass(frozen=True)

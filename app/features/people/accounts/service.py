@@ -1,10 +1,8 @@
 """Logging in, and knowing who asks.
 
-Passwords are argon2id hashes. A login is a random token of 256 bits; the database keeps its
-SHA-256, so a stolen database opens nothing, and every login can be revoked.
+Passwords are argon2id hashes. A login is a random token (app.platform.tokens).
 """
 
-import hashlib
 import re
 import secrets
 from dataclasses import dataclass
@@ -16,6 +14,7 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput, NotSignedIn
 from app.features.people.accounts.passwords import hash_password, is_password
 from app.models import Account, LoginToken
+from app.platform.tokens import hash_token
 
 _USERNAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
@@ -27,11 +26,6 @@ class Login:
     account: Account
     token: str
     expires_at: datetime
-
-
-def hash_token(token: str) -> str:
-    """What is stored of a random token."""
-    return hashlib.sha256(token.encode()).hexdigest()
 
 
 def create_account(
@@ -104,17 +98,6 @@ def issue_token(
     )
     db.flush()
     return Login(account, token, expires_at)
-
-
-def account_of_token(db: Session, token: str, now: datetime) -> Account:
-    """Whose login this is; raises NotSignedIn when it is unknown, expired or revoked."""
-    row = db.get(LoginToken, hash_token(token))
-    if row is None or row.revoked_at is not None or row.expires_at <= now:
-        raise NotSignedIn("the login has ended", remedy="Log in again.")
-    account = db.get(Account, row.account_id)
-    if account is None or account.disabled_at is not None:
-        raise NotSignedIn("the account is closed", remedy="Ask the administrator of the lab.")
-    return account
 
 
 def revoke_token(db: Session, token: str, now: datetime) -> None:

@@ -4,20 +4,18 @@ import secrets
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from sqlalchemy import bindparam, select, update
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
-from app.errors import Gone, NotFound, NotSignedIn
-from app.features.people.accounts.service import hash_token
+from app.errors import Gone, NotFound
 from app.models import Device, PairingCode
+from app.platform.tokens import hash_token
 
 # No vowels (no words), no 0/O, 1/I/L, 2/Z, 5/S, 8/B: read aloud and typed without doubt.
 CODE_ALPHABET = "3467CDFGHJKMNPQRTVWXY9"
 CODE_LENGTH = 6
 TABLET_SILENT_AFTER_S = 30.0
 """A tablet is told every 10 s that the server is there; after three misses it counts as away."""
-
-_BY_TOKEN = select(Device).where(Device.token_hash == bindparam("token_hash"))
 
 
 @dataclass(frozen=True)
@@ -104,16 +102,6 @@ def pair(db: Session, *, code: str, name: str, now: datetime) -> Paired:
     db.add(device)
     db.flush()
     return Paired(device, token)
-
-
-def device_of_token(db: Session, token: str, kind: str) -> Device:
-    """The device that holds this token; raises NotSignedIn when it is unknown or was revoked."""
-    device = db.scalar(_BY_TOKEN, {"token_hash": hash_token(token)})
-    if device is None or device.kind != kind or device.revoked_at is not None:
-        raise NotSignedIn(
-            f"this {kind} is not paired any more", remedy="Enter a new code from the console."
-        )
-    return device
 
 
 def devices_of_session(db: Session, session_id: str) -> list[Device]:

@@ -13,7 +13,6 @@ from typing import TypeVar
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, Withdrawn
-from app.features.record.devices.service import device_of_token
 from app.features.record.headset.lookout import Lookout
 from app.features.record.headset.parsing import parse_message
 from app.features.record.headset.service import headset_state, welcome
@@ -30,6 +29,7 @@ from app.features.record.telemetry.writer import (
 )
 from app.platform.context import AppContext
 from app.platform.hub import Subscription
+from app.platform.tokens import device_of_token
 from app.wire import decode_batch
 from app.wire.messages import (
     PROTOCOL_VERSION,

@@ -10,10 +10,10 @@ from sqlalchemy.exc import DBAPIError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, NotSignedIn, ReembodyError
-from app.features.record.devices.service import device_of_token
 from app.features.record.headset.connection import CLOSE_REFUSED, HeadsetConnection
 from app.features.record.telemetry.writer import TelemetryWriter
 from app.platform.context import AppContext
+from app.platform.tokens import device_of_token
 from app.wire import MalformedBatchError
 from app.wire.messages import SUBPROTOCOL, Failure
 

@@ -7,7 +7,7 @@ import logging
 import threading
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import cast
+from typing import Self, cast
 
 from sqlalchemy import Table, bindparam, delete, select
 from sqlalchemy.orm import Session
@@ -16,7 +16,7 @@ from app.features.record.telemetry.checkpoints import Checkpointer
 from app.features.record.telemetry.due import BATCHES, DUE_AFTER, KEY, Chunks, due_chunks
 from app.features.record.telemetry.encoder import Encoder
 from app.models import TelemetryChunk
-from app.platform.context import AppContext
+from app.platform.context import AppContext, Part
 from app.rows import insert_rows
 
 log = logging.getLogger(__name__)
@@ -29,7 +29,7 @@ class BatchesChanged(RuntimeError):
 
 
 @dataclass
-class Folder:
+class Folder(Part):
     """Folds in the background. `start` once, `stop` at the end.
 
     Chunks are made by the `encoder`; without one, here.
@@ -39,6 +39,11 @@ class Folder:
     encoder: Encoder | None = None
     _stop: threading.Event = field(default_factory=threading.Event)
     _thread: threading.Thread | None = None
+
+    @classmethod
+    def of(cls, context: AppContext) -> Self:
+        """The folder of a server, which encodes in a process of its own."""
+        return cls(context, Encoder(context.settings.resolved_database_url))
 
     def start(self) -> None:
         """Begin to fold."""

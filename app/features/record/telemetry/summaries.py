@@ -28,7 +28,7 @@ from app.models import (
     TelemetryBatch,
     TelemetryChunk,
 )
-from app.platform.context import AppContext
+from app.platform.context import AppContext, Part
 
 log = logging.getLogger(__name__)
 Row = JointErrorRow | JointErrorCourseRow | PhaseLatency | PhaseQuality
@@ -45,7 +45,7 @@ SUMMARIES: dict[Tables, Summary] = {
 
 
 @dataclass
-class Summariser:
+class Summariser(Part):
     """Computes summaries in the background, one phase at a time."""
 
     context: AppContext
@@ -58,7 +58,7 @@ class Summariser:
         """Queue a phase whose last frame is on disk."""
         self._pool.submit(self._run, session_id, phase_id, tuple(SUMMARIES))
 
-    def catch_up(self) -> None:
+    def start(self) -> None:
         """Queue every phase that ended without summaries, as after a crash.
 
         Every phase gets rows of its streams' quality, if only to say that it has no frames: where

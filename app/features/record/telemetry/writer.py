@@ -10,7 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, Self
 
 from sqlalchemy.exc import DBAPIError
 
@@ -19,7 +19,8 @@ from app.features.record.sessions.capture import closed_sessions, refusal
 from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.outcome import Outcome
 from app.features.record.telemetry.reports import store_report
-from app.platform.context import AppContext
+from app.features.record.telemetry.summaries import Summariser
+from app.platform.context import AppContext, Part
 from app.platform.trouble import explain
 from app.wire import Batch, FrameFlags, flag_batches
 from app.wire.messages import Probed, Produced, Report
@@ -89,7 +90,7 @@ Content = BatchContent | Report | ProbeContent | Produced | LossContent | AlarmC
 
 
 @dataclass
-class TelemetryWriter:
+class TelemetryWriter(Part):
     """The single writer of telemetry. `start` it once, `stop` it after the last connection."""
 
     context: AppContext
@@ -99,6 +100,11 @@ class TelemetryWriter:
     _wake: threading.Event = field(default_factory=threading.Event)
     _stopping: bool = False
     _thread: threading.Thread | None = None
+
+    @classmethod
+    def of(cls, context: AppContext) -> Self:
+        """The writer of a server, whose phases are summarised as they end."""
+        return cls(context, context.part(Summariser).phase_ended)
 
     def start(self) -> None:
         """Begin to commit."""

@@ -5,7 +5,7 @@ import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Any
+from typing import Any, Self
 
 from app.clock import Clock
 from app.database import Database
@@ -15,6 +15,7 @@ from app.features.record.tryout.performance import Performance
 from app.features.record.tryout.schemas import TryoutState, TryoutTrouble, TryoutView
 from app.models import Account
 from app.platform.access import Caller
+from app.platform.context import AppContext, Part
 
 log = logging.getLogger(__name__)
 SPEED = 4.0
@@ -48,7 +49,7 @@ class Tryout:
 
 
 @dataclass(eq=False)
-class TryoutDesk:
+class TryoutDesk(Part):
     """Safe from any thread; remembers the newest tryout."""
 
     database: Database
@@ -57,7 +58,12 @@ class TryoutDesk:
     _newest: Tryout | None = None
     _lock: threading.RLock = field(default_factory=threading.RLock)
 
-    def start(self, caller: Caller, study_key: str, language: str, url: str) -> TryoutView:
+    @classmethod
+    def of(cls, context: AppContext) -> Self:
+        """The tryouts of a server."""
+        return cls(context.database, context.clock)
+
+    def begin(self, caller: Caller, study_key: str, language: str, url: str) -> TryoutView:
         """Send a scripted participant through a study at `url`; raises Conflict, NotDurable."""
         with self._lock:
             if self._newest is not None and self._newest.is_on:
@@ -98,7 +104,7 @@ class TryoutDesk:
         with self._lock:
             return None if self._newest is None else _view(self._newest, caller)
 
-    def stop(self, caller: Caller) -> TryoutView:
+    def call_off(self, caller: Caller) -> TryoutView:
         """End it and its session. Raises NotFound where none is running."""
         with self._lock:
             tryout = self._newest
@@ -109,7 +115,7 @@ class TryoutDesk:
             tryout.performance.stop()
         return _view(tryout, caller)
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """With the server."""
         with self._lock:
             tryout = self._newest

@@ -9,6 +9,7 @@ from app.features.design.studies.service import (
     require_open,
     study_by_key,
 )
+from app.features.record.tryout.desk import TryoutDesk
 from app.features.record.tryout.schemas import TryoutView, TryoutWish
 from app.platform.access import Caller, require_object
 from app.platform.context import AppContext
@@ -34,23 +35,23 @@ def post_tryout(
             remedy="Choose one of the study's languages.",
         )
     url = context.network.reach.local_url
-    return context.tryout.start(caller, study.key, wish.language, url)
+    return context.part(TryoutDesk).begin(caller, study.key, wish.language, url)
 
 
 @router.get("/tryout")
 def get_tryout(context: Context, caller: SignedIn) -> TryoutView | None:
     """How the newest one is doing; null where there was none since the server was started."""
-    newest = context.tryout.newest(caller)
+    newest = context.part(TryoutDesk).newest(caller)
     return newest if newest is not None and _sees(context, caller, newest) else None
 
 
 @router.delete("/tryout")
 def delete_tryout(context: Context, caller: SignedIn) -> TryoutView:
     """Stop the one that is running, and end its session."""
-    newest = context.tryout.newest(caller)
+    newest = context.part(TryoutDesk).newest(caller)
     if newest is None or not _sees(context, caller, newest):
         raise NotFound("no scripted participant is here", remedy="Begin another.")
-    return context.tryout.stop(caller)
+    return context.part(TryoutDesk).call_off(caller)
 
 
 def _sees(context: AppContext, caller: Caller, tryout: TryoutView) -> bool:

@@ -14,7 +14,7 @@ from concurrent.futures import CancelledError, Future
 from concurrent.futures import TimeoutError as NotYet
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Literal
+from typing import Literal, Self
 
 from sqlalchemy.orm import Session
 
@@ -22,6 +22,7 @@ from app.errors import NotDurable, ReembodyError
 from app.features.results.analysis.filters import NO_FILTER, FigureFilter
 from app.features.results.analysis.schemas import DashboardKind, FigureGroup
 from app.features.results.analysis.state import State, state_of_data
+from app.platform.context import AppContext, Part
 from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
@@ -53,7 +54,7 @@ class Drawn:
 
 
 @dataclass
-class Drawings:
+class Drawings(Part):
     """What was drawn, by study, kind and filter; a process draws what is missing, one at a time.
 
     Kept are those asked for last, up to MOST_KEPT_BYTES together. Tests have a process of their
@@ -67,6 +68,11 @@ class Drawings:
     _worker: Worker = field(default_factory=Worker)
     _tester: Worker = field(default_factory=Worker)
     _lock: threading.RLock = field(default_factory=threading.RLock)
+
+    @classmethod
+    def of(cls, context: AppContext) -> Self:
+        """The drawings of a server's studies."""
+        return cls(context.settings.resolved_database_url, context.clock.utc_now)
 
     def dashboard(
         self,
@@ -155,7 +161,7 @@ class Drawings:
             _, oldest = self._drawn.popitem(last=False)
             size -= len(oldest.body)
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Let the processes go, with what they are doing."""
         self._worker.end()
         self._tester.end()

@@ -5,10 +5,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Response
 
-from app.features.care.rights.service import in_browser_of, record_copy, sessions_in
 from app.features.design.studies.service import study_by_key
+from app.features.people.audit.copies import in_browser_of, record_copy, sessions_in
 from app.features.people.audit.service import record
-from app.features.results.analysis.drawing import Drawn
+from app.features.results.analysis.drawing import Drawings, Drawn
 from app.features.results.analysis.schemas import (
     ColumnView,
     DashboardAsked,
@@ -32,7 +32,9 @@ def get_dashboard(
     The filter chooses sessions and rows before anything is drawn. One group of the figures is there
     sooner than all of them.
     """
-    return _answer(*context.drawings.dashboard(db, key, asked.kind, asked.filter, asked.group))
+    return _answer(
+        *context.part(Drawings).dashboard(db, key, asked.kind, asked.filter, asked.group)
+    )
 
 
 @router.get(
@@ -50,7 +52,7 @@ def get_figure_rows(
 ) -> Response:
     """The rows that a figure is drawn from, as CSV; comment lines above them say what they are."""
     study_by_key(db, key)
-    body = context.drawings.sheet(key, asked.kind, asked.filter, figure)
+    body = context.part(Drawings).sheet(key, asked.kind, asked.filter, figure)
     now = context.clock.utc_now()
     # People's data leave the database: whoever must erase them has to know.
     with context.database.writing() as writing:
@@ -90,7 +92,7 @@ def get_statistics(
 
     It takes no filter: what is tested is not chosen after looking.
     """
-    return _answer(*context.drawings.statistics(db, key, kind))
+    return _answer(*context.part(Drawings).statistics(db, key, kind))
 
 
 @router.get("/studies/{key}/codebook")

@@ -14,12 +14,14 @@ from concurrent.futures import CancelledError, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Self
 
 from app.clock import Clock
 from app.errors import NotFound, NotNow
 from app.features.results.exports.jobs import KEPT, Job
 from app.features.results.exports.orders import Made, NotMade, Order, make_archive
 from app.features.results.exports.schemas import ExportTrouble, ExportView
+from app.platform.context import AppContext, Part
 
 log = logging.getLogger(__name__)
 AT_ONCE = 5
@@ -31,7 +33,7 @@ ENDED = NotMade(
 
 
 @dataclass(eq=False)
-class ExportDesk:
+class ExportDesk(Part):
     """Safe from any thread. `keep_free_bytes` of the disk are never written to."""
 
     folder: Path
@@ -44,11 +46,22 @@ class ExportDesk:
         default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="exports")
     )
 
-    def begin(self) -> None:
+    @classmethod
+    def of(cls, context: AppContext) -> Self:
+        """The exports of a server's studies, in its scratch folder."""
+        settings = context.settings
+        return cls(
+            settings.scratch_dir / "exports",
+            settings.resolved_database_url,
+            context.clock,
+            settings.low_disk_bytes,
+        )
+
+    def start(self) -> None:
         """Remove what an earlier run left."""
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Stop whatever is made, and remove every file."""
         self._drop(lambda _: True)
         self._maker.shutdown(wait=True, cancel_futures=True)
@@ -74,7 +87,7 @@ class ExportDesk:
             self._maker.submit(self._make, job)
             return self._view(job)
 
-    def of(self, owner: str) -> list[ExportView]:
+    def exports_of(self, owner: str) -> list[ExportView]:
         """A person's exports, newest first."""
         self._forget_old()
         with self._lock:

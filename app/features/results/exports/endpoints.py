@@ -7,8 +7,8 @@ from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
-from app.features.care.rights.service import in_browser_of, record_copy, sessions_in
 from app.features.design.studies.service import study_by_key
+from app.features.people.audit.copies import in_browser_of, record_copy, sessions_in
 from app.features.people.audit.service import record
 from app.features.results.analysis.schemas import Kind
 from app.features.results.exports.names import archive_name

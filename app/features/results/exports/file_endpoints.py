@@ -6,10 +6,11 @@ from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
 from app.errors import NotFound, NotNow
-from app.features.care.rights.service import in_browser_of, record_copy
 from app.features.design.studies.service import study_by_key
+from app.features.people.audit.copies import in_browser_of, record_copy
 from app.features.people.audit.service import record
 from app.features.record.sessions.service import session_by_id
+from app.features.results.exports.desk import ExportDesk
 from app.features.results.exports.jobs import Job
 from app.features.results.exports.names import archive_name
 from app.features.results.exports.schemas import ExportView, ExportWish
@@ -37,27 +38,27 @@ def post_export(
         session_id=wish.session_id,
         file_name=archive_name(study.key, what, now.date()),
         asked_at=now,
-        folder=context.exports.folder,
+        folder=context.part(ExportDesk).folder,
     )
-    return context.exports.order(job)
+    return context.part(ExportDesk).order(job)
 
 
 @router.get("/exports")
 def get_exports(context: Context, caller: SignedIn) -> list[ExportView]:
     """The caller's exports, newest first: waiting, under way, ready or failed."""
-    return context.exports.of(caller.account_id)
+    return context.part(ExportDesk).exports_of(caller.account_id)
 
 
 @router.get("/exports/{export_id}")
 def get_one_export(export_id: str, context: Context, caller: SignedIn) -> ExportView:
     """How far one is."""
-    return context.exports.view(caller.account_id, export_id)
+    return context.part(ExportDesk).view(caller.account_id, export_id)
 
 
 @router.delete("/exports/{export_id}", status_code=204)
 def delete_export(export_id: str, context: Context, caller: SignedIn) -> None:
     """Stop making it, or remove the file."""
-    context.exports.cancel(caller.account_id, export_id)
+    context.part(ExportDesk).cancel(caller.account_id, export_id)
 
 
 @router.get(
@@ -91,7 +92,7 @@ def _code_of(db: Session, study_id: str, wish: ExportWish) -> str:
 
 
 def _ready(context: AppContext, caller: Caller, export_id: str) -> Job:
-    job = context.exports.find(caller.account_id, export_id)
+    job = context.part(ExportDesk).find(caller.account_id, export_id)
     # Whoever lost the study since loses its files too.
     with context.database.reading() as db:
         require_object(db, caller, "/api/studies/{key}", {"key": job.study_key})

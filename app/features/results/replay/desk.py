@@ -6,18 +6,25 @@ threads compute meanwhile. In a process of its own it would begin a second later
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from typing import Self
 
 from app.database import Database
+from app.platform.context import AppContext, Part
 
 
 @dataclass
-class ReplayDesk:
+class ReplayDesk(Part):
     """Places the movement of one phase after the other."""
 
     database: Database
     _pool: ThreadPoolExecutor = field(
         default_factory=lambda: ThreadPoolExecutor(1, thread_name_prefix="replays")
     )
+
+    @classmethod
+    def of(cls, context: AppContext) -> Self:
+        """The replays of a server's sessions."""
+        return cls(context.database)
 
     def movement(self, session_id: str, phase_id: int, *, full: bool) -> bytes:
         """The bytes of `app.features.results.replay.movement`; waits for them."""
@@ -27,6 +34,6 @@ class ReplayDesk:
         placing = self._pool.submit(placed_movement, self.database, session_id, phase_id, full=full)
         return placing.result()
 
-    def end(self) -> None:
+    def stop(self) -> None:
         """Finish the phase under way; whoever waits for another is refused."""
         self._pool.shutdown(wait=True, cancel_futures=True)

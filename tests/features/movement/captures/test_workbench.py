@@ -26,7 +26,7 @@ def bench() -> Iterator[Workbench]:
     """A process with a small memory."""
     bench = Workbench(_worker=Worker(limit_to_little))
     yield bench
-    bench.end()
+    bench.stop()
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from app.features.movement.walking import bench, desk
+from app.features.movement.walking.desk import FittingDesk
 from app.platform.workers import Worker
 from tests.features.lab import Lab
 
@@ -30,5 +31,5 @@ def _one_process() -> Iterator[None]:
 @pytest.fixture(scope="module")
 def walking_lab(lab: Lab, tmp_path_factory: pytest.TempPathFactory) -> Lab:
     """The module's application; its fits have a folder of their own."""
-    lab.context.fits.folder = Path(tmp_path_factory.mktemp("fits"))
+    lab.context.part(FittingDesk).folder = Path(tmp_path_factory.mktemp("fits"))
     return lab

@@ -12,9 +12,10 @@ from sqlalchemy import text
 
 from app.clock import Clock
 from app.errors import NotSignedIn
-from app.features.people.accounts.service import account_of_token, issue_token
+from app.features.people.accounts.service import issue_token
 from app.main import create_app
 from app.models import Account
+from app.platform.tokens import account_of_token
 from app.settings import Settings
 from tests.features.lab import PASSWORD, Lab, error, ok, running_lab
 

@@ -197,7 +197,7 @@ def test_phases_of_an_older_version_get_their_courses_at_the_start(
         store_movement(db, moved, 0.125)
         store_movement(db, later, 0.125, epoch=2)
     summariser = Summariser(lab.context)
-    summariser.catch_up()
+    summariser.start()
     give_up_s = time.monotonic() + WITHIN_S
     while time.monotonic() < give_up_s and not _stored(lab, later):
         time.sleep(0.05)

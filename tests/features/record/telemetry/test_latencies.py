@@ -41,7 +41,7 @@ def phases(lab: Lab, session_id: str) -> dict[float, Phase]:
 def summarise(lab: Lab, *expected: Phase) -> dict[int, PhaseLatency]:
     """Start as after a crash, wait for the rows of these phases, and give them back."""
     summariser = Summariser(lab.context)
-    summariser.catch_up()
+    summariser.start()
     wanted = {phase.phase_id for phase in expected}
     rows: dict[int, PhaseLatency] = {}
     deadline_s = time.monotonic() + 30.0

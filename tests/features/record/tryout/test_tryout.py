@@ -2,10 +2,10 @@
 
 import time
 
-from app.features.people.accounts.service import hash_token
 from app.features.record.tryout.desk import TryoutDesk
 from app.models import Account, LoginToken
 from app.platform.access import Caller
+from app.platform.tokens import hash_token
 from tests.features.lab import STUDY, Json, Lab, error, ok
 
 WITHIN_S = 60.0
@@ -33,8 +33,8 @@ def test_it_fails_in_words_and_leaves_nothing_behind(fresh_lab: Lab) -> None:
     with lab.database.reading() as db:
         account = db.query(Account).filter_by(username="admin").one()
     caller = Caller(account.id, account.username, account.role)
-    desk = lab.context.tryout
-    desk.start(caller, STUDY, "en", NOBODY)
+    desk = lab.context.part(TryoutDesk)
+    desk.begin(caller, STUDY, "en", NOBODY)
     again = lab.operator.post(f"/api/studies/{STUDY}/tryout", json={"language": "en"})
     refusal = error(again, 409, "conflict")
     assert "one at a time" in refusal["valid"]

@@ -12,6 +12,7 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
+from app.features.results.exports.desk import ExportDesk
 from app.features.results.exports.jobs import KEPT
 from app.features.results.exports.service import study_archive
 from app.models import CopyMade
@@ -68,7 +69,7 @@ def _until(client: TestClient, export_id: str, *states: str) -> Json:
 
 
 def _folder(lab: Lab) -> list[str]:
-    folder = lab.context.exports.folder
+    folder = lab.context.part(ExportDesk).folder
     return sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
 
 
@@ -128,7 +129,7 @@ def test_one_session_alone_for_whoever_asked(small_site: Lab) -> None:
         answer = colleague.request(method, f"/api/exports/{done['id']}{path}")
         error(answer, 404, "not_found")
     # It goes two hours after somebody last asked for it.
-    job = small_site.context.exports.find(_account(client), done["id"])
+    job = small_site.context.part(ExportDesk).find(_account(client), done["id"])
     assert job.fetched_at is not None
     job.fetched_at -= KEPT
     assert ok(client.get("/api/exports")) == []
@@ -145,7 +146,7 @@ def test_what_is_cancelled_ends_at_once_and_leaves_nothing(
         stuck = _order(client)
         # Asked for again while it is under way, it is the same one.
         assert _order(client)["id"] == stuck["id"]
-        pid_file = small_site.context.exports.folder / f"{stuck['id']}.pid"
+        pid_file = small_site.context.part(ExportDesk).folder / f"{stuck['id']}.pid"
         give_up_s = time.monotonic() + WITHIN_S
         while not pid_file.exists() and time.monotonic() < give_up_s:
             time.sleep(0.05)
@@ -175,7 +176,7 @@ def test_a_file_goes_with_an_erasure(small_site: Lab) -> None:
 
 def test_a_disk_that_is_nearly_full_is_left_alone(small_site: Lab) -> None:
     """The export fails in words, and nothing of it stays; running sessions keep their room."""
-    small_site.context.exports.keep_free_bytes = 2**60
+    small_site.context.part(ExportDesk).keep_free_bytes = 2**60
     client = small_site.operator
     failed = _until(client, _order(client)["id"], "ready", "failed")
     assert failed["state"] == "failed"

@@ -20,9 +20,9 @@ from sqlalchemy import select
 from sqlalchemy.exc import DBAPIError
 
 from app.database import Database
-from app.features.care.opening.service import backups_of
-from app.features.care.rights.traces import TOUCHED
+from app.features.record.erasure.traces import TOUCHED
 from app.models import ImportedForm, Participant, StudySession
+from app.platform.folders import home_of
 from app.settings import Settings
 
 log = logging.getLogger(__name__)
@@ -82,7 +82,7 @@ def _anew(database: Database, *, starting: bool) -> bool:
 
 
 def _marker(settings: Settings) -> Path:
-    return backups_of(settings).parent / MARKER
+    return home_of(settings) / MARKER
 
 
 def _sqlite(database: Database, *, starting: bool) -> bool:

@@ -1,0 +1,5 @@
+"""Tests over HTTP use the laboratory of the features' tests."""
+
+from tests.features.conftest import fresh_lab, lab
+
+__all__ = ["fresh_lab", "lab"]
