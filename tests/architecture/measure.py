@@ -9,10 +9,11 @@ upward_imports, floors
     `app/platform`. An arrow leads from one room to another that it imports, and weighs as many
     pairs of files as import each other across. The rooms are ordered so that as few arrows as can
     be found run back up (of such orders, with the fewest imports): where the arrows form no loop,
-    none do. `upward_imports` is the imports of those that do. Set these aside, and a room stands
-    one floor above the highest room that it imports, on floor 1 if it imports none; `floors` is
-    how many there are. Where a room is a wing (`WINGS`), the features inside it are rooms in the
-    same way: their upward imports are added, their floors are told wing by wing.
+    none do. Where all of them are wings (`WINGS`) and the platform, their order is given. The
+    `upward_imports` are the imports of the arrows that run back up. Set these aside, and a room
+    stands one floor above the highest room that it imports, on floor 1 if it imports none;
+    `floors` is how many there are. Where a room is a wing (`WINGS`), the features inside it
+    are rooms in the same way: their upward imports are added, their floors are told wing by wing.
 files_le_50
     Python files of `app`, without `__init__.py`, of at most 50 physical lines.
 code_lines
@@ -181,11 +182,14 @@ def layering(between: Arrows, every: Iterable[str]) -> Layering:
     """Put rooms on floors.
 
     The best order is sought by moving one room at a time to its best place until no move helps
-    (sifting). It starts with the rooms that import most others, then by name, so that the same
-    tree always gives the same floors.
+    (sifting), unless the order of wings and platform is given. It starts with the rooms that import
+    most others, then by name, so that the same tree always gives the same floors.
     """
     start = sorted(every, key=lambda room: (-sum(here == room for here, _ in between), room))
+    given = [*(f"{FEATURES}/{wing}" for wing in WINGS), PLATFORM]
     order = sifted(start, between)
+    if set(start) <= set(given):
+        order = [room for room in given if room in start]
     place = {room: at for at, room in enumerate(order)}
     upward = [
         pair

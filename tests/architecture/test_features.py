@@ -46,14 +46,14 @@ ALSO = {
 
 def imports() -> Iterator[tuple[str, str, str]]:
     """(importing file, other feature, its module) for every import across features."""
-    for file in sorted(FEATURES.glob("*/**/*.py")):
-        own = file.relative_to(FEATURES).parts[0]
+    for file in sorted(FEATURES.glob("*/*/**/*.py")):
+        own = file.relative_to(FEATURES).parts[1]
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if not isinstance(node, ast.ImportFrom) or node.module is None:
                 continue
             parts = node.module.split(".")
-            if parts[:2] == ["app", "features"] and len(parts) > 3 and parts[2] != own:
-                yield str(file.relative_to(FEATURES)), parts[2], parts[3]
+            if parts[:2] == ["app", "features"] and len(parts) > 4 and parts[3] != own:
+                yield str(file.relative_to(FEATURES)), parts[3], parts[4]
 
 
 def test_a_feature_uses_only_what_another_offers() -> None:

@@ -15,8 +15,8 @@ from tests.architecture.trees import REPOSITORY
 LIMITS = MappingProxyType(
     {
         "circles": 12,
-        "upward_imports": 22,
-        "floors": 15,
+        "upward_imports": 24,
+        "floors": 7,
         "files_le_50": 147,
     }
 )
@@ -152,8 +152,8 @@ def test_wings_are_looked_into_and_stand_on_the_platform(build: Build) -> None:
     }
     assert found.floors_inside_wings == {"care": 2, "record": 2}
     assert found.upward_inside_wings == {"care": 0, "record": 1}
-    # One pair of files each way: which of the two is the upward one is the order's choice.
     assert found.upward_imports == 2
+    assert ("app/platform/live.py", "app/features/care/network.py") in found.upward_import_list
     assert ("app/features/record/tablet/help.py", "app/features/record/sessions/view.py") in (
         found.upward_import_list
     )
