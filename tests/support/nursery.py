@@ -8,7 +8,7 @@ installed script does, and can be killed like any other process.
 
     test process --(a socket, one message a request)--> nursery --(fork)--> `reembody serve ...`
 
-Whether the script itself starts is seen by tests/lan and tests/house, which run it.
+Whether the script itself starts is seen by tests/lan and tests/architecture, which run it.
 """
 
 import json

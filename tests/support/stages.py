@@ -95,7 +95,7 @@ def stages(*, long: bool) -> list[Stage]:
             "-m",
             "not browser",
             "--ignore",
-            "tests/house",
+            "tests/architecture",
             "--ignore",
             BROWSER_TESTS,
             *also_long,
@@ -103,7 +103,7 @@ def stages(*, long: bool) -> list[Stage]:
         pytest_stage(
             "browser tests", "-n", WORKERS, "--dist", "loadfile", BROWSER_TESTS, *also_long
         ),
-        pytest_stage("house checks", "tests/house", *also_long),
+        pytest_stage("architecture", "tests/architecture", *also_long),
     ]
 
 

@@ -1,0 +1,183 @@
+"""The house keeps its shape: limits for the tree that stands here, and the measure's own laws."""
+
+from collections.abc import Callable
+from pathlib import Path
+from types import MappingProxyType
+
+import pytest
+
+from tests.architecture.imports import circles, python_imports, typescript_imports
+from tests.architecture.measure import Measure, layering, measure
+from tests.architecture.measure import python_code_lines as python_lines
+from tests.architecture.measure import typescript_code_lines as typescript_lines
+from tests.architecture.trees import REPOSITORY
+
+LIMITS = MappingProxyType(
+    {
+        "circles": 12,
+        "upward_imports": 24,
+        "floors": 7,
+        "files_le_50": 147,
+    }
+)
+"""The most that the tree may have; `tests.architecture.measure` says of what."""
+Build = Callable[[dict[str, str]], Path]
+
+
+@pytest.fixture(scope="module")
+def present() -> Measure:
+    """The tree that stands here."""
+    return measure(REPOSITORY)
+
+
+@pytest.fixture
+def build(tmp_path: Path) -> Build:
+    """Makes a small tree of files with these contents."""
+
+    def built(files: dict[str, str]) -> Path:
+        for folder in ("app/features", "frontend/src"):
+            (tmp_path / folder).mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_text(text, encoding="utf-8")
+        return tmp_path
+
+    return built
+
+
+@pytest.mark.parametrize("figure", LIMITS)
+def test_the_house_stays_within_its_limits(present: Measure, figure: str) -> None:
+    """Neither circles nor imports that run back up nor floors nor fragments become more."""
+    assert getattr(present, figure) <= LIMITS[figure]
+
+
+def test_every_import_counts_wherever_it_stands(build: Build) -> None:
+    """A lazy import, one for types alone, a relative one and a whole package close circles."""
+    root = build(
+        {
+            "app/__init__.py": "",
+            "app/a.py": "def f():\n    import app.b\n",
+            "app/b.py": "import typing\nif typing.TYPE_CHECKING:\n    from app import a",
+            "app/room/__init__.py": "from .inner import X",
+            "app/room/inner.py": "from app.room import Y\nfrom .. import a",
+        }
+    )
+    graph = python_imports(root)
+    assert graph["app/room/inner.py"] == {"app/room/__init__.py", "app/a.py"}
+    assert circles(graph) == [
+        ["app/a.py", "app/b.py"],
+        ["app/room/__init__.py", "app/room/inner.py"],
+    ]
+
+
+def test_a_module_is_not_its_package(build: Build) -> None:
+    """To import a module is no import of the `__init__` above it, nor is a name in a text."""
+    root = build(
+        {
+            "app/room/__init__.py": "from app.room.inner import X",
+            "app/room/inner.py": '"""from app.room import X"""\nfrom app.room.other import Y',
+            "app/room/other.py": "from app.room import inner",
+        }
+    )
+    assert circles(python_imports(root)) == [["app/room/inner.py", "app/room/other.py"]]
+
+
+def test_pages_import_each_other_in_every_form(build: Build) -> None:
+    """Types, re-exports, `import()`, aliases and folders count; tests and comments do not."""
+    root = build(
+        {
+            "frontend/src/a.ts": 'import type {\n  B,\n} from "./b";\nimport "./style.css";',
+            "frontend/src/b.ts": 'export { C } from "@shared/c";',
+            "frontend/src/shared/c.tsx": 'const page = lazy(() => import("../folder"));',
+            "frontend/src/folder/index.ts": '// import "../a";\nexport const one = 1;',
+            "frontend/src/a.test.ts": 'import "./a";',
+        }
+    )
+    assert typescript_imports(root) == {
+        "frontend/src/a.ts": {"frontend/src/b.ts"},
+        "frontend/src/b.ts": {"frontend/src/shared/c.tsx"},
+        "frontend/src/shared/c.tsx": {"frontend/src/folder/index.ts"},
+        "frontend/src/folder/index.ts": set(),
+    }
+
+
+def test_circles_are_found_whole_and_apart() -> None:
+    """Two loops that share a node are one circle; one that merely leads to another is not."""
+    graph = {
+        "a": {"b", "c"},
+        "b": {"a"},
+        "c": {"a", "d"},
+        "d": {"e"},
+        "e": {"d", "alone"},
+        "alone": set[str](),
+    }
+    assert circles(graph) == [["a", "b", "c"], ["d", "e"]]
+
+
+def test_rooms_without_a_loop_stand_above_all_that_they_import() -> None:
+    """Nothing runs back up, and a room stands no higher than it must."""
+    pair = [("file", "file")]
+    found = layering({("a", "b"): pair, ("b", "c"): pair, ("a", "c"): pair}, "abcd")
+    assert found.upward == []
+    assert found.floor_of == {"a": 3, "b": 2, "c": 1, "d": 1}
+
+
+def test_the_lighter_arrow_of_a_loop_runs_back_up() -> None:
+    """Of two arrows the one with fewer imports is set aside, and its imports are named."""
+    down = [("a/1", "b/1"), ("a/2", "b/1")]
+    found = layering({("a", "b"): down, ("b", "a"): [("b/2", "a/1")]}, "ab")
+    assert found.upward == [("b/2", "a/1")]
+    assert found.floor_of == {"a": 2, "b": 1}
+
+
+def test_wings_are_looked_into_and_stand_on_the_platform(build: Build) -> None:
+    """The platform is a floor; what it imports of a wing, and a loop in a wing, run back up."""
+    root = build(
+        {
+            "app/features/__init__.py": "",
+            "app/features/care/rights/service.py": "import app.features.care.network",
+            "app/features/care/network.py": "import app.platform.live",
+            "app/features/record/sessions/view.py": "import app.features.record.tablet.help\n"
+            "import app.features.record.tablet.call\nimport app.platform.live",
+            "app/features/record/tablet/help.py": "import app.features.record.sessions.view",
+            "app/features/record/tablet/call.py": "import app.platform.live",
+            "app/platform/live.py": "def lazily():\n    import app.features.care.network",
+        }
+    )
+    found = measure(root)
+    assert found.rooms == {
+        "app/features/care": 2,
+        "app/features/record": 2,
+        "app/platform": 1,
+    }
+    assert found.floors_inside_wings == {"care": 2, "record": 2}
+    assert found.upward_inside_wings == {"care": 0, "record": 1}
+    assert found.upward_imports == 2
+    assert ("app/platform/live.py", "app/features/care/network.py") in found.upward_import_list
+    assert ("app/features/record/tablet/help.py", "app/features/record/sessions/view.py") in (
+        found.upward_import_list
+    )
+
+
+def test_small_files_are_counted_by_physical_lines(build: Build) -> None:
+    """Fifty lines are small, fifty-one are not, and a package's face is no fragment."""
+    root = build(
+        {
+            "app/__init__.py": "",
+            "app/fifty.py": "a = 1\n" * 50,
+            "app/more.py": "a = 1\n" * 51,
+            "frontend/src/one.ts": "export const one = 1;\n",
+            "frontend/src/one.test.ts": "export const two = 2;\n",
+        }
+    )
+    found = measure(root)
+    assert (found.files_le_50, found.files_le_50_typescript) == (1, 1)
+    assert found.code_lines == 50 + 51 + 1
+
+
+def test_code_is_neither_blank_nor_comment_nor_docstring() -> None:
+    """A text that is a value is code, line by line; one that stands alone is not."""
+    python = '"""A.\n\nB."""\n\nx = """a\n\n  b"""  # why\n# why\n"""Of x."""\ny = [\n    x,\n]\n'
+    assert python_lines(python) == 5
+    typescript = "/** A.\n * B.\n */\nconst a = 1; // why\n\n// why\n{/* in JSX */}\nconst b = a;\n"
+    assert typescript_lines(typescript) == 2

@@ -1,0 +1,54 @@
+"""The four walks arrive on the tree that stands here, and are counted as they say."""
+
+import sys
+import types
+from pathlib import Path
+
+import app
+from tests.architecture.drive import Recorder
+from tests.architecture.trees import REPOSITORY
+from tests.architecture.walks import Walk, walk_of, walks
+
+OURS = Path(app.__file__).parent
+
+
+def test_a_way_there_and_back_is_one_return() -> None:
+    """What a loop repeats counts once; files are named in the order of their first entry."""
+    assert walk_of(["a", "b", "c", "b", "c", "b", "a"]) == Walk(["a", "b", "c"], 4, 2)
+    assert walk_of([]) == Walk([], 0, 0)
+
+
+def test_functions_are_noted_when_they_are_called() -> None:
+    """A generator once, not each time it goes on; other people's code not at all."""
+    recorder = Recorder()
+    spaces = [_module("one", OURS / "one.py"), _module("two", OURS / "two.py")]
+    spaces.append(_module("three", OURS.parent / "three.py"))
+    one, two, three = (space["numbers"] for space in spaces)
+    before = sys.getprofile()
+    sys.setprofile(recorder.profile)
+    try:
+        with recorder.recording():
+            for _ in zip(one(), two(), three(), strict=True):
+                pass
+        list(one())
+    finally:
+        sys.setprofile(before)
+    assert recorder.taken() == ["app/one.py", "app/two.py"]
+
+
+def _module(name: str, file: Path) -> dict[str, types.FunctionType]:
+    space: dict[str, types.FunctionType] = {}
+    source = "def numbers():\n    yield 1\n    yield 2\n"
+    exec(compile(source, str(file), "exec"), space)  # noqa: S102  # a function of a made-up file
+    return space
+
+
+def test_the_four_walks_arrive() -> None:
+    """A frame in its CSV, an answer at its score, a command in the log, a capture as BVH."""
+    walked = walks(REPOSITORY, rounds=1)
+    assert set(walked) == {"frame to CSV", "answer to score", "command to event", "capture to BVH"}
+    for name, walk in walked.items():
+        assert [file for file in walk.files if not (REPOSITORY / file).is_file()] == []
+        assert 0 < walk.returns < walk.steps
+        first = walk.files[0]
+        assert first.startswith("app/wire/" if name == "frame to CSV" else "app/api/")
