@@ -15,9 +15,9 @@ from tests.architecture.trees import REPOSITORY
 LIMITS = MappingProxyType(
     {
         "circles": 12,
-        "upward_imports": 24,
+        "upward_imports": 10,
         "floors": 7,
-        "files_le_50": 147,
+        "files_le_50": 148,
     }
 )
 """The most that the tree may have; `tests.architecture.measure` says of what."""
