@@ -1,10 +1,9 @@
 """Every route of the application, in one place."""
 
-import asyncio
 from datetime import datetime
 from typing import Any, Literal
 
-from fastapi import APIRouter, FastAPI, WebSocket
+from fastapi import APIRouter, FastAPI
 from pydantic import BaseModel
 from sqlalchemy import text
 
@@ -25,20 +24,17 @@ from app.features.people.accounts.people_endpoints import router as people
 from app.features.people.audit.endpoints import router as audit
 from app.features.record.alarms.endpoints import router as alarms
 from app.features.record.calibrations.endpoints import router as calibrations
+from app.features.record.cockpit.endpoints import router as sessions
+from app.features.record.cockpit.watching import router as watching
 from app.features.record.devices.endpoints import router as devices
-from app.features.record.headset.avatar_endpoints import router as avatar_of_session
-from app.features.record.headset.socket import serve_headset
+from app.features.record.headset.endpoints import router as headset
 from app.features.record.ledger.endpoints import router as participants
 from app.features.record.poses.endpoints import router as poses
 from app.features.record.preflight.endpoints import router as preflight
 from app.features.record.receipts.endpoints import router as receipts
-from app.features.record.sessions.consent_endpoints import router as consents
-from app.features.record.sessions.endpoints import router as sessions
-from app.features.record.sessions.watching import router as watching
 from app.features.record.suggestions.endpoints import router as suggestions
-from app.features.record.tablet.call_endpoints import router as calls
+from app.features.record.tablet.endpoints import calls
 from app.features.record.tablet.endpoints import router as tablet
-from app.features.record.telemetry.writer import TelemetryWriter
 from app.features.record.tryout.endpoints import router as tryout
 from app.features.results.analysis.endpoints import router as analysis
 from app.features.results.exports.endpoints import router as exports
@@ -46,7 +42,6 @@ from app.features.results.exports.file_endpoints import router as export_files
 from app.features.results.imports.endpoints import router as imports
 from app.features.results.preregistration.endpoints import router as preregistrations
 from app.features.results.replay.endpoints import router as replays
-from app.platform.context import AppContext
 from app.platform.dependencies import API_PREFIX, Context
 
 
@@ -97,7 +92,7 @@ def add_routes(app: FastAPI) -> None:
         # Looked through in this order: what comes in crowds first.
         *(tablet, sessions, watching),
         *(accounts, people, audit, studies, instruments, participants),
-        *(devices, calls, avatar_of_session, alarms, consents, suggestions, calibrations),
+        *(devices, calls, headset, alarms, suggestions, calibrations),
         *(analysis, exports, receipts, rights, network, captures, on_avatars, avatars),
         *(
             humanoids,
@@ -116,7 +111,6 @@ def add_routes(app: FastAPI) -> None:
         app.include_router(part, prefix=API_PREFIX, responses=REFUSALS)
     own = APIRouter()
     own.add_api_route("/health", get_health, methods=["GET"], tags=["health"])
-    own.add_api_websocket_route("/vr/stream", vr_stream)
     app.include_router(own, prefix=API_PREFIX, responses=REFUSALS)
 
 
@@ -134,13 +128,3 @@ def get_health(context: Context) -> Health:
         storage_reason=storage.reason,
         low_disk=storage.low_disk,
     )
-
-
-async def vr_stream(socket: WebSocket) -> None:
-    """The headset's socket; see docs/protocol.md."""
-    context: AppContext = socket.app.state.context
-    writer = context.part(TelemetryWriter)
-    try:
-        await serve_headset(socket, context, writer)
-    except asyncio.CancelledError:
-        return

@@ -7,7 +7,7 @@ there, so its address tells nothing.
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, Select, select, true
+from sqlalchemy import ColumnElement, Select, bindparam, select, true
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
@@ -24,6 +24,8 @@ from app.models import (
 from app.protocol import StudyProtocol
 
 OVER = ("completed", "aborted", "withdrawn")
+_BY_ID = select(StudySession).where(StudySession.id == bindparam("session_id"))
+_LOCKED_BY_ID = _BY_ID.with_for_update(key_share=True)
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,14 @@ def require_object(db: Session, caller: Caller, template: str, params: Mapping[s
             found = studies.where(_KEYS[name] == params[name], is_theirs(caller))
             if db.scalar(found) is None:
                 raise NotFound(f"there is no such {what}", value=params[name])
+
+
+def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudySession:
+    """The session; `lock` makes writers of the same session queue. Raises NotFound."""
+    session = db.scalar(_LOCKED_BY_ID if lock else _BY_ID, {"session_id": session_id})
+    if session is None:
+        raise NotFound("there is no such session", value=session_id)
+    return session
 
 
 def is_blind(

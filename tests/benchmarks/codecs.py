@@ -12,9 +12,8 @@ import zstandard
 from numpy.typing import NDArray
 
 from app.features.record.telemetry.encodings import f32_columns, f32_predicted
-from app.features.record.telemetry.encodings.byte_planes import from_planes, to_planes
-from app.features.record.telemetry.encodings.columns import Columns
-from app.features.record.telemetry.encodings.differences import best_differences, summed
+from app.features.record.telemetry.encodings.columns import Columns, from_planes, to_planes
+from app.features.record.telemetry.encodings.integers import best_differences, summed
 from app.features.record.telemetry.encodings.unit_quaternions import LeftOut, choose
 
 Bits = NDArray[np.uint32]

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.record.telemetry.encodings.bit_fields import pack, unpack
 from app.features.record.telemetry.encodings.columns import Columns
-from app.features.record.telemetry.encodings.differences import best_differences, summed
+from app.features.record.telemetry.encodings.integers import best_differences, pack, summed, unpack
 from app.features.record.telemetry.encodings.significands import (
     Significands,
     cut,

@@ -18,7 +18,7 @@ import pytest
 
 from app.database import open_database
 from app.features.record.sessions.journal import events_of, verify_chain
-from app.features.record.sessions.service import session_by_id
+from app.platform.access import session_by_id
 from tests.faults.commands import reembody
 from tests.faults.figures import note
 from tests.features.care.rights.visit import (

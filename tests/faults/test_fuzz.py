@@ -10,7 +10,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from app.errors import InvalidInput
-from app.features.record.headset.parsing import parse_message
+from app.features.record.headset.connection import parse_message
 from app.wire import MalformedBatchError, decode_batch, flag_frames
 from tests.faults.figures import note
 from tests.faults.streaming import pair_headsets, stream

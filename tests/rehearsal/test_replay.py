@@ -6,11 +6,11 @@ import pytest
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.record.sessions.service import session_by_id
 from app.features.results.replay.service import Replayable
 from app.features.results.replay.timeline import replay_of
 from app.features.results.replay.times import phase_clock
 from app.models import Completion, Contact, Phase
+from app.platform.access import session_by_id
 from tests.rehearsal.performed import PHASES, Performed
 
 US = 1e-6

@@ -11,7 +11,6 @@ from sqlalchemy.orm import Session
 from app.features.design.studies.service import protocol_of
 from app.features.record.headset.service import participant_info
 from app.features.record.sessions.journal import events_of, verify_chain
-from app.features.record.sessions.service import session_by_id
 from app.models import (
     Completion,
     Contact,
@@ -21,6 +20,7 @@ from app.models import (
     StudySession,
     StudyVersion,
 )
+from app.platform.access import session_by_id
 from app.science.tasks import (
     Command,
     CommandKind,

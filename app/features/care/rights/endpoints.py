@@ -30,8 +30,8 @@ from app.features.people.audit.service import record
 from app.features.record.erasure.overwriting import expect_erasure, overwrite
 from app.features.record.questionnaires.schemas import StoredAnswers
 from app.features.record.questionnaires.service import stored_answers
-from app.features.record.sessions.service import session_by_id
 from app.features.results.exports.desk import ExportDesk
+from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 

@@ -4,8 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from app.features.record.alarms.alarm import Condition
-from app.features.record.alarms.limits import WatchLimits
+from app.features.record.alarms.alarm import Condition, WatchLimits
 from app.wire import StreamName
 from app.wire.messages import Produced, StreamPosition
 

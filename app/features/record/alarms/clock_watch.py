@@ -4,8 +4,7 @@ from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from app.features.record.alarms.alarm import Condition
-from app.features.record.alarms.limits import WatchLimits
+from app.features.record.alarms.alarm import Condition, WatchLimits
 from app.wire.messages import Probed
 
 NANO = 1e-9

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from app.features.record.alarms.alarm import Condition
-from app.features.record.alarms.limits import WatchLimits
+from app.features.record.alarms.alarm import Condition, WatchLimits
 
 QUIET_S = 2.0
 LATE_S = 1.0

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.record.alarms.alarm import Condition
-from app.features.record.alarms.limits import WatchLimits
+from app.features.record.alarms.alarm import Condition, WatchLimits
 from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 from app.science.stream_quality import Examination, Memory, examine
 from app.wire import Batch, StreamName

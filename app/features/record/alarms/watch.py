@@ -4,10 +4,16 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.features.record.alarms.alarm import Alarm, AlarmBook, Change, Condition, Moment
+from app.features.record.alarms.alarm import (
+    Alarm,
+    AlarmBook,
+    Change,
+    Condition,
+    Moment,
+    WatchLimits,
+)
 from app.features.record.alarms.backlog_watch import BacklogWatch
 from app.features.record.alarms.clock_watch import ClockWatch
-from app.features.record.alarms.limits import WatchLimits
 from app.features.record.alarms.silence_watch import SilenceWatch
 from app.features.record.alarms.stream_watch import StreamWatch
 from app.wire import Batch, StreamName

@@ -5,8 +5,8 @@ from fastapi import APIRouter, Request, Response
 from app.features.people.audit.service import record
 from app.features.record.devices.schemas import NewPairing, PairedView, PairingView, PairRequest
 from app.features.record.devices.service import new_code, pair, revoke
-from app.features.record.sessions.service import session_by_id
 from app.lan.qr import qr_svg
+from app.platform.access import session_by_id
 from app.platform.cookies import set_cookie
 from app.platform.dependencies import TABLET_COOKIE, Context, SignedIn, Writing
 

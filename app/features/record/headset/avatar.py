@@ -7,19 +7,21 @@ the participant's measures, so it is content beside the event log and goes with 
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated
 
+from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput
 from app.features.movement.avatar.service import configuration_by_hash
 from app.features.movement.humanoids.service import figure_by_hash
-from app.features.record.headset.avatar_schemas import AvatarWish, SessionAvatar
 from app.features.record.sessions.capture import require_capture
 from app.features.record.sessions.contents import content_body, contents_of, store_content
 from app.features.record.sessions.engine.commands import RecordAvatar
-from app.features.record.sessions.service import apply_command, protocol_of_session, session_by_id
+from app.features.record.sessions.service import apply_command, protocol_of_session
+from app.platform.access import session_by_id
 from app.platform.context import AppContext
-from app.protocol.avatar import file_of
+from app.protocol.avatar import AvatarFile, file_of
 from app.protocol.tasks import Tasks
 from app.science.avatar.body.figure import Figure
 from app.science.avatar.body.proportions import BodyError
@@ -27,6 +29,41 @@ from app.science.avatar.configuration.configuration import Configuration
 from app.science.avatar.configuration.model_options import DEFAULT_OPTIONS
 from app.science.avatar.mjcf.model import AvatarModel, avatar_model
 from app.science.avatar.mjcf.scene import scene_of
+
+Length = Annotated[float, Field(gt=0.0, le=3.0, allow_inf_nan=False)]
+
+
+class AvatarWish(BaseModel):
+    """Whose body it is: the participant's stature, and what else was measured of it.
+
+    `segments_m`: lengths by the names of docs/avatar-configuration.md; the others follow from the
+    stature.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    stature_m: Annotated[float, Field(ge=0.5, le=2.6, allow_inf_nan=False)]
+    segments_m: Annotated[dict[str, Length], Field(max_length=40)] = {}
+
+
+class SessionAvatar(BaseModel):
+    """A physics avatar in its study's scene, to be simulated as it stands.
+
+    `mjcf` is the MuJoCo model with the boxes of all tasks, each named after its surface; the client
+    shows those of the present phase. `model_hash` is the SHA-256 of its bytes and
+    `configuration_hash` that of the configuration, both as they are on record. Added latency is set
+    while it runs, up to `longest_delay_s`. `standing_hips_m`: how high its hips are when it stands;
+    a model may have other legs than the participant, whose hips' height is scaled to it.
+    """
+
+    stature_m: float
+    configuration_hash: str
+    configuration: AvatarFile
+    model_hash: str
+    mjcf: str
+    longest_delay_s: float
+    standing_hips_m: float
+
 
 CONTENT = "avatar"
 """Kind of the contents that hold models."""

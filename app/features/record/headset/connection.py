@@ -10,15 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
 
+from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, Withdrawn
 from app.features.record.headset.lookout import Lookout
-from app.features.record.headset.parsing import parse_message
 from app.features.record.headset.service import headset_state, welcome
-from app.features.record.sessions.service import session_by_id
 from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
-from app.features.record.telemetry.outcome import Outcome
+from app.features.record.telemetry.positions import Outcome
 from app.features.record.telemetry.writer import (
     Arrival,
     BatchContent,
@@ -27,13 +26,16 @@ from app.features.record.telemetry.writer import (
     ProbeContent,
     TelemetryWriter,
 )
+from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.platform.hub import Subscription
 from app.platform.tokens import device_of_token
 from app.wire import decode_batch
 from app.wire.messages import (
+    CLIENT_MESSAGE,
     PROTOCOL_VERSION,
     Ack,
+    ClientMessages,
     Failure,
     HeadsetState,
     Hello,
@@ -45,6 +47,7 @@ from app.wire.messages import (
     Report,
     Welcome,
 )
+
 
 log = logging.getLogger(__name__)
 MAX_IN_FLIGHT = 64
@@ -250,3 +253,16 @@ class HeadsetConnection:
             self._loop.call_soon_threadsafe(function, told)
         except RuntimeError:  # the loop has closed: nobody is left to tell
             return
+
+
+def parse_message(text: str) -> ClientMessages:
+    """The client's message; raises InvalidInput with the first thing that does not fit."""
+    try:
+        return CLIENT_MESSAGE.validate_json(text)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        raise InvalidInput(
+            f"message not understood: {first['msg']} at {'.'.join(map(str, first['loc']))}",
+            value=text[:200],
+            remedy="See docs/protocol.md for the messages.",
+        ) from error

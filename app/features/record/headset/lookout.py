@@ -9,12 +9,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.features.record.alarms.alarm import Alarm, Change, Condition, Moment
-from app.features.record.alarms.limits import WatchLimits
+from app.features.record.alarms.alarm import Alarm, Change, Condition, Moment, WatchLimits
 from app.features.record.alarms.watch import QualityWatch
-from app.features.record.poses.service import PoseFeed
+from app.features.record.headset.poses import PoseFeed
 from app.features.record.telemetry.live import LiveTelemetry
-from app.features.record.telemetry.outcome import Outcome
+from app.features.record.telemetry.positions import Outcome
 from app.features.record.telemetry.writer import AlarmContent, Content, LossContent
 from app.platform.context import AppContext
 from app.wire import Batch

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from fastapi import APIRouter
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.schemas import AttemptView, LedgerView, SequenceRow, SlotRow
 from app.features.design.studies.service import newest_version, protocol_of, study_by_key
-from app.features.record.ledger.service import SlotView, ledger_of, planned_slots
-from app.features.record.sessions.schemas import Kind
-from app.features.record.sessions.service import end_reason
+from app.features.record.ledger.schemas import AttemptView, Kind, LedgerView, SequenceRow, SlotRow
+from app.features.record.ledger.service import SlotView, end_reason, ledger_of, planned_slots
 from app.platform.access import Caller, is_blind
 from app.platform.dependencies import Reading, SignedIn
 

@@ -6,6 +6,7 @@ aborted the attempt closes with its data and the same slot is the next to be tak
 counts completed sessions. People, simulated, test and expert sessions have ledgers of their own.
 """
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -14,11 +15,12 @@ from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict
-from app.features.record.ledger.codes import find_or_add_participant as find_or_add_participant
 from app.models import (
     Ledger,
     LedgerSlot,
     Participant,
+    SessionContent,
+    SessionEvent,
     SlotAttempt,
     Study,
     StudySession,
@@ -196,3 +198,15 @@ def planned_slots(protocol: StudyProtocol) -> Sequence[tuple[tuple[str, ...], in
     return [
         row for block in range(protocol.orders.replicates) for row in ledger_block(protocol, block)
     ]
+
+
+def end_reason(db: Session, session_id: str) -> str | None:
+    """Why a session was aborted or withdrawn, in the words of the lab; None once erased."""
+    ended = db.scalar(
+        select(SessionEvent).where(
+            SessionEvent.session_id == session_id, SessionEvent.type == "session_ended"
+        )
+    )
+    content_id = None if ended is None else json.loads(ended.payload)["content_id"]
+    content = db.get(SessionContent, content_id) if content_id else None
+    return None if content is None or content.body is None else str(json.loads(content.body))

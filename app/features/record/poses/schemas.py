@@ -2,27 +2,12 @@
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
+from app.features.record.headset.poses import Touch
 from app.science.tasks.names import SurfaceKind
 
 Vector = tuple[float, float, float]
-
-
-class Touch(BaseModel):
-    """A contact that is over, or a completed task (kind `completion`, without surface and part).
-
-    `number` is unique and grows: the epoch and seq of the headset's report.
-    """
-
-    model_config = ConfigDict(frozen=True)
-
-    number: tuple[int, int]
-    phase_id: int
-    kind: Literal["panel", "side", "target", "start", "completion"]
-    effect: str
-    surface: str | None = None
-    part: str | None = None
 
 
 class Touches(BaseModel):

@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from sqlalchemy.orm import Session
 
-from app.features.record.alarms.limits import WatchLimits
+from app.features.record.alarms.alarm import WatchLimits
 from app.features.record.alarms.service import open_alarms
 from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
 from app.features.record.preflight.schemas import Check

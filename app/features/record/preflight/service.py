@@ -18,9 +18,9 @@ from app.features.record.preflight.storage_checks import storage_checks
 from app.features.record.preflight.study_checks import study_checks
 from app.features.record.sessions.contents import content_body, contents_of, store_content
 from app.features.record.sessions.engine.commands import OverrideCheck
-from app.features.record.sessions.service import apply_command, session_by_id
+from app.features.record.sessions.service import apply_command
 from app.models import StudySession
-from app.platform.access import OVER
+from app.platform.access import OVER, session_by_id
 from app.platform.context import AppContext
 
 CONTENT = "preflight"

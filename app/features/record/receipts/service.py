@@ -11,8 +11,8 @@ from app.features.record.receipts.completions import CompletionReceipt, completi
 from app.features.record.receipts.latencies import LatencyReceipt, latency_receipts
 from app.features.record.receipts.streams import StreamReceipt, stream_receipts
 from app.features.record.sessions.journal import ChainCheck, events_of, verify_chain
-from app.features.record.sessions.service import session_by_id
 from app.models import Phase, Study, TelemetryBatch, TelemetryChunk
+from app.platform.access import session_by_id
 
 
 @dataclass(frozen=True)

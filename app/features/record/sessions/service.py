@@ -1,13 +1,13 @@
 """Running sessions: joining, and applying commands to the event log in one transaction."""
 
-import json
 import secrets
 from dataclasses import dataclass
+from functools import lru_cache
 
-from sqlalchemy import bindparam, select
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.errors import InvalidInput, NotFound, NotNow, StaleVersion
+from app.errors import InvalidInput, NotNow, StaleVersion
 from app.features.design.studies.service import (
     newest_version,
     protocol_of,
@@ -16,11 +16,8 @@ from app.features.design.studies.service import (
     version_content,
 )
 from app.features.movement.avatar.service import version_of
-from app.features.record.ledger.service import (
-    find_or_add_participant,
-    hold_slot,
-    take_slot,
-)
+from app.features.record.ledger.codes import find_or_add_participant
+from app.features.record.ledger.service import hold_slot, slot_of, take_slot
 from app.features.record.sessions.engine import (
     Command,
     Refused,
@@ -32,17 +29,38 @@ from app.features.record.sessions.engine import (
     state_to_json,
 )
 from app.features.record.sessions.journal import append_events
-from app.features.record.sessions.plans import plan_of as plan_of
 from app.features.record.sessions.projection import project
-from app.models import SessionContent, SessionEvent, StudySession
+from app.models import SessionEvent, StudySession, StudyVersion
 from app.models.ledger import KINDS
 from app.models.types import new_id
 from app.platform.context import AppContext
-from app.protocol import StudyProtocol
+from app.platform.immutable_cache import Unchanging
+from app.protocol import StudyProtocol, parse_study_json
+from app.protocol.plan import Step, compile_plan
+
+_plans: Unchanging[str, tuple[Step, ...]] = Unchanging(1024)
+
+
+def plan_of(db: Session, session: StudySession) -> tuple[Step, ...]:
+    """The procedure of this session: its protocol in its own order of conditions.
+
+    A session's version and slot never change, so neither does its plan.
+    """
+    return _plans.get(db, session.id, lambda: _read(db, session))
+
+
+def _read(db: Session, session: StudySession) -> tuple[Step, ...]:
+    version = db.get_one(StudyVersion, session.study_version_id)
+    slot = slot_of(db, session)
+    return _compiled(version.canonical_json, tuple(slot.sequence), slot.position % 2 == 1)
+
+
+@lru_cache(maxsize=256)
+def _compiled(canonical_json: str, sequence: tuple[str, ...], flip: bool) -> tuple[Step, ...]:  # noqa: FBT001 - a cache key
+    return compile_plan(parse_study_json(canonical_json), sequence, block_limb_flip=flip)
+
 
 MAX_TIME_SCALE = 100.0
-_BY_ID = select(StudySession).where(StudySession.id == bindparam("session_id"))
-_LOCKED_BY_ID = _BY_ID.with_for_update(key_share=True)
 
 
 @dataclass(frozen=True)
@@ -62,14 +80,6 @@ def protocol_of_session(db: Session, session: StudySession) -> StudyProtocol:
 def state_of(session: StudySession) -> SessionState:
     """The folded state, from the snapshot."""
     return state_from_json(session.snapshot)
-
-
-def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudySession:
-    """The session; `lock` makes writers of the same session queue. Raises NotFound."""
-    session = db.scalar(_LOCKED_BY_ID if lock else _BY_ID, {"session_id": session_id})
-    if session is None:
-        raise NotFound("there is no such session", value=session_id)
-    return session
 
 
 def join(
@@ -202,18 +212,6 @@ def apply_command(
     db.flush()
     context.hub.publish_after_commit(db, session.id)
     return Applied(session, state, tuple(events))
-
-
-def end_reason(db: Session, session_id: str) -> str | None:
-    """Why a session was aborted or withdrawn, in the words of the lab; None once erased."""
-    ended = db.scalar(
-        select(SessionEvent).where(
-            SessionEvent.session_id == session_id, SessionEvent.type == "session_ended"
-        )
-    )
-    content_id = None if ended is None else json.loads(ended.payload)["content_id"]
-    content = db.get(SessionContent, content_id) if content_id else None
-    return None if content is None or content.body is None else str(json.loads(content.body))
 
 
 def is_repeated(db: Session, session_id: str, command_id: str) -> bool:

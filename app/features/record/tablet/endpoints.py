@@ -14,7 +14,7 @@ from app.features.record.questionnaires.service import submit
 from app.features.record.sessions.consent import ConsentDesk
 from app.features.record.sessions.consent_schemas import ConsentGiven
 from app.features.record.sessions.engine.commands import CompleteStep
-from app.features.record.sessions.service import apply_command, plan_of, session_by_id, state_of
+from app.features.record.sessions.service import apply_command, plan_of, state_of
 from app.features.record.tablet.help import may_ask, note_help
 from app.features.record.tablet.schemas import (
     Acknowledgement,
@@ -24,10 +24,20 @@ from app.features.record.tablet.schemas import (
 )
 from app.features.record.tablet.service import tablet_state
 from app.models import Device, StudySession, StudyVersion
+from app.platform.access import session_by_id
 from app.platform.context import AppContext
-from app.platform.dependencies import Context, PairedTablet, Writing, tablet_in, write
+from app.platform.dependencies import (
+    Context,
+    PairedTablet,
+    SignedIn,
+    Writing,
+    tablet_in,
+    write,
+)
 from app.protocol import Step
 
+calls = APIRouter(tags=["sessions"])
+"""The console's side of a call."""
 router = APIRouter(prefix="/tablet", tags=["tablet"])
 HEARTBEAT_S = 10.0
 
@@ -160,3 +170,9 @@ def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
         context.hub.note_seen(device.id, context.clock.utc_now())
         state = tablet_state(db, session_by_id(db, device.session_id))
     return ServerSentEvent(data=state, event="state", id=str(state.version))
+
+
+@calls.post("/sessions/{session_id}/help/answered", status_code=204)
+def post_help_answered(session_id: str, db: Writing, context: Context, _: SignedIn) -> None:
+    """Say that somebody went to the participant; the tablet says so, too."""
+    note_help(db, context, session_by_id(db, session_id, lock=True), "answered")

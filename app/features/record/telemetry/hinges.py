@@ -4,7 +4,7 @@ from sqlalchemy.orm import Session
 
 from app.features.movement.avatar.service import configuration_by_hash
 from app.features.movement.humanoids.service import figure_by_hash
-from app.features.record.sessions.service import session_by_id
+from app.platform.access import session_by_id
 from app.science.avatar.targets.hinge_reference import HingeReference
 
 

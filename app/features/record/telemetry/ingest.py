@@ -16,16 +16,11 @@ from sqlalchemy.orm import Session
 from app.features.record.alarms.alarm import Change
 from app.features.record.alarms.service import store_change
 from app.features.record.sessions.engine.commands import HeadsetLost
-from app.features.record.sessions.service import (
-    apply_command,
-    protocol_of_session,
-    session_by_id,
-    state_of,
-)
-from app.features.record.telemetry.outcome import Outcome
-from app.features.record.telemetry.positions import Positions, certain_active_s
+from app.features.record.sessions.service import apply_command, protocol_of_session, state_of
+from app.features.record.telemetry.positions import Outcome, Positions, certain_active_s
 from app.models import ClockProbe, Phase, TelemetryBatch
 from app.models.types import new_id
+from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.rows import insert_rows
 from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch

@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from app.models import TelemetryStream
 from app.rows import insert_rows
-from app.wire.messages import REPORT_STREAM, StreamPosition
+from app.wire.messages import REPORT_STREAM, Message, StreamPosition
 
 Key = tuple[str, str, int]
 """Session, stream, epoch."""
@@ -137,3 +137,21 @@ def certain_active_s(db: Session, session_id: str, phase_id: int) -> float:
         )
     )
     return stored or 0.0
+
+
+@dataclass
+class Outcome:
+    """What to tell the sender once the transaction is on disk; `messages` were stored for it,
+    `frames_flagged` frames among them hold something broken.
+    """
+
+    positions: dict[tuple[str, int], StreamPosition] = field(default_factory=dict)
+    notices: list[Message] = field(default_factory=list)
+    phases_ended: list[int] = field(default_factory=list)
+    messages: int = 0
+    frames_flagged: int = 0
+
+    def stored_up_to(self, position: Position) -> None:
+        """Acknowledge a stream as far as it stands now."""
+        _, stream, epoch = position.key
+        self.positions[stream, epoch] = position.as_told

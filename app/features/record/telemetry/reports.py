@@ -8,14 +8,12 @@ from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
 from app.features.record.sessions.engine.commands import Materialise, Report
-from app.features.record.sessions.service import (
-    apply_command,
-    session_by_id,
-)
+from app.features.record.sessions.service import apply_command
 from app.features.record.telemetry.ingest import Intake
-from app.features.record.telemetry.outcome import Outcome
+from app.features.record.telemetry.positions import Outcome
 from app.models import ClientReport, Completion, Contact
 from app.models.types import new_id
+from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.wire.messages import (
     REPORT_STREAM,

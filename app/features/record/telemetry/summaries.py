@@ -14,7 +14,6 @@ from sqlalchemy import ColumnElement, and_, delete, or_, select
 from sqlalchemy.orm import Session
 
 from app.features.record.sessions.capture import erased_session, not_erased
-from app.features.record.sessions.service import session_by_id
 from app.features.record.telemetry.joint_errors import joint_error_rows
 from app.features.record.telemetry.latencies import history_s, latency_rows
 from app.features.record.telemetry.movement import Run, phase_runs
@@ -28,6 +27,7 @@ from app.models import (
     TelemetryBatch,
     TelemetryChunk,
 )
+from app.platform.access import session_by_id
 from app.platform.context import AppContext, Part
 
 log = logging.getLogger(__name__)

@@ -17,7 +17,7 @@ from sqlalchemy.exc import DBAPIError
 from app.features.record.alarms.alarm import Change, Condition
 from app.features.record.sessions.capture import closed_sessions, refusal
 from app.features.record.telemetry.ingest import Intake
-from app.features.record.telemetry.outcome import Outcome
+from app.features.record.telemetry.positions import Outcome
 from app.features.record.telemetry.reports import store_report
 from app.features.record.telemetry.summaries import Summariser
 from app.platform.context import AppContext, Part

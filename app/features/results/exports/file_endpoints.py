@@ -9,13 +9,12 @@ from app.errors import NotFound, NotNow
 from app.features.design.studies.service import study_by_key
 from app.features.people.audit.copies import in_browser_of, record_copy
 from app.features.people.audit.service import record
-from app.features.record.sessions.service import session_by_id
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.exports.jobs import Job
 from app.features.results.exports.names import archive_name
 from app.features.results.exports.schemas import ExportView, ExportWish
 from app.models import Participant
-from app.platform.access import Caller, require_object
+from app.platform.access import Caller, require_object, session_by_id
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn
 

@@ -9,8 +9,8 @@ from sqlalchemy import select
 from app.features.record.headset.service import participant_info
 from app.features.record.sessions.contents import contents_of, salted_hash
 from app.features.record.sessions.journal import events_of, verify_chain
-from app.features.record.sessions.service import session_by_id
 from app.models import Answer
+from app.platform.access import session_by_id
 from app.science.instruments import score_answers
 from tests.features.care.rights.visit import Visit, make_visit
 from tests.features.lab import STUDY, Json, error, ok

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.features.record.alarms.limits import WatchLimits
+from app.features.record.alarms.alarm import WatchLimits
 from tests.features.record.alarms.watched import TREMBLING, Watched, at, order, state
 
 SECOND = TREMBLING.part(slice(0, 90))

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from app.features.record.alarms.alarm import Change, Moment
-from app.features.record.alarms.limits import WatchLimits
+from app.features.record.alarms.alarm import Change, Moment, WatchLimits
 from app.features.record.alarms.watch import Look, QualityWatch
 from app.wire import Batch, StreamName, decode_batch, encode_batch
 from app.wire.messages import HeadsetState, PhaseOrder, Welcome

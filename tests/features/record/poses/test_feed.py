@@ -5,7 +5,7 @@ import struct
 
 import numpy as np
 
-from app.features.record.poses.service import (
+from app.features.record.headset.poses import (
     HEADER,
     MAGIC,
     TOUCHES,
@@ -13,7 +13,7 @@ from app.features.record.poses.service import (
     PoseFeed,
     encode_pose,
 )
-from app.features.record.poses.socket import visible
+from app.features.record.poses.endpoints import visible
 from app.platform.hub import Hub
 from app.wire import Batch, StreamName, decode_batch
 from app.wire.messages import CompletionReport, ContactReport, Report

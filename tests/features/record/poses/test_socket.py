@@ -10,8 +10,8 @@ import pytest
 from starlette.testclient import WebSocketTestSession
 from starlette.websockets import WebSocketDisconnect
 
-from app.features.record.poses.service import HEADER, PoseFeed
-from app.features.record.poses.socket import MOST_UNDRAWN
+from app.features.record.headset.poses import HEADER, PoseFeed
+from app.features.record.poses.endpoints import MOST_UNDRAWN
 from app.science.skeleton import JOINT_NAMES, build_skeleton
 from app.wire import Batch, StreamName, decode_batch
 from tests.features.lab import STUDY, Json, Lab, ok

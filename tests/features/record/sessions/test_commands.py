@@ -7,10 +7,11 @@ from typing import Any
 import pytest
 from sqlalchemy import func, select
 
+from app.features.record.cockpit.watching import live_figures
 from app.features.record.sessions.engine.commands import Report
-from app.features.record.sessions.service import apply_command, session_by_id
-from app.features.record.sessions.watching import live_figures
+from app.features.record.sessions.service import apply_command
 from app.models import SessionContent, StudySession
+from app.platform.access import session_by_id
 from tests.features.lab import STUDY, Json, Lab, error, ok
 
 BOTH = range(2)

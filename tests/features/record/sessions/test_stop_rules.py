@@ -1,6 +1,6 @@
 """Stop rules on both engines: what a form leads to, on the console, the tablet and the record."""
 
-from app.features.record.sessions.recovery import stop_running_clocks
+from app.features.record.telemetry.recovery import stop_running_clocks
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.record.sessions.options_lab import FMS, answer_fms, joined
 

@@ -16,7 +16,7 @@ from app.features.record.telemetry.encoding import (
     decode_frames,
     encode_frames,
 )
-from app.features.record.telemetry.encodings.bit_fields import pack, unpack
+from app.features.record.telemetry.encodings.integers import pack, unpack
 from app.features.record.telemetry.encodings.unit_quaternions import choose
 from app.wire import VALUES_PER_FRAME
 from tests.features.record.telemetry.followed_movement import followed, made_movement

@@ -18,7 +18,7 @@ from app.features.record.telemetry.encoding import ENCODING, Frames, decode_fram
 from app.features.record.telemetry.fold import Folder
 from app.features.record.telemetry.frames import concatenate, iter_frames, phase_frames
 from app.features.record.telemetry.ingest import Intake
-from app.features.record.telemetry.outcome import Outcome
+from app.features.record.telemetry.positions import Outcome
 from app.models import TelemetryBatch, TelemetryChunk
 from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, flag_frames
 from tests.features.lab import Lab

@@ -7,8 +7,7 @@ transposed to f32[w][n] with the four bytes of every float split into planes.
 import numpy as np
 import zstandard
 
-from app.features.record.telemetry.encodings.byte_planes import from_planes
-from app.features.record.telemetry.encodings.columns import Columns, DamagedChunkError
+from app.features.record.telemetry.encodings.columns import Columns, DamagedChunkError, from_planes
 
 NAME = "f32-columns-zstd/1"
 

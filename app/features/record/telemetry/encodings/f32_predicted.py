@@ -39,10 +39,13 @@ import numpy as np
 import zstandard
 from numpy.typing import NDArray
 
-from app.features.record.telemetry.encodings.bit_fields import pack, unpack
-from app.features.record.telemetry.encodings.byte_planes import from_planes, to_planes
-from app.features.record.telemetry.encodings.columns import Columns, DamagedChunkError
-from app.features.record.telemetry.encodings.differences import best_differences, summed
+from app.features.record.telemetry.encodings.columns import (
+    Columns,
+    DamagedChunkError,
+    from_planes,
+    to_planes,
+)
+from app.features.record.telemetry.encodings.integers import best_differences, pack, summed, unpack
 from app.features.record.telemetry.encodings.significands import (
     Significands,
     cut,

@@ -6,27 +6,32 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session, defer
 
-from app.features.design.studies.service import protocol_of, versions_of
+from app.features.design.studies.service import (
+    instrument_for,
+    instrument_of,
+    protocol_of,
+    versions_of,
+)
 from app.features.record.alarms.service import open_alarms
-from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
-from app.features.record.ledger.service import slot_of
-from app.features.record.questionnaires.service import stored_scores
-from app.features.record.sessions.consent import consent_form
-from app.features.record.sessions.contents import content_body, contents_of
-from app.features.record.sessions.engine import SessionState, allowed_commands
-from app.features.record.sessions.held import held_view
-from app.features.record.sessions.journal import events_of
-from app.features.record.sessions.phase_views import phase_views
-from app.features.record.sessions.schemas import (
+from app.features.record.cockpit.phase_views import phase_views
+from app.features.record.cockpit.schemas import (
     CurrentView,
     DeviceView,
     EventView,
+    HeldView,
     NoteView,
     SessionSummary,
     SessionView,
     SlotInfo,
     StepView,
 )
+from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
+from app.features.record.ledger.service import slot_of
+from app.features.record.questionnaires.service import stored_scores
+from app.features.record.sessions.consent import consent_form
+from app.features.record.sessions.contents import content_body, contents_of
+from app.features.record.sessions.engine import SessionState, allowed_commands
+from app.features.record.sessions.journal import events_of
 from app.features.record.sessions.service import plan_of, state_of
 from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
 from app.platform.access import Caller, is_blind
@@ -234,3 +239,25 @@ def _reasons(db: Session, session: StudySession) -> dict[int, str]:
             if payload["content_id"] in bodies:
                 reasons[payload["step"]] = str(bodies[payload["content_id"]])
     return reasons
+
+
+def held_view(
+    db: Session, version: StudyVersion, protocol: StudyProtocol, state: SessionState
+) -> HeldView | None:
+    """The stop rule that was met; None where the session is not held."""
+    if state.held is None or protocol.safety is None:
+        return None
+    rule = protocol.safety.stop_rules[state.held.rule]
+    instrument = instrument_of(instrument_for(db, version, rule.instrument))
+    labels = {score.key: score.label for score in instrument.scores}
+    return HeldView(
+        rule=state.held.rule,
+        instrument=_text(instrument.title),
+        score=_text(labels[rule.score]),
+        stop_at=rule.stop_at,
+        is_rise=rule.change_from is not None,
+    )
+
+
+def _text(text: Mapping[str, str]) -> str:
+    return text.get("en") or next(iter(text.values()), "")

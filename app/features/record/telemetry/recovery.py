@@ -6,9 +6,10 @@ from app.features.design.studies.service import protocol_of
 from app.features.record.alarms.alarm import STANDING
 from app.features.record.alarms.service import clear_all, sessions_with_open_alarms
 from app.features.record.sessions.engine.commands import HeadsetLost
-from app.features.record.sessions.service import apply_command, session_by_id, state_of
+from app.features.record.sessions.service import apply_command, state_of
 from app.features.record.telemetry.positions import certain_active_s
 from app.models import StudySession, StudyVersion
+from app.platform.access import session_by_id
 from app.platform.context import AppContext
 
 

@@ -6,7 +6,7 @@ from typing import TypedDict
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.features.record.sessions.schemas import PhaseView
+from app.features.record.cockpit.schemas import PhaseView
 from app.models import Completion, Contact, Phase, PhaseLatency, StudySession
 from app.science.tasks import side_unit, union
 

@@ -1,26 +1,48 @@
-"""Accepting a headset's WebSocket: who it is, and why it is closed.
-
-The token comes as a second subprotocol (`bearer.TOKEN`), so that it stands in no URL and in no log.
-"""
+"""What a headset asks the server for: its socket, and the avatar of its session."""
 
 import asyncio
 import logging
 
+from fastapi import APIRouter, WebSocket
 from sqlalchemy.exc import DBAPIError
-from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
+from starlette.websockets import WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, NotSignedIn, ReembodyError
+from app.features.record.headset.avatar import AvatarWish, SessionAvatar, prepare, put_on_record
 from app.features.record.headset.connection import CLOSE_REFUSED, HeadsetConnection
 from app.features.record.telemetry.writer import TelemetryWriter
 from app.platform.context import AppContext
+from app.platform.dependencies import Context, PairedHeadset
 from app.platform.tokens import device_of_token
 from app.wire import MalformedBatchError
 from app.wire.messages import SUBPROTOCOL, Failure
 
+router = APIRouter(prefix="/vr", tags=["headset"])
 log = logging.getLogger(__name__)
 CLOSE_NOT_PAIRED = 4401
 CLOSE_TRY_AGAIN = 1013
 MOST_REASON_BYTES = 123
+
+
+@router.websocket("/stream")
+async def vr_stream(socket: WebSocket) -> None:
+    """The headset's socket; see docs/protocol.md."""
+    context: AppContext = socket.app.state.context
+    try:
+        await serve_headset(socket, context, context.part(TelemetryWriter))
+    except asyncio.CancelledError:
+        return
+
+
+@router.post("/avatar")
+def post_avatar(wish: AvatarWish, context: Context, headset: PairedHeadset) -> SessionAvatar:
+    """Build the session's physics avatar for this participant and put it on record."""
+    context.storage.require_storage()
+    with context.database.reading() as db:
+        prepared = prepare(db, headset.session_id, wish)
+    with context.database.writing() as db:
+        put_on_record(db, context, headset.session_id, prepared, f"headset:{headset.id}")
+    return prepared.told
 
 
 async def serve_headset(socket: WebSocket, context: AppContext, writer: TelemetryWriter) -> None:

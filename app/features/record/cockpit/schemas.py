@@ -6,11 +6,11 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.features.record.alarms.schemas import AlarmView
+from app.features.record.ledger.schemas import Kind
 from app.features.record.questionnaires.schemas import StoredScores
 from app.features.record.sessions.consent_schemas import ConsentForm, PaperConsent
 from app.protocol.plan import StepKind
 
-Kind = Literal["people", "simulated", "test", "expert"]
 Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]
 StepStatus = Literal["pending", "current", "done", "skipped"]
 CurrentStatus = Literal["ready", "preparing", "running", "paused", "walk_back", "freezing"]

@@ -20,10 +20,11 @@ A pose message is little-endian binary:
 import struct
 from collections import deque
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict
 
-from app.features.record.poses.schemas import Touch
 from app.platform.hub import Hub
 from app.wire import Batch, StreamName
 from app.wire.messages import CompletionReport, ContactReport, Report
@@ -35,6 +36,22 @@ TOPICS = {StreamName.TARGET: "pose_target", StreamName.ACTUAL: "pose_actual"}
 TOUCHES = "touches"
 TOUCHES_KEPT = 16
 _CODES = {StreamName.TARGET: 1, StreamName.ACTUAL: 2}
+
+
+class Touch(BaseModel):
+    """A contact that is over, or a completed task (kind `completion`, without surface and part).
+
+    `number` is unique and grows: the epoch and seq of the headset's report.
+    """
+
+    model_config = ConfigDict(frozen=True)
+
+    number: tuple[int, int]
+    phase_id: int
+    kind: Literal["panel", "side", "target", "start", "completion"]
+    effect: str
+    surface: str | None = None
+    part: str | None = None
 
 
 @dataclass

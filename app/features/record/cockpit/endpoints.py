@@ -4,6 +4,18 @@ from fastapi import APIRouter
 from sqlalchemy import select
 
 from app.features.design.studies.service import study_by_key
+from app.features.record.cockpit.commands import command_of, reason_given
+from app.features.record.cockpit.schemas import (
+    CommandRequest,
+    EventView,
+    NewSession,
+    Reveal,
+    SessionSummary,
+    SessionView,
+    StreamView,
+)
+from app.features.record.cockpit.view import event_views, list_sessions, session_view
+from app.features.record.ledger.schemas import Kind
 from app.features.record.questionnaires.schemas import (
     Administration,
     Receipt,
@@ -15,29 +27,18 @@ from app.features.record.questionnaires.service import (
     stored_answers,
     submit,
 )
-from app.features.record.sessions.commands import command_of, reason_given
+from app.features.record.sessions.consent import consent_record
+from app.features.record.sessions.consent_schemas import ConsentRecord
 from app.features.record.sessions.contents import store_content
 from app.features.record.sessions.engine.commands import LiftBlinding
-from app.features.record.sessions.schemas import (
-    CommandRequest,
-    EventView,
-    Kind,
-    NewSession,
-    Reveal,
-    SessionSummary,
-    SessionView,
-    StreamView,
-)
 from app.features.record.sessions.service import (
     apply_command,
     is_repeated,
     join,
     protocol_of_session,
-    session_by_id,
 )
-from app.features.record.sessions.view import event_views, list_sessions, session_view
 from app.models import TelemetryStream
-from app.platform.access import is_blind
+from app.platform.access import is_blind, session_by_id
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["sessions"])
@@ -163,3 +164,9 @@ def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
             .order_by(TelemetryStream.epoch, TelemetryStream.stream)
         )
     ]
+
+
+@router.get("/sessions/{session_id}/consent")
+def get_consent(session_id: str, db: Reading, _: SignedIn) -> ConsentRecord | None:
+    """The newest consent of a session with everything it was given to; null where there is none."""
+    return consent_record(db, session_by_id(db, session_id))

@@ -1,0 +1,1 @@
+"""What operators see of sessions and what they order: views, commands, live news."""
