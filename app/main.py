@@ -22,11 +22,8 @@ from app.features.movement.captures.workbench import Workbench
 from app.features.movement.walking.bench import Bench
 from app.features.movement.walking.desk import FittingDesk
 from app.features.people.accounts.service import ensure_admin
-from app.features.record.telemetry.fold import Folder
-from app.features.record.telemetry.recovery import stop_running_clocks
-from app.features.record.telemetry.summaries import Summariser
-from app.features.record.telemetry.writer import TelemetryWriter
-from app.features.record.tryout.desk import TryoutDesk
+from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
+from app.features.record.tryout import TryoutDesk
 from app.features.results.analysis.drawing import Drawings
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.replay.desk import ReplayDesk

@@ -24,8 +24,8 @@ from app.features.people.accounts.people_endpoints import router as people
 from app.features.people.audit.endpoints import router as audit
 from app.features.record.alarms.endpoints import router as alarms
 from app.features.record.calibrations.endpoints import router as calibrations
+from app.features.record.cockpit import router as watching
 from app.features.record.cockpit.endpoints import router as sessions
-from app.features.record.cockpit.watching import router as watching
 from app.features.record.devices.endpoints import router as devices
 from app.features.record.headset.endpoints import router as headset
 from app.features.record.ledger.endpoints import router as participants

@@ -11,8 +11,8 @@ from app.errors import ReembodyError
 from app.features.care.backups.service import Restored, checked_backup, restore
 from app.features.care.opening.service import bring_up_to_date, put_away_if_damaged
 from app.features.care.rights.service import ErasuresKept, finish_erasures
-from app.features.record.erasure.overwriting import expect_erasure, forget_erasure
-from app.features.record.telemetry.recovery import stop_running_clocks
+from app.features.record.erasure import expect_erasure, forget_erasure
+from app.features.record.telemetry import stop_running_clocks
 from app.main import create_app
 from app.platform.context import AppContext
 from app.platform.folders import backups_of

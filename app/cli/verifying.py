@@ -4,8 +4,7 @@ import json
 
 from app.cli.installation import opened_database
 from app.errors import NotFound
-from app.features.record.receipts.service import receipt_of
-from app.features.record.receipts.text import receipt_text
+from app.features.record.receipts import receipt_of, receipt_text
 
 
 def verify_session(session_id: str, *, as_json: bool) -> tuple[str, bool]:

@@ -18,7 +18,7 @@ from app.features.care.backups.progress import Progress, silent
 from app.features.care.backups.reading import Backup, opened_backup
 from app.features.care.backups.restoring import hold_still, is_empty, replace_rows
 from app.features.care.backups.writing import write_backup
-from app.features.record.devices.service import devices_of_session, revoke
+from app.features.record.devices import devices_of_session, revoke
 from app.models import Participant, StudySession
 
 ENDING = ".reembody"

@@ -8,11 +8,8 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound, NotNow
 from app.features.people.audit.service import record
-from app.features.record.questionnaires.schemas import AnswerValue
-from app.features.record.questionnaires.service import correct_answer
-from app.features.record.sessions.contents import store_content
-from app.features.record.sessions.engine.commands import CorrectAnswers
-from app.features.record.sessions.service import apply_command, state_of
+from app.features.record.questionnaires import AnswerValue, correct_answer
+from app.features.record.sessions import CorrectAnswers, apply_command, state_of, store_content
 from app.models import AnswerCorrection, StudySession, Submission
 from app.platform.context import AppContext
 

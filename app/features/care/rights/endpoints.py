@@ -27,9 +27,8 @@ from app.features.care.rights.service import (
 from app.features.design.studies.service import study_by_key
 from app.features.people.audit.copies import in_browser_of, record_copy
 from app.features.people.audit.service import record
-from app.features.record.erasure.overwriting import expect_erasure, overwrite
-from app.features.record.questionnaires.schemas import StoredAnswers
-from app.features.record.questionnaires.service import stored_answers
+from app.features.record.erasure import expect_erasure, overwrite
+from app.features.record.questionnaires import StoredAnswers, stored_answers
 from app.features.results.exports.desk import ExportDesk
 from app.platform.access import session_by_id
 from app.platform.context import AppContext

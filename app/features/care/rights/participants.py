@@ -16,7 +16,7 @@ from app.features.care.rights.schemas import (
     ParticipantSession,
     ParticipantView,
 )
-from app.features.record.erasure.overwriting import is_overwritten
+from app.features.record.erasure import is_overwritten
 from app.models import CopyMade, Erasure, Participant, SessionEvent, Study, StudySession
 from app.settings import Settings
 

@@ -6,10 +6,7 @@ from app.errors import NotDurable
 from app.features.care.rights.again import ErasuresKept, erase_again
 from app.features.care.rights.erasing import erase, erasure_of, participant_of, require_erasable
 from app.features.care.rights.tombstones import tombstone_file, tombstones_of
-from app.features.record.erasure.overwriting import (
-    expect_erasure,
-    overwrite_what_is_left,
-)
+from app.features.record.erasure import expect_erasure, overwrite_what_is_left
 from app.platform.context import AppContext
 
 __all__ = [

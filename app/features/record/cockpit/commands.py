@@ -4,11 +4,15 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.record.cockpit.schemas import CommandRequest
-from app.features.record.sessions.consent import ConsentDesk
-from app.features.record.sessions.contents import store_content
-from app.features.record.sessions.engine import Command, ContentRef
-from app.features.record.sessions.engine import commands as c
-from app.features.record.sessions.service import plan_of, state_of
+from app.features.record.sessions import (
+    Command,
+    ConsentDesk,
+    ContentRef,
+    plan_of,
+    state_of,
+    store_content,
+)
+from app.features.record.sessions import commands as c
 from app.models import StudySession
 from app.platform.context import AppContext
 from app.protocol import Step

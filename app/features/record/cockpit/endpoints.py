@@ -15,27 +15,25 @@ from app.features.record.cockpit.schemas import (
     StreamView,
 )
 from app.features.record.cockpit.view import event_views, list_sessions, session_view
-from app.features.record.ledger.schemas import Kind
-from app.features.record.questionnaires.schemas import (
+from app.features.record.ledger import Kind
+from app.features.record.questionnaires import (
     Administration,
     Receipt,
     StoredAnswers,
     SubmissionRequest,
-)
-from app.features.record.questionnaires.service import (
     current_administration,
     stored_answers,
     submit,
 )
-from app.features.record.sessions.consent import consent_record
-from app.features.record.sessions.consent_schemas import ConsentRecord
-from app.features.record.sessions.contents import store_content
-from app.features.record.sessions.engine.commands import LiftBlinding
-from app.features.record.sessions.service import (
+from app.features.record.sessions import (
+    ConsentRecord,
+    LiftBlinding,
     apply_command,
+    consent_record,
     is_repeated,
     join,
     protocol_of_session,
+    store_content,
 )
 from app.models import TelemetryStream
 from app.platform.access import is_blind, session_by_id

@@ -5,10 +5,10 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.features.record.alarms.schemas import AlarmView
-from app.features.record.ledger.schemas import Kind
-from app.features.record.questionnaires.schemas import StoredScores
-from app.features.record.sessions.consent_schemas import ConsentForm, PaperConsent
+from app.features.record.alarms import AlarmView
+from app.features.record.ledger import Kind
+from app.features.record.questionnaires import StoredScores
+from app.features.record.sessions import ConsentForm, PaperConsent
 from app.protocol.plan import StepKind
 
 Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]

@@ -12,7 +12,7 @@ from app.features.design.studies.service import (
     protocol_of,
     versions_of,
 )
-from app.features.record.alarms.service import open_alarms
+from app.features.record.alarms import open_alarms
 from app.features.record.cockpit.phase_views import phase_views
 from app.features.record.cockpit.schemas import (
     CurrentView,
@@ -25,14 +25,19 @@ from app.features.record.cockpit.schemas import (
     SlotInfo,
     StepView,
 )
-from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
-from app.features.record.ledger.service import slot_of
-from app.features.record.questionnaires.service import stored_scores
-from app.features.record.sessions.consent import consent_form
-from app.features.record.sessions.contents import content_body, contents_of
-from app.features.record.sessions.engine import SessionState, allowed_commands
-from app.features.record.sessions.journal import events_of
-from app.features.record.sessions.service import plan_of, state_of
+from app.features.record.devices import TABLET_SILENT_AFTER_S, devices_of_session
+from app.features.record.ledger import slot_of
+from app.features.record.questionnaires import stored_scores
+from app.features.record.sessions import (
+    SessionState,
+    allowed_commands,
+    consent_form,
+    content_body,
+    contents_of,
+    events_of,
+    plan_of,
+    state_of,
+)
 from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
 from app.platform.access import Caller, is_blind
 from app.platform.context import AppContext

@@ -9,7 +9,7 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 
 from app.errors import ReembodyError
 from app.features.record.cockpit.view import session_view
-from app.features.record.sessions.service import protocol_of_session
+from app.features.record.sessions import protocol_of_session
 from app.platform.access import Caller, is_blind, session_by_id
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, SignedIn, get_caller

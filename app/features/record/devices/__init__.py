@@ -1,1 +1,9 @@
 """Pairing tablets and headsets."""
+
+from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session, revoke
+
+__all__ = [
+    "TABLET_SILENT_AFTER_S",
+    "devices_of_session",
+    "revoke",
+]

@@ -1,1 +1,12 @@
 """The headset: its state, its socket."""
+
+from app.features.record.headset.poses import TOPICS, TOUCHES, Touch
+from app.features.record.headset.service import headset_state, participant_info
+
+__all__ = [
+    "TOPICS",
+    "TOUCHES",
+    "Touch",
+    "headset_state",
+    "participant_info",
+]

@@ -15,10 +15,15 @@ from sqlalchemy.orm import Session
 from app.errors import Conflict, InvalidInput
 from app.features.movement.avatar.service import configuration_by_hash
 from app.features.movement.humanoids.service import figure_by_hash
-from app.features.record.sessions.capture import require_capture
-from app.features.record.sessions.contents import content_body, contents_of, store_content
-from app.features.record.sessions.engine.commands import RecordAvatar
-from app.features.record.sessions.service import apply_command, protocol_of_session
+from app.features.record.sessions import (
+    RecordAvatar,
+    apply_command,
+    content_body,
+    contents_of,
+    protocol_of_session,
+    require_capture,
+    store_content,
+)
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.protocol.avatar import AvatarFile, file_of

@@ -16,15 +16,16 @@ from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 from app.errors import InvalidInput, Withdrawn
 from app.features.record.headset.lookout import Lookout
 from app.features.record.headset.service import headset_state, welcome
-from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
-from app.features.record.telemetry.positions import Outcome
-from app.features.record.telemetry.writer import (
+from app.features.record.telemetry import (
     Arrival,
     BatchContent,
     Content,
+    LiveTelemetry,
     LossContent,
+    Outcome,
     ProbeContent,
     TelemetryWriter,
+    live_telemetry,
 )
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
@@ -47,7 +48,6 @@ from app.wire.messages import (
     Report,
     Welcome,
 )
-
 
 log = logging.getLogger(__name__)
 MAX_IN_FLIGHT = 64

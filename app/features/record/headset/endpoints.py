@@ -10,7 +10,7 @@ from starlette.websockets import WebSocketDisconnect, WebSocketState
 from app.errors import InvalidInput, NotSignedIn, ReembodyError
 from app.features.record.headset.avatar import AvatarWish, SessionAvatar, prepare, put_on_record
 from app.features.record.headset.connection import CLOSE_REFUSED, HeadsetConnection
-from app.features.record.telemetry.writer import TelemetryWriter
+from app.features.record.telemetry import TelemetryWriter
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, PairedHeadset
 from app.platform.tokens import device_of_token

@@ -9,12 +9,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.features.record.alarms.alarm import Alarm, Change, Condition, Moment, WatchLimits
-from app.features.record.alarms.watch import QualityWatch
+from app.features.record.alarms import Alarm, Change, Condition, Moment, QualityWatch, WatchLimits
 from app.features.record.headset.poses import PoseFeed
-from app.features.record.telemetry.live import LiveTelemetry
-from app.features.record.telemetry.positions import Outcome
-from app.features.record.telemetry.writer import AlarmContent, Content, LossContent
+from app.features.record.telemetry import AlarmContent, Content, LiveTelemetry, LossContent, Outcome
 from app.platform.context import AppContext
 from app.wire import Batch
 from app.wire.messages import HeadsetState, Probed, Produced, Report, Welcome

@@ -7,12 +7,16 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict
 from app.features.design.studies.service import protocol_of
-from app.features.record.questionnaires.service import answers_of
-from app.features.record.sessions.capture import require_capture
-from app.features.record.sessions.contents import content_body, contents_of
-from app.features.record.sessions.engine import SessionState
-from app.features.record.sessions.service import plan_of, state_of
-from app.features.record.telemetry.positions import certain_active_s, positions_of, take_epoch
+from app.features.record.questionnaires import answers_of
+from app.features.record.sessions import (
+    SessionState,
+    content_body,
+    contents_of,
+    plan_of,
+    require_capture,
+    state_of,
+)
+from app.features.record.telemetry import certain_active_s, positions_of, take_epoch
 from app.models import Completion, StudySession, StudyVersion, Submission
 from app.platform.access import session_by_id
 from app.protocol.plan import Step

@@ -14,7 +14,7 @@ from fastapi import APIRouter
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from app.errors import NotSignedIn, ReembodyError
-from app.features.record.headset.poses import TOPICS, TOUCHES
+from app.features.record.headset import TOPICS, TOUCHES
 from app.features.record.poses.schemas import Setup, Touches
 from app.features.record.poses.setting import setup_of
 from app.platform.context import AppContext

@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from app.features.record.headset.poses import Touch
+from app.features.record.headset import Touch
 from app.science.tasks.names import SurfaceKind
 
 Vector = tuple[float, float, float]

@@ -2,9 +2,9 @@
 
 from sqlalchemy.orm import Session
 
-from app.features.record.headset.service import headset_state, participant_info
+from app.features.record.headset import headset_state, participant_info
 from app.features.record.poses.schemas import Setup, SurfaceView, Vector
-from app.features.record.sessions.service import plan_of, protocol_of_session
+from app.features.record.sessions import plan_of, protocol_of_session
 from app.models import StudySession
 from app.platform.access import Caller, is_blind, session_by_id
 from app.protocol import StudyProtocol

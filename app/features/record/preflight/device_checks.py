@@ -9,9 +9,8 @@ from typing import Any, Literal
 
 from sqlalchemy.orm import Session
 
-from app.features.record.alarms.alarm import WatchLimits
-from app.features.record.alarms.service import open_alarms
-from app.features.record.devices.service import TABLET_SILENT_AFTER_S, devices_of_session
+from app.features.record.alarms import WatchLimits, open_alarms
+from app.features.record.devices import TABLET_SILENT_AFTER_S, devices_of_session
 from app.features.record.preflight.schemas import Check
 from app.models import Device, StudySession
 from app.platform.context import AppContext

@@ -8,7 +8,7 @@ Nothing here names a latency that was ordered or achieved: blinded operators see
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.record.calibrations.service import calibrations
+from app.features.record.calibrations import calibrations
 from app.features.record.preflight.schemas import Check
 from app.models import Phase, PhaseLatency, StudySession
 

@@ -16,9 +16,13 @@ from app.features.record.preflight.latency_check import latency_check
 from app.features.record.preflight.schemas import Check, Override, OverrideRequest, Preflight
 from app.features.record.preflight.storage_checks import storage_checks
 from app.features.record.preflight.study_checks import study_checks
-from app.features.record.sessions.contents import content_body, contents_of, store_content
-from app.features.record.sessions.engine.commands import OverrideCheck
-from app.features.record.sessions.service import apply_command
+from app.features.record.sessions import (
+    OverrideCheck,
+    apply_command,
+    content_body,
+    contents_of,
+    store_content,
+)
 from app.models import StudySession
 from app.platform.access import OVER, session_by_id
 from app.platform.context import AppContext

@@ -9,7 +9,7 @@ from app.errors import ReembodyError
 from app.features.design.studies.service import instrument_for, instrument_of, protocol_of
 from app.features.movement.avatar.service import configuration_by_hash
 from app.features.record.preflight.schemas import Check
-from app.features.record.sessions.service import plan_of
+from app.features.record.sessions import plan_of
 from app.models import AvatarVersion, StudySession, StudyVersion
 from app.protocol.canonical import sha256_of
 

@@ -7,7 +7,7 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies.service import UsedInstrument, used_instrument
 from app.features.record.questionnaires.schemas import Administration
-from app.features.record.sessions.service import plan_of, state_of
+from app.features.record.sessions import plan_of, state_of
 from app.models import StudySession
 from app.protocol.plan import Step
 from app.science.instruments import item_order

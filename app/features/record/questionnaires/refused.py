@@ -7,10 +7,14 @@ from sqlalchemy.orm import Session
 
 from app.errors import KeptConflict
 from app.features.record.questionnaires.schemas import SubmissionRequest
-from app.features.record.sessions.contents import content_body, contents_of, store_content
-from app.features.record.sessions.engine.commands import KeepRefusedForm
-from app.features.record.sessions.journal import canonical
-from app.features.record.sessions.service import apply_command
+from app.features.record.sessions import (
+    KeepRefusedForm,
+    apply_command,
+    canonical,
+    content_body,
+    contents_of,
+    store_content,
+)
 from app.models import StudySession, Submission
 from app.platform.context import AppContext
 

@@ -20,10 +20,7 @@ from app.features.record.questionnaires.stored import correct_answer as correct_
 from app.features.record.questionnaires.stored import newest_corrections as newest_corrections
 from app.features.record.questionnaires.stored import stored_answers as stored_answers
 from app.features.record.questionnaires.stored import stored_scores as stored_scores
-from app.features.record.sessions.capture import require_capture_of
-from app.features.record.sessions.engine.commands import SubmitForm
-from app.features.record.sessions.journal import canonical
-from app.features.record.sessions.service import apply_command
+from app.features.record.sessions import SubmitForm, apply_command, canonical, require_capture_of
 from app.models import Answer, ScoreValue, StudySession, Submission
 from app.models.types import new_id
 from app.platform.context import AppContext

@@ -14,9 +14,8 @@ from typing import Literal
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.record.alarms.alarm import Change, Condition
-from app.features.record.alarms.service import open_rows, store_change
-from app.features.record.sessions.service import protocol_of_session
+from app.features.record.alarms import Change, Condition, open_rows, store_change
+from app.features.record.sessions import protocol_of_session
 from app.models import ScoreValue, StudySession, Submission
 from app.protocol import StopRule
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.record.headset.service import participant_info
-from app.features.record.sessions.service import protocol_of_session
+from app.features.record.headset import participant_info
+from app.features.record.sessions import protocol_of_session
 from app.models import ClientReport, Completion, Contact, Phase, StudySession
 from app.science.tasks import (
     Command,

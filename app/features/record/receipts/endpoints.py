@@ -5,7 +5,7 @@ from dataclasses import replace
 from fastapi import APIRouter
 
 from app.features.record.receipts.service import SessionReceipt, receipt_of
-from app.features.record.sessions.service import protocol_of_session
+from app.features.record.sessions import protocol_of_session
 from app.platform.access import is_blind, session_by_id
 from app.platform.dependencies import Reading, SignedIn
 

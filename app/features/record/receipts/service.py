@@ -10,7 +10,7 @@ from app import __version__
 from app.features.record.receipts.completions import CompletionReceipt, completion_receipts
 from app.features.record.receipts.latencies import LatencyReceipt, latency_receipts
 from app.features.record.receipts.streams import StreamReceipt, stream_receipts
-from app.features.record.sessions.journal import ChainCheck, events_of, verify_chain
+from app.features.record.sessions import ChainCheck, events_of, verify_chain
 from app.models import Phase, Study, TelemetryBatch, TelemetryChunk
 from app.platform.access import session_by_id
 

@@ -8,9 +8,8 @@ import numpy as np
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.record.sessions.journal import canonical
-from app.features.record.telemetry.encoding import DamagedChunkError, Frames
-from app.features.record.telemetry.frames import decode_piece, iter_pieces
+from app.features.record.sessions import canonical
+from app.features.record.telemetry import DamagedChunkError, Frames, decode_piece, iter_pieces
 from app.models import ClientReport, TelemetryStream
 from app.wire.messages import REPORT_STREAM
 

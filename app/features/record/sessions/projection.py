@@ -9,9 +9,8 @@ from datetime import datetime
 from sqlalchemy.orm import Session
 
 from app.features.design.studies.service import freeze
-from app.features.record.alarms.alarm import Change, Condition
-from app.features.record.alarms.service import clear_all, store_change
-from app.features.record.ledger.service import close_attempt
+from app.features.record.alarms import Change, Condition, clear_all, store_change
+from app.features.record.ledger import close_attempt
 from app.features.record.sessions.engine import Event
 from app.features.record.sessions.engine import events as e
 from app.models import Phase, StudySession, StudyVersion

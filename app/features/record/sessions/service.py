@@ -16,8 +16,7 @@ from app.features.design.studies.service import (
     version_content,
 )
 from app.features.movement.avatar.service import version_of
-from app.features.record.ledger.codes import find_or_add_participant
-from app.features.record.ledger.service import hold_slot, slot_of, take_slot
+from app.features.record.ledger import find_or_add_participant, hold_slot, slot_of, take_slot
 from app.features.record.sessions.engine import (
     Command,
     Refused,

@@ -9,12 +9,15 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.design.studies.service import protocol_of
-from app.features.record.questionnaires.schemas import Receipt, SubmissionRequest
-from app.features.record.questionnaires.service import submit
-from app.features.record.sessions.consent import ConsentDesk
-from app.features.record.sessions.consent_schemas import ConsentGiven
-from app.features.record.sessions.engine.commands import CompleteStep
-from app.features.record.sessions.service import apply_command, plan_of, state_of
+from app.features.record.questionnaires import Receipt, SubmissionRequest, submit
+from app.features.record.sessions import (
+    CompleteStep,
+    ConsentDesk,
+    ConsentGiven,
+    apply_command,
+    plan_of,
+    state_of,
+)
 from app.features.record.tablet.help import may_ask, note_help
 from app.features.record.tablet.schemas import (
     Acknowledgement,

@@ -8,9 +8,8 @@ from typing import Literal
 
 from sqlalchemy.orm import Session
 
-from app.features.record.alarms.alarm import Change, Condition
-from app.features.record.alarms.service import open_rows, store_change
-from app.features.record.sessions.engine import SessionState
+from app.features.record.alarms import Change, Condition, open_rows, store_change
+from app.features.record.sessions import SessionState
 from app.models import StudySession
 from app.platform.context import AppContext
 

@@ -4,8 +4,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.features.record.questionnaires.schemas import Administration
-from app.features.record.sessions.consent_schemas import ConsentForm
+from app.features.record.questionnaires import Administration
+from app.features.record.sessions import ConsentForm
 
 Screen = Literal["waiting", "held", "consent", "instructions", "form", "finished"]
 

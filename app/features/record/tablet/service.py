@@ -4,10 +4,14 @@ from collections.abc import Mapping, Sequence
 
 from sqlalchemy.orm import Session
 
-from app.features.record.questionnaires.service import current_administration
-from app.features.record.sessions.consent import consent_form
-from app.features.record.sessions.engine import SessionState
-from app.features.record.sessions.service import plan_of, protocol_of_session, state_of
+from app.features.record.questionnaires import current_administration
+from app.features.record.sessions import (
+    SessionState,
+    consent_form,
+    plan_of,
+    protocol_of_session,
+    state_of,
+)
 from app.features.record.tablet.help import help_asked
 from app.features.record.tablet.schemas import Screen, TabletState
 from app.models import StudySession

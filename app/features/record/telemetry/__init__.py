@@ -1,1 +1,57 @@
 """Movement in, movement out."""
+
+from app.features.record.telemetry.encoding import DamagedChunkError, Frames
+from app.features.record.telemetry.fold import Folder
+from app.features.record.telemetry.frames import (
+    concatenate,
+    decode_piece,
+    epochs_of,
+    iter_frames,
+    iter_pieces,
+)
+from app.features.record.telemetry.hinges import hinges_of
+from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
+from app.features.record.telemetry.positions import (
+    Outcome,
+    certain_active_s,
+    positions_of,
+    take_epoch,
+)
+from app.features.record.telemetry.recovery import stop_running_clocks
+from app.features.record.telemetry.summaries import Summariser
+from app.features.record.telemetry.writer import (
+    AlarmContent,
+    Arrival,
+    BatchContent,
+    Content,
+    LossContent,
+    ProbeContent,
+    TelemetryWriter,
+)
+
+__all__ = [
+    "AlarmContent",
+    "Arrival",
+    "BatchContent",
+    "Content",
+    "DamagedChunkError",
+    "Folder",
+    "Frames",
+    "LiveTelemetry",
+    "LossContent",
+    "Outcome",
+    "ProbeContent",
+    "Summariser",
+    "TelemetryWriter",
+    "certain_active_s",
+    "concatenate",
+    "decode_piece",
+    "epochs_of",
+    "hinges_of",
+    "iter_frames",
+    "iter_pieces",
+    "live_telemetry",
+    "positions_of",
+    "stop_running_clocks",
+    "take_epoch",
+]

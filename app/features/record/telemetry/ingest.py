@@ -13,10 +13,8 @@ from typing import Any, cast
 from sqlalchemy import Table, select
 from sqlalchemy.orm import Session
 
-from app.features.record.alarms.alarm import Change
-from app.features.record.alarms.service import store_change
-from app.features.record.sessions.engine.commands import HeadsetLost
-from app.features.record.sessions.service import apply_command, protocol_of_session, state_of
+from app.features.record.alarms import Change, store_change
+from app.features.record.sessions import HeadsetLost, apply_command, protocol_of_session, state_of
 from app.features.record.telemetry.positions import Outcome, Positions, certain_active_s
 from app.models import ClockProbe, Phase, TelemetryBatch
 from app.models.types import new_id

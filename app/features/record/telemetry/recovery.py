@@ -3,10 +3,8 @@
 from sqlalchemy import select
 
 from app.features.design.studies.service import protocol_of
-from app.features.record.alarms.alarm import STANDING
-from app.features.record.alarms.service import clear_all, sessions_with_open_alarms
-from app.features.record.sessions.engine.commands import HeadsetLost
-from app.features.record.sessions.service import apply_command, state_of
+from app.features.record.alarms import STANDING, clear_all, sessions_with_open_alarms
+from app.features.record.sessions import HeadsetLost, apply_command, state_of
 from app.features.record.telemetry.positions import certain_active_s
 from app.models import StudySession, StudyVersion
 from app.platform.access import session_by_id

@@ -7,8 +7,7 @@ from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
-from app.features.record.sessions.engine.commands import Materialise, Report
-from app.features.record.sessions.service import apply_command
+from app.features.record.sessions import Materialise, Report, apply_command
 from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.positions import Outcome
 from app.models import ClientReport, Completion, Contact

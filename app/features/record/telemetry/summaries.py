@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from sqlalchemy import ColumnElement, and_, delete, or_, select
 from sqlalchemy.orm import Session
 
-from app.features.record.sessions.capture import erased_session, not_erased
+from app.features.record.sessions import erased_session, not_erased
 from app.features.record.telemetry.joint_errors import joint_error_rows
 from app.features.record.telemetry.latencies import history_s, latency_rows
 from app.features.record.telemetry.movement import Run, phase_runs

@@ -14,8 +14,8 @@ from typing import NamedTuple, Protocol, Self
 
 from sqlalchemy.exc import DBAPIError
 
-from app.features.record.alarms.alarm import Change, Condition
-from app.features.record.sessions.capture import closed_sessions, refusal
+from app.features.record.alarms import Change, Condition
+from app.features.record.sessions import closed_sessions, refusal
 from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.positions import Outcome
 from app.features.record.telemetry.reports import store_report

@@ -10,7 +10,7 @@ from functools import cached_property
 import pandas as pd
 from sqlalchemy.orm import Session
 
-from app.features.record.ledger.service import planned_slots
+from app.features.record.ledger import planned_slots
 from app.features.results.analysis.figures import (
     Drawing,
     achieved_drawing,

@@ -15,7 +15,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies.service import study_by_key
-from app.features.record.receipts.service import receipt_of
+from app.features.record.receipts import receipt_of
 from app.features.results.analysis.codebook import codebook_frame
 from app.features.results.analysis.tables import (
     Kind,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.record.telemetry.encoding import Frames
+from app.features.record.telemetry import Frames
 
 Piece = tuple[int, Frames]
 """A phase_id and consecutive frames of one stream."""

@@ -13,7 +13,7 @@ import numpy as np
 from pydantic_core import to_json
 from sqlalchemy.orm import Session
 
-from app.features.record.telemetry.frames import epochs_of, iter_frames
+from app.features.record.telemetry import epochs_of, iter_frames
 from app.features.results.analysis.codebook import columns_of
 from app.features.results.exports.pairing import Rows, Side, paired_rows
 from app.features.results.exports.shortest import shortest_doubles

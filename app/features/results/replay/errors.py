@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.record.telemetry.encoding import Frames
+from app.features.record.telemetry import Frames
 from app.features.results.replay.grid import Grid, Indices, Sampling
 from app.science.avatar.targets.hinge_reference import HingeReference
 from app.science.joint_error import ERROR_JOINTS, joint_errors

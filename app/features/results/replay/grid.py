@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.features.record.telemetry.encoding import Frames
-from app.features.record.telemetry.frames import concatenate
+from app.features.record.telemetry import Frames, concatenate
 
 GAP_S = 0.25
 """Frames that lie further apart have a gap between them; nothing is shown in it."""

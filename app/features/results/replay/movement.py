@@ -26,8 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from sqlalchemy.orm import Session
 
-from app.features.record.telemetry.encoding import Frames
-from app.features.record.telemetry.frames import iter_frames
+from app.features.record.telemetry import Frames, iter_frames
 from app.features.results.replay.errors import RunErrors, no_errors
 from app.features.results.replay.grid import Grid, Sampling, uncovered
 from app.science.avatar.targets.hinge_reference import HingeReference

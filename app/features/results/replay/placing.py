@@ -1,7 +1,7 @@
 """From the record of a phase to the bytes of its movement."""
 
 from app.database import Database
-from app.features.record.telemetry.hinges import hinges_of
+from app.features.record.telemetry import hinges_of
 from app.features.results.replay.movement import Recording, encode, movement_of
 from app.features.results.replay.service import USUAL_STATURE_M, stature_of
 from app.features.results.replay.times import phase_clock

@@ -13,8 +13,8 @@ from typing import Literal
 
 from pydantic import BaseModel
 
-from app.features.record.cockpit.schemas import LimbName, PhaseStatus
-from app.features.record.questionnaires.schemas import StoredScores
+from app.features.record.cockpit import LimbName, PhaseStatus
+from app.features.record.questionnaires import StoredScores
 from app.protocol.plan import StepKind
 
 View = Literal["full", "participant"]

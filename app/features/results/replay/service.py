@@ -13,10 +13,13 @@ from sqlalchemy.orm import Session
 
 from app import __version__
 from app.errors import Gone, NotFound, NotNow
-from app.features.record.headset.service import participant_info
-from app.features.record.sessions.capture import erased_session
-from app.features.record.sessions.contents import content_body, contents_of
-from app.features.record.sessions.service import protocol_of_session
+from app.features.record.headset import participant_info
+from app.features.record.sessions import (
+    content_body,
+    contents_of,
+    erased_session,
+    protocol_of_session,
+)
 from app.features.results.replay.schemas import View
 from app.models import Phase, StudySession, TelemetryBatch, TelemetryChunk
 from app.platform.access import Caller, is_blind, session_by_id

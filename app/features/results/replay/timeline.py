@@ -6,10 +6,14 @@ from collections.abc import Iterator
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.record.questionnaires.service import stored_scores
-from app.features.record.sessions.contents import content_body, contents_of
-from app.features.record.sessions.journal import events_of
-from app.features.record.sessions.service import plan_of, protocol_of_session
+from app.features.record.questionnaires import stored_scores
+from app.features.record.sessions import (
+    content_body,
+    contents_of,
+    events_of,
+    plan_of,
+    protocol_of_session,
+)
 from app.features.results.replay.clock import PhaseClock
 from app.features.results.replay.schemas import (
     ActiveStretch,

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from app.database import Database
 from app.features.care.rights.access.page import page_of
 from app.features.care.rights.access.summary import visits_of
-from app.features.record.sessions.contents import content_body, contents_of
+from app.features.record.sessions import content_body, contents_of
 from app.features.results.exports.service import Member, person_archive, safe_name
 from app.features.results.imports.service import told_of
 from app.models import Participant, StudySession

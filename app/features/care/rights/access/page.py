@@ -7,7 +7,7 @@ from html import escape
 from app.features.care.rights.access.answers import answer_text
 from app.features.care.rights.access.summary import Visit, Written
 from app.features.care.rights.access.words import in_language, words_of
-from app.features.record.questionnaires.schemas import CorrectionView, StoredAnswers
+from app.features.record.questionnaires import CorrectionView, StoredAnswers
 from app.science.instruments import Instrument
 
 _STYLE = """

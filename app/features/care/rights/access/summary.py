@@ -11,11 +11,14 @@ from sqlalchemy.orm import Session
 
 from app.features.care.rights.access.words import in_language
 from app.features.design.studies.service import instrument_of
-from app.features.record.questionnaires.schemas import StoredAnswers
-from app.features.record.questionnaires.service import stored_answers
-from app.features.record.sessions.contents import content_body, contents_of
-from app.features.record.sessions.journal import events_of
-from app.features.record.sessions.service import plan_of, protocol_of_session
+from app.features.record.questionnaires import StoredAnswers, stored_answers
+from app.features.record.sessions import (
+    content_body,
+    contents_of,
+    events_of,
+    plan_of,
+    protocol_of_session,
+)
 from app.models import (
     Completion,
     Contact,

@@ -59,8 +59,6 @@ def _magnitude(differences: NDArray[Any]) -> NDArray[np.float64]:
     return np.asarray(np.abs(differences.astype(np.float64)).mean(axis=1))
 
 
-
-
 def pack(numbers: NDArray[np.uint32], widths: NDArray[np.int64]) -> bytes:
     """Write `numbers` (n,), each below 2^width, with `widths` (n,) bits each."""
     if not len(numbers):

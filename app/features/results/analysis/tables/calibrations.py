@@ -3,7 +3,7 @@
 import pandas as pd
 from sqlalchemy.orm import Session
 
-from app.features.record.calibrations.service import calibrations
+from app.features.record.calibrations import calibrations
 from app.features.results.analysis.tables.context import finished
 
 

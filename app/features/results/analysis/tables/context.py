@@ -12,7 +12,7 @@ from sqlalchemy import ColumnElement, Select, and_, select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies.service import study_by_key
-from app.features.record.sessions.service import plan_of, state_of
+from app.features.record.sessions import plan_of, state_of
 from app.features.results.analysis.codebook import ColumnType, columns_of
 from app.features.results.analysis.schemas import Kind
 from app.models import Participant, Phase, Study, StudySession, StudyVersion

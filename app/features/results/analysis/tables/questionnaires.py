@@ -7,7 +7,7 @@ from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies.service import instrument_of, study_by_key
-from app.features.record.questionnaires.service import newest_corrections
+from app.features.record.questionnaires import newest_corrections
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
     BROKEN_OFF,

@@ -8,8 +8,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies.service import protocol_of, study_by_key, versions_of
-from app.features.record.sessions.contents import content_body
-from app.features.record.sessions.service import plan_of, state_of
+from app.features.record.sessions import content_body, plan_of, state_of
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
     BROKEN_OFF,
