@@ -257,12 +257,8 @@ def held_view(
     labels = {score.key: score.label for score in instrument.scores}
     return HeldView(
         rule=state.held.rule,
-        instrument=_text(instrument.title),
-        score=_text(labels[rule.score]),
+        instrument=_text(instrument.title, "en"),
+        score=_text(labels[rule.score], "en"),
         stop_at=rule.stop_at,
         is_rise=rule.change_from is not None,
     )
-
-
-def _text(text: Mapping[str, str]) -> str:
-    return text.get("en") or next(iter(text.values()), "")
