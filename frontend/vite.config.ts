@@ -1,6 +1,8 @@
 import { existsSync, readdirSync } from "node:fs";
+import type { ClientRequest, IncomingMessage } from "node:http";
 import { resolve } from "node:path";
 import react from "@vitejs/plugin-react";
+import type { ProxyOptions } from "vite";
 import { defineConfig, type Plugin } from "vitest/config";
 import { tabletWorker, WORKER } from "./tabletWorker.ts";
 
@@ -23,6 +25,27 @@ function servePagesLikeTheServer(): Plugin {
     },
   };
 }
+
+/** The server that `./run` starts; another one with REEMBODY_URL=http://HOST:PORT npm run dev. */
+const SERVER = new URL(process.env.REEMBODY_URL ?? "http://127.0.0.1:8321");
+
+/**
+ * The server takes changes and sockets from its own pages only (app/api/guards.py). To pages of
+ * the dev server it must look as if they were its own; to pages of anybody else it must not.
+ */
+const proxyToServer: ProxyOptions = {
+  target: SERVER.origin,
+  changeOrigin: true,
+  ws: true,
+  configure(proxy) {
+    const sayOurs = (outgoing: ClientRequest, request: IncomingMessage) => {
+      const { origin, host } = request.headers;
+      if (origin === `http://${host}`) outgoing.setHeader("origin", SERVER.origin);
+    };
+    proxy.on("proxyReq", sayOurs);
+    proxy.on("proxyReqWs", sayOurs);
+  },
+};
 
 export default defineConfig({
   root: source,
@@ -51,6 +74,6 @@ export default defineConfig({
       },
     },
   },
-  server: { port: 5173, proxy: { "/api": { target: "http://127.0.0.1:8000", ws: true } } },
+  server: { port: 5173, proxy: { "/api": proxyToServer } },
   test: { root: source, include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
 });

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from app import __version__
 from app.cli.analyse.command import analyse
 from app.cli.failing import fail
 from app.cli.retarget.command import retarget
@@ -15,7 +16,6 @@ from app.cli.tune.command import tune
 from app.cli.walk.command import walk
 
 app = typer.Typer(
-    help="Runs, watches and analyses VR re-embodiment studies.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -26,6 +26,21 @@ app.command()(retarget)
 app.command()(tune)
 app.command()(analyse)
 INCOMPLETE = 1
+
+
+def _tell_version(asked: bool) -> None:
+    if asked:
+        print(f"reembody {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def reembody(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_tell_version, help="Print the version.")
+    ] = False,
+) -> None:
+    """Runs, watches and analyses VR re-embodiment studies."""
 
 
 @app.command()

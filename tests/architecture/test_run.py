@@ -123,14 +123,16 @@ def test_serving_is_the_default(checkout: Checkout, arguments: list[str]) -> Non
 
 
 def test_options_alone_belong_to_serving(checkout: Checkout) -> None:
-    """`./run --port 9000` is `./run serve --port 9000`, while `--help` is the program's own."""
+    """`./run --port 9000` is `./run serve --port 9000`; `--help` and `--version` are not."""
     assert checkout.run("--port", "9000").stdout.endswith("|serve|--port|9000|")
     assert checkout.run("--help").stdout.endswith("|--help|")
+    assert checkout.run("--version").stdout.endswith("|--version|")
 
 
 def test_tests_get_the_development_requirements(checkout: Checkout) -> None:
     """They contain all that running needs, so running afterwards installs nothing."""
     assert checkout.run("test", "-k", "x").stdout.endswith("|-m|tests.support.stages|-k|x|")
+    assert checkout.run("check", "app").stdout.endswith("|-m|tests.support.checking|app|")
     assert "pip install requirements-dev.lock" in checkout.uv_calls()
     checkout.run("score")
     assert checkout.uv_calls() == []

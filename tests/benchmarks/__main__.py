@@ -1,43 +1,92 @@
 """`./run bench NAME [--json]` runs a benchmark of this folder and prints its figures.
 
-Those with a load take its duration (`--seconds`, `--minutes`).
+Those with a load take its duration (`--seconds`, `--minutes`). With `--against COMMIT` it is told
+instead how much processor time this tree takes for one that COMMIT takes (`against`). However a
+benchmark ends, its servers end with it.
 """
 
 import argparse
 import importlib
 import json
+import re
 import signal
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
-from tests.benchmarks.report import Report, as_table
+from tests.benchmarks.against import PAIRS, compare
+from tests.benchmarks.report import CannotMeasure, Report, as_table
+from tests.support.warden import is_warded, run_warded
 
 HERE = Path(__file__).parent
-NAMES = sorted(path.stem for path in HERE.glob("*.py") if "def measure(" in path.read_text())
+REPOSITORY = HERE.parents[1]
+NAMES = sorted(
+    path.stem
+    for path in HERE.glob("*.py")
+    if re.search(r"^def measure\(", path.read_text(encoding="utf-8"), re.MULTILINE)
+)
 TERMINATED = 128 + signal.SIGTERM
+USAGE_ERROR = 2
+EPILOGUE = """\
+JSON: {"benchmark", "machine", "figures": [{"part", "name", "value", "unit", "peer", "peer_value",
+"ratio", "limit", "met"}]}; with --against also "against", "pairs", "ratio_median", "ratio_low",
+"ratio_high", "ratio_confidence" and "workload_differs". A ratio below 1 means that this tree takes
+less processor time (user and system, of all processes of the benchmark).
+"""
 
 
-def main(arguments: list[str]) -> int:
-    """Run what was asked for; 2 on an unknown name."""
-    parser = argparse.ArgumentParser(prog="./run bench", description="Measure.")
-    parser.add_argument("name", choices=NAMES, help="which benchmark")
-    parser.add_argument("--json", action="store_true", help="print the figures as JSON")
-    parser.add_argument("--only", action="append", help="only these parts; may be repeated")
-    duration = parser.add_mutually_exclusive_group()
+def parser() -> argparse.ArgumentParser:
+    """What may be asked."""
+    made = argparse.ArgumentParser(
+        prog="./run bench",
+        description="Measure.",
+        epilog=EPILOGUE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    made.add_argument("name", choices=NAMES, help="which benchmark")
+    made.add_argument("--json", action="store_true", help="print the figures as JSON")
+    made.add_argument("--only", action="append", metavar="PART", help="this part; may be repeated")
+    duration = made.add_mutually_exclusive_group()
     duration.add_argument("--seconds", type=float, help="how long a load lasts, where there is one")
     duration.add_argument("--minutes", type=float, help="the same in minutes")
-    parser.add_argument("--write", action="store_true", help="store what the product ships of it")
-    asked = parser.parse_args(arguments)
+    made.add_argument("--write", action="store_true", help="store what the product ships of it")
+    made.add_argument("--against", metavar="COMMIT", help="compare with COMMIT, in pairs of runs")
+    made.add_argument("--pairs", type=int, default=PAIRS, help=f"how many pairs ({PAIRS})")
+    return made
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run what was asked for; 2 on an unknown name, part or commit."""
+    asked = parser().parse_args(arguments)
     # Whoever ends a benchmark ends its servers too.
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
-    benchmark = importlib.import_module(f"tests.benchmarks.{asked.name}")
-    given: dict[str, float | bool] = {"write": True} if asked.write else {}
-    if asked.seconds or asked.minutes:
-        given["duration_s"] = asked.seconds or 60.0 * asked.minutes
-    report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS), **given)
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, lambda *_: sys.exit(TERMINATED))
+    if asked.against is None and not is_warded():
+        command = [sys.executable, "-m", "tests.benchmarks", *arguments]
+        return run_warded(command, folder=REPOSITORY).exit_code
+    try:
+        report = _measured(asked) if asked.against is None else compare(asked)
+    except CannotMeasure as error:
+        print(f"./run bench: {error}", file=sys.stderr)
+        return USAGE_ERROR
     print(json.dumps(report.as_json(), indent=2) if asked.json else as_table(report))
     return 0
 
 
+def _measured(asked: argparse.Namespace) -> Report:
+    benchmark = importlib.import_module(f"tests.benchmarks.{asked.name}")
+    unknown = sorted(set(asked.only or ()) - set(benchmark.PARTS))
+    if unknown:
+        raise CannotMeasure(f"no part {unknown[0]}; {asked.name} has {', '.join(benchmark.PARTS)}")
+    given: dict[str, float | bool] = {"write": True} if asked.write else {}
+    if asked.seconds or asked.minutes:
+        given["duration_s"] = asked.seconds or 60.0 * asked.minutes
+    report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS), **given)
+    return report
+
+
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except KeyboardInterrupt:
+        sys.exit(128 + signal.SIGINT)

@@ -7,6 +7,13 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+AT_MOST, AT_LEAST = frozenset({"at most", "limit"}), frozenset({"at least"})
+"""Names of a peer that is a limit."""
+
+
+class CannotMeasure(ValueError):
+    """Something was asked for that there is not; the message says what."""
+
 
 @dataclass(frozen=True)
 class Figure:
@@ -24,14 +31,32 @@ class Figure:
         """Ours over the peer's."""
         return self.value / self.peer_value if self.peer_value else None
 
+    @property
+    def limit(self) -> float | None:
+        """The limit, where the peer is one."""
+        return self.peer_value if self.peer in AT_MOST | AT_LEAST else None
+
+    @property
+    def met(self) -> bool | None:
+        """Whether the value keeps to the limit."""
+        if self.limit is None:
+            return None
+        return self.value <= self.limit if self.peer in AT_MOST else self.value >= self.limit
+
+    def as_json(self) -> dict[str, Any]:
+        """For machines."""
+        told = {"ratio": self.ratio, "limit": self.limit, "met": self.met}
+        return {**asdict(self), **told}
+
 
 @dataclass
 class Report:
-    """All figures of a run."""
+    """All figures of a run; `beside` are keys of this benchmark's own, such as `pairs`."""
 
     benchmark: str
     machine: dict[str, Any] = field(default_factory=lambda: machine())
     figures: list[Figure] = field(default_factory=list)
+    beside: dict[str, Any] = field(default_factory=dict)
 
     def add(self, *figures: Figure) -> None:
         """Take figures in, telling each at once: a run takes minutes."""
@@ -43,8 +68,9 @@ class Report:
 
     def as_json(self) -> dict[str, Any]:
         """For machines."""
-        rows = [{**asdict(figure), "ratio": figure.ratio} for figure in self.figures]
-        return {"benchmark": self.benchmark, "machine": self.machine, "figures": rows}
+        rows = [figure.as_json() for figure in self.figures]
+        head = {"benchmark": self.benchmark, "machine": self.machine}
+        return {**head, **self.beside, "figures": rows}
 
 
 def machine() -> dict[str, Any]:

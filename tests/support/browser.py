@@ -17,6 +17,7 @@ from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, s
 
 from tests.support.chromium_binary import axe_script, find_chromium
 from tests.support.node import NODE
+from tests.support.unit_tests import needs
 
 ColorScheme = Literal["light", "dark"]
 DESKTOP = (1280, 800)
@@ -43,6 +44,7 @@ ARGUMENTS = (
 @contextmanager
 def launched_browser() -> Iterator[Browser]:
     """A headless Chromium for the time of the block."""
+    needs("a browser")
     chromium = find_chromium()
     # Playwright's own Node needs a library that bare machines lack.
     os.environ.setdefault("PLAYWRIGHT_NODEJS_PATH", str(NODE))

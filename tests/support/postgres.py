@@ -24,6 +24,7 @@ from psycopg import sql
 from tests.support.postgres_binaries import Account, runnable_binaries
 from tests.support.postgres_cleaning import emptied
 from tests.support.shared_run import once, owner_pid, run_folder
+from tests.support.unit_tests import needs
 
 STARTS_WITHIN_S = 60.0
 STOPS_WITHIN_S = 30.0
@@ -137,6 +138,7 @@ def migrated_cluster() -> Cluster:
 
 def running_cluster() -> Cluster:
     """The cluster of this run, without anything of ours in it."""
+    needs("PostgreSQL")
     folder = run_folder() / "postgres"
     with once("postgres") as mark:
         if mark:

@@ -21,6 +21,7 @@ from typing import Self
 import httpx2
 
 from tests.support.nursery import Child, Wish, nursery
+from tests.support.unit_tests import needs
 
 ADMIN_PASSWORD = "only-for-this-test-run"
 STARTS_WITHIN_S = 60.0
@@ -78,6 +79,7 @@ class LiveServer:
         """Start it and wait until it answers; raises `RuntimeError` with its log if it does not."""
         if self._process is not None:
             raise RuntimeError(f"the server already runs as process {self._process.pid}")
+        needs("a server")
         self.data_dir.mkdir(parents=True, exist_ok=True)
         self._process = self._begin()
         try:

@@ -4,21 +4,27 @@ import json
 import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 import pytest
 from _pytest.terminal import TerminalReporter
 
 TALLY_VARIABLE = "REEMBODY_TEST_TALLY"
+SLOWEST = 20
 
 
 @dataclass
 class Tally:
-    """Counts of one run or of several; an error outside a test's own body counts as failed."""
+    """Counts of one run or of several; an error outside a test's own body counts as failed.
+
+    `slowest` are names with seconds, the slowest first, with what their fixtures took.
+    """
 
     passed: int = 0
     failed: int = 0
     skipped: int = 0
     skips: list[tuple[str, str]] = field(default_factory=list)
+    slowest: list[tuple[str, float]] = field(default_factory=list)
 
     def add(self, other: "Tally") -> None:
         """Count `other` in."""
@@ -26,6 +32,8 @@ class Tally:
         self.failed += other.failed
         self.skipped += other.skipped
         self.skips += other.skips
+        both = self.slowest + other.slowest
+        self.slowest = sorted(both, key=lambda one: one[1], reverse=True)[:SLOWEST]
 
     @classmethod
     def read(cls, path: Path) -> "Tally":
@@ -42,9 +50,19 @@ def pytest_terminal_summary(terminalreporter: TerminalReporter) -> None:
         failed=len(stats.get("failed", [])) + len(stats.get("error", [])),
         skipped=len(skips),
         skips=skips,
+        slowest=_slowest(stats),
     )
     if os.environ.get(TALLY_VARIABLE):
         Path(os.environ[TALLY_VARIABLE]).write_text(json.dumps(asdict(tally)))
+
+
+def _slowest(stats: dict[str, list[Any]]) -> list[tuple[str, float]]:
+    """Each test's setup, call and teardown together; each is a report in one of the groups."""
+    durations_s: dict[str, float] = {}
+    for report in (one for group in stats.values() for one in group):
+        if isinstance(report, pytest.TestReport):
+            durations_s[report.nodeid] = durations_s.get(report.nodeid, 0.0) + report.duration
+    return sorted(durations_s.items(), key=lambda one: one[1], reverse=True)[:SLOWEST]
 
 
 def _reason(report: pytest.TestReport | pytest.CollectReport) -> str:

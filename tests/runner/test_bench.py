@@ -1,0 +1,216 @@
+"""`./run bench`: benchmarks by name, and this tree beside another commit."""
+
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import time
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from tests.benchmarks import against
+from tests.benchmarks.__main__ import NAMES, main, parser
+from tests.benchmarks.against import SHORT, check_out, compare, differing_files, interval
+from tests.benchmarks.report import CannotMeasure, Figure, Report
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+BENCHMARKS = REPOSITORY / "tests" / "benchmarks"
+BENCHMARK = """
+import json, os, sys, time
+if {waits}:
+    open({mark!r}, "w").write(str(os.getpid()))
+    time.sleep(600)
+figure = {{"part": "p", "name": "n", "value": {value}, "unit": "s"}}
+print(json.dumps({{"figures": [figure], "arguments": sys.argv[1:]}}))
+"""
+DRIVER = """
+import sys
+from itertools import pairwise
+from pathlib import Path
+from tests.benchmarks import __main__, against
+against.REPOSITORY = Path({repository!r})
+sys.exit(__main__.main(["desk", "--against", "HEAD"]))
+"""
+WAITS_S = 60.0
+
+
+def git(folder: Path, *arguments: str) -> str:
+    """What git says, in a repository that no settings of this machine reach."""
+    who = ["-c", "user.name=Lab", "-c", "user.email=lab@example.org", "-c", "commit.gpgsign=false"]
+    return subprocess.run(
+        ["git", *who, *arguments], cwd=folder, check=True, capture_output=True, text=True
+    ).stdout
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Path:
+    """A repository whose benchmark told 2.0 when it was committed, and tells 1.0 now."""
+    folder = tmp_path / "repository"
+    for name in ("app", "migrations", "tests", "tests/benchmarks"):
+        (folder / name).mkdir(parents=True)
+        (folder / name / "__init__.py").touch()
+    (folder / against.LOCK).write_text("locked\n")
+    write_benchmark(folder, 2.0)
+    git(folder, "init", "--quiet")
+    git(folder, "add", "--all")
+    git(folder, "commit", "--quiet", "--message", "first")
+    write_benchmark(folder, 1.0)
+    return folder
+
+
+def write_benchmark(folder: Path, value: float, *, waits: bool = False) -> None:
+    """A benchmark with one figure; or one that waits for its end."""
+    text = BENCHMARK.format(value=value, waits=waits, mark=str(folder.parent / "mark"))
+    (folder / "tests" / "benchmarks" / "__main__.py").write_text(text)
+
+
+@pytest.fixture
+def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where temporary folders are made."""
+    folder = tmp_path / "scratch"
+    folder.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(folder))
+    return folder
+
+
+def asked(*arguments: str) -> argparse.Namespace:
+    """Arguments as the command reads them."""
+    return parser().parse_args(arguments)
+
+
+def test_only_benchmarks_are_offered() -> None:
+    """A module that measures; neither the command itself nor a benchmark's own helpers."""
+    assert {"avatar", "desk", "retargeting", "telemetry", "walking"} <= set(NAMES)
+    assert not {"__main__", "against", "report", "codecs", "walking_maps"} & set(NAMES)
+
+
+def test_short_forms_are_of_parts_that_there_are() -> None:
+    """Each names parts of its benchmark as that spells them."""
+    assert set(SHORT) <= set(NAMES)
+    for name, words in SHORT.items():
+        text = (BENCHMARKS / f"{name}.py").read_text()
+        parts = [part for option, part in pairwise(words) if option == "--only"]
+        assert parts
+        assert all(f'"{part}"' in text for part in parts)
+
+
+@pytest.mark.parametrize(
+    ("count", "low", "confidence"),
+    [(1, 0, 0.0), (5, 0, 0.9375), (6, 0, 0.96875), (9, 1, 0.9609375), (20, 5, 0.9586105346)],
+)
+def test_the_interval_is_of_order_statistics(count: int, low: int, confidence: float) -> None:
+    """As tables of the sign test have it: of twenty the sixth from either end."""
+    found = interval([float(number) for number in range(count)][::-1])
+    assert (found.low, found.high) == (low, count - 1 - low)
+    assert found.median == (count - 1) / 2
+    assert found.confidence == pytest.approx(confidence)
+
+
+def test_a_limit_is_met_from_its_side() -> None:
+    """ "At most" and "at least" are limits; a rival is none."""
+    peers = ("at most", "at least", "bare mj_step")
+    rows = [Figure("p", "n", 2.0, "s", peer, 3.0).as_json() for peer in peers]
+    assert [(row["limit"], row["met"]) for row in rows] == [(3.0, True), (3.0, False), (None, None)]
+
+
+def test_keys_of_a_benchmarks_own_stand_beside_its_figures() -> None:
+    """One shape for all, however it was measured."""
+    told = Report("desk", beside={"pairs": 6}).as_json()
+    assert set(told) == {"benchmark", "machine", "figures", "pairs"}
+
+
+def test_a_commit_is_written_out_without_a_trace(repository: Path, tmp_path: Path) -> None:
+    """Its files as committed; the repository has neither a work tree nor a change more."""
+    before = git(repository, "status", "--short")
+    name = check_out(repository, "HEAD", tmp_path / "tree")
+    assert git(repository, "rev-parse", "HEAD").startswith(name)
+    assert '"value": 2.0' in (tmp_path / "tree/tests/benchmarks/__main__.py").read_text()
+    assert git(repository, "status", "--short") == before
+    assert len(git(repository, "worktree", "list").splitlines()) == 1
+    assert not (tmp_path / "tree.tar").exists()
+
+
+def test_an_unknown_commit_is_named(repository: Path, tmp_path: Path) -> None:
+    """Before anything is measured."""
+    with pytest.raises(CannotMeasure, match="no commit nowhere"):
+        check_out(repository, "nowhere", tmp_path / "tree")
+
+
+def test_both_sides_run_their_own_tree(
+    repository: Path, scratch: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The working tree and the commit, with medians of either; nothing of the commit remains."""
+    monkeypatch.setattr(against, "REPOSITORY", repository)
+    told = compare(asked("desk", "--against", "HEAD", "--pairs", "2")).as_json()
+    assert told["pairs"] == 2
+    assert told["ratio_low"] <= told["ratio_median"] <= told["ratio_high"]
+    assert [one["name"] for one in told["figures"]] == ["processor time, median", "n"]
+    assert [(one["value"], one["peer_value"]) for one in told["figures"]][1] == (1.0, 2.0)
+    assert told["figures"][1]["peer"] == told["against"]
+    assert list(scratch.iterdir()) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_comparison_leaves_nothing(repository: Path, number: int) -> None:
+    """Neither the commit's files nor a process, whether Ctrl+C ends it or somebody else."""
+    write_benchmark(repository, 1.0, waits=True)
+    scratch, mark = repository.parent / "scratch", repository.parent / "mark"
+    scratch.mkdir()
+    driver = subprocess.Popen(
+        [sys.executable, "-c", DRIVER.format(repository=str(repository))],
+        cwd=REPOSITORY,
+        env={**os.environ, "PYTHONPATH": str(REPOSITORY), "TMPDIR": str(scratch)},
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    deadline_s = time.monotonic() + WAITS_S
+    while not (mark.exists() and mark.read_text()):
+        assert time.monotonic() < deadline_s, "the benchmark did not begin"
+        time.sleep(0.02)
+    assert list(scratch.iterdir())
+    if number == signal.SIGINT:
+        os.killpg(driver.pid, number)
+    else:
+        driver.send_signal(number)
+    assert driver.wait() in (128 + number, -number)
+    assert list(scratch.iterdir()) == []
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(mark.read_text()), 0)
+
+
+def test_what_differs_in_the_work_is_told(tmp_path: Path) -> None:
+    """A changed number is another workload, an import from another place is not."""
+    texts = {
+        "moved.py": ("'''Old.'''\nfrom app.a import b\nN = 1\n", "from app.c.a import b\nN = 1\n"),
+        "changed.py": ("N = 1\n", "N = 2\n"),
+        "report.py": ("N = 1\n", "N = 2\n"),
+    }
+    for at, side in enumerate(("theirs", "ours")):
+        (tmp_path / side / "tests" / "benchmarks").mkdir(parents=True)
+        for name, text in texts.items():
+            (tmp_path / side / "tests" / "benchmarks" / name).write_text(text[at])
+    assert differing_files(tmp_path / "ours", tmp_path / "theirs") == ["changed.py"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (("desk", "--against", "HEAD", "--pairs", "0"), "at least 1"),
+        (("desk", "--against", "HEAD", "--write"), "leave --against away"),
+        (("desk", "--against", "no-such-commit"), "no commit no-such-commit"),
+    ],
+)
+def test_what_cannot_be_compared_is_said(
+    arguments: tuple[str, ...], told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With what would be possible, and exit code 2."""
+    before = signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGHUP)
+    try:
+        assert main(arguments) == 2
+    finally:
+        signal.signal(signal.SIGTERM, before[0])
+        signal.signal(signal.SIGHUP, before[1])
+    assert told in capsys.readouterr().err

@@ -1,0 +1,137 @@
+"""`./run check` looks at what a change can have broken, and starts nothing for it."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support import checking
+from tests.support.checking import Chosen, NoSuchPath, mirror, plan, without_inner
+from tests.support.stage_runner import CORES
+from tests.support.unit_tests import STARTERS
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+NEEDING = """
+import pytest
+from tests.support.unit_tests import needs
+
+@pytest.fixture
+def live_server(): raise AssertionError("it was started")
+
+@pytest.fixture
+def site(live_server): return live_server
+
+def test_alone(): pass
+def test_with_a_server(live_server): pass
+def test_with_a_site(site): pass
+def test_with_a_server_in_its_body(): needs("a server"); raise AssertionError
+@pytest.mark.parametrize("engine", ["sqlite", "postgresql"])
+def test_on_both_engines(engine): pass
+"""
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    """A repository with wings of features, whose tests mirror them."""
+    for file in (
+        "app/main.py",
+        "app/features/record/sessions/service.py",
+        "app/features/record/notes/service.py",
+        "tests/builders.py",
+        "tests/features/record/test_wing.py",
+        "tests/features/record/sessions/builders.py",
+        "tests/features/record/sessions/test_service.py",
+    ):
+        (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / file).touch()
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("path", "tests"),
+    [
+        ("app/features/record/sessions", "tests/features/record/sessions"),
+        ("app/features/record/sessions/service.py", "tests/features/record/sessions"),
+        ("app/features/record/notes", "tests/features/record"),
+        ("app/features/record", "tests/features/record"),
+        ("app/main.py", "tests"),
+        ("migrations/env.py", "tests"),
+        (".", "tests"),
+        ("tests/features/record/test_wing.py", "tests/features/record/test_wing.py"),
+        ("tests/features/record/sessions/builders.py", "tests/features/record/sessions"),
+        ("tests/builders.py", "tests"),
+    ],
+)
+def test_tests_are_found_by_their_place(tree: Path, path: str, tests: str) -> None:
+    """The mirror of a path below tests, or of its nearest parent that has one."""
+    assert mirror(Path(path), tree) == Path(tests)
+
+
+def test_what_is_inside_another_folder_runs_once() -> None:
+    """A folder holds its files."""
+    paths = map(Path, ("tests/a/b", "tests/a", "tests/c.py", "tests/a/b/d", "tests/c.py"))
+    assert without_inner(paths) == [Path("tests/a"), Path("tests/c.py")]
+
+
+def test_a_path_that_is_not_there_is_answered_with_those_that_are(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The nearest folder that is there tells its contents."""
+    assert checking.main(["app/no-such-folder/deep"]) == 2
+    told = capsys.readouterr().err
+    assert "there is no app/no-such-folder/deep; app has " in told
+    assert "features" in told
+
+
+def test_a_path_outside_is_refused() -> None:
+    """Nothing there belongs to the project."""
+    with pytest.raises(NoSuchPath, match="outside"):
+        Chosen.of([".."])
+
+
+def test_without_paths_everything_is_checked() -> None:
+    """Sources, pages and unit tests; these come last, since they take both cores."""
+    planned = plan(Chosen.of([]))
+    assert [stage.name for stage in planned if stage.cores == CORES] == ["unit tests"]
+    assert planned[-1].name == "unit tests"
+    assert {"mypy", "imports", "ruff check", "frontend tests"} <= {one.name for one in planned}
+
+
+def test_a_feature_needs_no_look_at_the_pages() -> None:
+    """Its own tests in one process, so that types are checked on the other core meanwhile."""
+    planned = {stage.name: stage for stage in plan(Chosen.of(["app/api"]))}
+    assert set(planned) == {"ruff check", "ruff format", "mypy", "imports", "unit tests"}
+    assert "tests/api" in planned["unit tests"].command
+    assert planned["unit tests"].cores == 1
+
+
+def test_pages_need_no_look_at_python() -> None:
+    """Lint and tests of the folder, types of all of them."""
+    planned = {stage.name: stage for stage in plan(Chosen.of(["frontend/src/shared"]))}
+    assert set(planned) == {"frontend lint", "frontend types", "frontend tests"}
+    assert str(REPOSITORY / "frontend/src/shared") in planned["frontend tests"].command
+
+
+def test_tests_that_need_more_than_a_process_are_left_out(tmp_path: Path) -> None:
+    """By their fixtures before they begin, else by what they ask for."""
+    (tmp_path / "test_needing.py").write_text(NEEDING)
+    options = ["-c", "/dev/null", "-p", "tests.support.unit_tests", "-rs", str(tmp_path)]
+    told = subprocess.run(
+        [sys.executable, "-m", "pytest", *options],
+        cwd=REPOSITORY,
+        env=os.environ,
+        capture_output=True,
+        text=True,
+        check=False,
+    ).stdout
+    assert "2 passed, 1 skipped, 3 deselected" in told
+    assert "left to ./run test: it needs a server" in told
+
+
+def test_what_starts_something_is_a_fixture() -> None:
+    """A fixture that gets another name is found here, not by a check that takes minutes."""
+    conftests = (REPOSITORY / folder / "conftest.py" for folder in ("tests", "tests/e2e"))
+    defined = "".join(file.read_text() for file in conftests)
+    assert [name for name in STARTERS if f"def {name}(" not in defined] == []

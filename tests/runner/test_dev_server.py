@@ -1,0 +1,71 @@
+"""`npm run dev` serves pages that work against a running server."""
+
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Iterator
+
+import httpx2
+import pytest
+
+from tests.support.node import NODE, NPM, install_packages, node_environment
+from tests.support.server import ADMIN_PASSWORD, LiveServer, free_port
+from tests.support.stages import FRONTEND
+
+STARTS_WITHIN_S = 120.0
+
+
+@pytest.fixture(scope="module")
+def dev_server(shared_server: LiveServer) -> Iterator[str]:
+    """The address of a dev server in front of the real one."""
+    install_packages(FRONTEND)
+    port = free_port()
+    options = ["--host", "127.0.0.1", "--port", str(port), "--strictPort"]
+    process = subprocess.Popen(
+        [NODE, NPM, "run", "--silent", "dev", "--", *options],
+        cwd=FRONTEND,
+        env={**node_environment(), "REEMBODY_URL": f"http://127.0.0.1:{shared_server.port}"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        wait_for(f"http://127.0.0.1:{port}/api/health")
+        yield f"http://127.0.0.1:{port}"
+    finally:
+        # npm does not hand it on to what it has started.
+        os.killpg(process.pid, signal.SIGTERM)
+        process.wait()
+
+
+def wait_for(url: str) -> None:
+    """Wait until it answers."""
+    deadline_s = time.monotonic() + STARTS_WITHIN_S
+    while True:
+        try:
+            httpx2.get(url, timeout=30.0)
+        except httpx2.TransportError:
+            assert time.monotonic() < deadline_s, f"{url} does not answer"
+            time.sleep(0.1)
+        else:
+            return
+
+
+def test_it_hands_calls_over(dev_server: str) -> None:
+    """The interface answers through it."""
+    assert httpx2.get(f"{dev_server}/api/health", timeout=30.0).json()["status"] == "ok"
+
+
+@pytest.mark.parametrize(
+    ("origin", "status"), [("own", 200), ("http://elsewhere.example", 403), ("null", 403)]
+)
+def test_only_its_own_pages_may_change_something(dev_server: str, origin: str, status: int) -> None:
+    """The server's check of origins holds behind it as without it."""
+    answer = httpx2.post(
+        f"{dev_server}/api/login",
+        json={"username": "admin", "password": ADMIN_PASSWORD},
+        headers={"origin": dev_server if origin == "own" else origin},
+        timeout=30.0,
+    )
+    assert answer.status_code == status

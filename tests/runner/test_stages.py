@@ -1,0 +1,129 @@
+"""Stages share two cores, and all that they cost is told in one shape."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support import stages
+from tests.support.stage_runner import CORES, REPOSITORY, Outcome, Stage, as_json, run_stages
+from tests.support.tally import SLOWEST, Tally
+from tests.support.warden import Ended
+
+TEST_FILE = """
+import time
+import pytest
+
+@pytest.fixture
+def slow():
+    time.sleep(0.2)
+
+def test_quick(): pass
+def test_with_a_slow_fixture(slow): pass
+def test_that_is_missing_something(): pytest.skip("it is not there")
+"""
+
+
+def python(name: str, code: str, cores: int = 1) -> Stage:
+    """A stage that runs some Python."""
+    return Stage(name, [sys.executable, "-S", "-c", code], cores=cores)
+
+
+def test_a_failure_keeps_nothing_from_running(capfd: pytest.CaptureFixture[str]) -> None:
+    """All run, in the order of the plan, and what failed says what it has to say."""
+    outcomes = run_stages(
+        [python("one", "raise SystemExit('it is wrong')"), python("two", "", cores=CORES)]
+    )
+    assert [(one.stage.name, one.passed) for one in outcomes] == [("one", False), ("two", True)]
+    assert "it is wrong" in capfd.readouterr().out
+
+
+def test_neighbours_run_side_by_side(tmp_path: Path) -> None:
+    """Two that need one core each wait for each other's file, so neither could run alone."""
+    meet = """
+import pathlib, time
+pathlib.Path({mine!r}).touch()
+while not pathlib.Path({other!r}).exists(): time.sleep(0.01)
+"""
+    files = [str(tmp_path / name) for name in ("a", "b")]
+    pair = [python(own, meet.format(mine=own, other=other)) for own, other in (files, files[::-1])]
+    assert all(outcome.passed for outcome in run_stages(pair))
+
+
+def test_in_short_what_passes_gets_one_line(capfd: pytest.CaptureFixture[str]) -> None:
+    """`./run check` shows what is wrong, not what is right."""
+    run_stages([python("chatty", "print('all is well')")], brief=True)
+    told = capfd.readouterr().out
+    assert "all is well" not in told
+    assert told.startswith("--- chatty: ok")
+
+
+def test_a_stage_that_cannot_begin_has_failed() -> None:
+    """What must be there before it is part of it."""
+
+    def prepare() -> None:
+        raise RuntimeError("no packages")
+
+    (outcome,) = run_stages([Stage("pages", ["true"], prepare=prepare)])
+    assert not outcome.passed
+
+
+def test_times_and_counts_are_sums_of_stages() -> None:
+    """The file of --json: totals, every stage, the slowest tests of all."""
+    first = Tally(3, 1, 1, [("a", "not there")], [("a", 2.0), ("b", 1.0)])
+    second = Tally(2, 0, 0, [], [("c", 1.5)])
+    outcomes = [
+        Outcome(Stage("one", []), Ended(1, 4.0, 2.0, 1.0), first),
+        Outcome(Stage("two", []), Ended(0, 5.0, 0.5, 0.5), second),
+    ]
+    told = json.loads(json.dumps(as_json(outcomes, 9.0)))
+    assert (told["ok"], told["wall_s"], told["processor_s"]) == (False, 9.0, 4.0)
+    assert (told["passed"], told["failed"], told["skipped"]) == (5, 1, 1)
+    assert [(one["name"], one["ok"], one["processor_s"]) for one in told["stages"]] == [
+        ("one", False, 3.0),
+        ("two", True, 1.0),
+    ]
+    assert [one["name"] for one in told["slowest"]] == ["a", "c", "b"]
+    assert told["skips"] == [{"name": "a", "reason": "not there"}]
+
+
+def test_only_the_slowest_are_kept() -> None:
+    """Twenty, of however many runs."""
+    total = Tally()
+    for run in range(3):
+        total.add(Tally(slowest=[(f"{run} {at}", float(at)) for at in range(SLOWEST)]))
+    assert len(total.slowest) == SLOWEST
+    assert total.slowest[0][1] == SLOWEST - 1
+
+
+def test_a_pytest_run_can_be_told_as_json(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """`./run test PATH --json FILE`: the counts, and a test's time with that of its fixtures."""
+    (tmp_path / "test_some.py").write_text(TEST_FILE)
+    file = tmp_path / "told.json"
+    arguments = [str(tmp_path), "-c", "/dev/null", "--json", str(file)]
+    assert stages.main(arguments) == 0
+    assert capfd.readouterr().out.endswith("2 passed, 0 failed, 1 skipped\n")
+    told = json.loads(file.read_text())
+    assert (told["passed"], told["skipped"]) == (2, 1)
+    assert told["slowest"][0]["name"].endswith("test_with_a_slow_fixture")
+    assert told["slowest"][0]["seconds"] >= 0.2
+
+
+def test_help_says_what_json_holds(capsys: pytest.CaptureFixture[str]) -> None:
+    """The shape is documented where it is asked for."""
+    with pytest.raises(SystemExit):
+        stages.main(["--help"])
+    told = capsys.readouterr().out
+    assert all(f'"{key}"' in told for key in as_json([], 0.0))
+
+
+def test_architecture_and_browser_tests_have_stages_of_their_own() -> None:
+    """What the stage of all tests leaves out is a folder that is there, and another stage's."""
+    commands = {stage.name: stage.command for stage in stages.stages(long=False)}
+    ignored = [word.partition("=")[2] for word in commands["tests"] if word.startswith("--ignore=")]
+    others = {folder for folder in ignored for name in commands if folder in commands[name]}
+    assert sorted(others) == sorted(ignored)
+    assert all((REPOSITORY / folder).is_dir() for folder in ignored)

@@ -1,0 +1,107 @@
+"""A command under a warden leaves no process behind, and all its time is known."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.support.warden import run_warded
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+linux = pytest.mark.skipif(sys.platform != "linux", reason="only Linux hands orphans on")
+BURN_S = 0.3
+BURN = f"""
+import time
+while time.process_time() < {BURN_S}: pass
+"""
+LEAVE = """
+import subprocess, sys
+subprocess.Popen([sys.executable, "-S", "-c", {code!r}], start_new_session=True)
+"""
+SERVE = """
+import os, sys, time
+open({file!r}, "w").write(str(os.getpid()))
+time.sleep(600)
+"""
+CALL = """
+import sys
+from pathlib import Path
+from tests.support.warden import run_warded
+sys.exit(run_warded({command!r}, folder=Path({folder!r})).exit_code)
+"""
+WAITS_S = 60.0
+
+
+def python(code: str) -> list[str]:
+    """A command that runs some Python."""
+    return [sys.executable, "-S", "-c", code]
+
+
+def eventually(fact: Callable[[], bool]) -> None:
+    """Wait until it is so."""
+    deadline_s = time.monotonic() + WAITS_S
+    while not fact():
+        assert time.monotonic() < deadline_s, "it did not come true"
+        time.sleep(0.02)
+
+
+def lives(pid: int) -> bool:
+    """Whether there is such a process; one that nobody has waited for yet is over."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+@pytest.mark.parametrize("code", [0, 3, 127])
+def test_the_exit_code_is_the_commands(tmp_path: Path, code: int) -> None:
+    """The warden adds nothing to it."""
+    assert run_warded(python(f"raise SystemExit({code})"), folder=tmp_path).code == code
+
+
+def test_a_signal_is_told_as_one(tmp_path: Path) -> None:
+    """Negative, as subprocess has it; and as a shell has it."""
+    ended = run_warded(["sh", "-c", "kill -9 $$"], folder=tmp_path)
+    assert (ended.code, ended.exit_code) == (-signal.SIGKILL, 128 + signal.SIGKILL)
+
+
+def test_a_command_that_is_not_there_is_named(tmp_path: Path) -> None:
+    """As a shell does it."""
+    with (tmp_path / "errors").open("wb") as errors:
+        assert run_warded(["no-such-command"], folder=tmp_path, errors=errors).code == 127
+    assert "no-such-command" in (tmp_path / "errors").read_text()
+
+
+@linux
+def test_the_time_of_an_orphan_counts(tmp_path: Path) -> None:
+    """A process that outlives its parent, in a session of its own, is waited for and counted."""
+    ended = run_warded(python(LEAVE.format(code=BURN)), folder=tmp_path)
+    assert ended.code == 0
+    assert ended.processor_s >= BURN_S
+
+
+@linux
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL])
+def test_whoever_kills_the_caller_ends_its_servers(tmp_path: Path, number: int) -> None:
+    """Also where the server has a session of its own, and its parent is gone."""
+    mark = tmp_path / "pid"
+    command = python(
+        LEAVE.format(code=SERVE.format(file=str(mark))) + "\nimport time\ntime.sleep(600)"
+    )
+    caller = subprocess.Popen(
+        python(CALL.format(command=command, folder=str(tmp_path))),
+        cwd=REPOSITORY,
+        env={**os.environ, "PYTHONPATH": str(REPOSITORY)},
+    )
+    eventually(lambda: mark.exists() and mark.read_text().isdigit())
+    server = int(mark.read_text())
+    assert lives(server)
+    caller.send_signal(number)
+    caller.wait()
+    eventually(lambda: not lives(server))

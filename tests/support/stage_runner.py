@@ -1,0 +1,198 @@
+"""Stages of a check of the project: how they share two cores, and what is told of them.
+
+A stage that fails does not keep the others from running: one call shows everything that is wrong.
+Neighbours that need one core run side by side and print what they have to say when they end; one
+that needs both runs alone, prints as it goes, and is not disturbed in what it times.
+"""
+
+# ruff: noqa: T201  # what it prints is what it is for
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import groupby
+from pathlib import Path
+from threading import Lock
+from typing import IO, Any
+
+from tests.support.tally import TALLY_VARIABLE, Tally
+from tests.support.warden import Ended, run_warded
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+# As many as a small machine has: with three, tests that keep real time took twice as long.
+CORES = 2
+FAILED_TO_START = Ended(1, 0.0, 0.0, 0.0)
+ONE_AT_A_TIME = Lock()
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A command, where it runs, and what must be there before it does."""
+
+    name: str
+    command: list[str]
+    folder: Path = REPOSITORY
+    environment: dict[str, str] = field(default_factory=dict)
+    prepare: Callable[[], None] | None = None
+    cores: int = 1
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a stage went."""
+
+    stage: Stage
+    ended: Ended
+    tally: Tally
+
+    @property
+    def passed(self) -> bool:
+        """Whether it found nothing wrong."""
+        return self.ended.code == 0
+
+
+def inherited() -> dict[str, str]:
+    """The environment of a stage: what one has compiled the next need not compile again."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+
+
+def run_stages(planned: Sequence[Stage], *, brief: bool = False) -> list[Outcome]:
+    """Run every stage in order, neighbours that need one core side by side.
+
+    If `brief`, those that find nothing wrong get one line.
+    """
+    outcomes: list[Outcome] = []
+    for alone, neighbours in groupby(planned, lambda stage: stage.cores == CORES):
+        group = list(neighbours)
+        outcomes += (
+            [_run_aloud(stage) for stage in group] if alone else _side_by_side(group, brief=brief)
+        )
+    return outcomes
+
+
+def _side_by_side(planned: list[Stage], *, brief: bool) -> list[Outcome]:
+    with ThreadPoolExecutor(CORES) as threads:
+        try:
+            return list(threads.map(partial(_run_silently, brief=brief), planned))
+        except BaseException:
+            threads.shutdown(cancel_futures=True)
+            raise
+
+
+def _run_aloud(stage: Stage) -> Outcome:
+    """Run a stage that prints as it goes."""
+    print(_heading(stage.name), flush=True)
+    outcome = _run(stage)
+    print(_ending(outcome), flush=True)
+    return outcome
+
+
+def _run_silently(stage: Stage, *, brief: bool) -> Outcome:
+    """Run a stage and print what it said in one piece: its neighbour says something too."""
+    with tempfile.TemporaryFile() as output:
+        outcome = _run(stage, output)
+        output.seek(0)
+        said = output.read().decode(errors="replace").rstrip()
+    shown = [] if brief and outcome.passed else [_heading(stage.name), said]
+    lines = [*filter(None, shown), _ending(outcome)]
+    with ONE_AT_A_TIME:
+        print("\n".join(lines), flush=True)
+    return outcome
+
+
+def _run(stage: Stage, output: IO[bytes] | None = None) -> Outcome:
+    with tempfile.TemporaryDirectory() as folder:
+        tally_file = Path(folder) / "tally.json"
+        try:
+            if stage.prepare:
+                stage.prepare()
+            ended = run_warded(
+                stage.command,
+                folder=stage.folder,
+                environment={**inherited(), **stage.environment, TALLY_VARIABLE: str(tally_file)},
+                output=output,
+                errors=subprocess.STDOUT if output else None,
+            )
+        except (OSError, RuntimeError) as error:
+            print(f"{stage.name}: {error}", file=sys.stderr)
+            ended = FAILED_TO_START
+        return Outcome(stage, ended, Tally.read(tally_file))
+
+
+def _heading(title: str) -> str:
+    return f"\n=== {title} {'=' * (74 - len(title))}"
+
+
+def _ending(outcome: Outcome) -> str:
+    result = "ok" if outcome.passed else f"FAILED ({outcome.ended.code})"
+    return f"--- {outcome.stage.name}: {result} after {outcome.ended.wall_s:.1f} s"
+
+
+def summed(outcomes: Sequence[Outcome]) -> Tally:
+    """What all pytest runs came to."""
+    total = Tally()
+    for outcome in outcomes:
+        total.add(outcome.tally)
+    return total
+
+
+def print_tests(outcomes: Sequence[Outcome]) -> None:
+    """Which tests were skipped, and which took longest."""
+    total = summed(outcomes)
+    if total.skips:
+        print("\nSkipped:")
+        for test, reason in total.skips:
+            print(f"  {test}: {reason}")
+    if total.slowest:
+        print("\nSlowest:")
+        for test, taken_s in total.slowest:
+            print(f"{taken_s:8.1f} s  {test}")
+
+
+def print_stages(outcomes: Sequence[Outcome], wall_s: float) -> None:
+    """The closing table; the very last line is the sum of all pytest runs."""
+    print(_heading("summary"))
+    print(f"{'':<29} {'wall':>10} {'processor':>12}")
+    for outcome in outcomes:
+        result = "ok" if outcome.passed else "FAILED"
+        print(f"{outcome.stage.name:<20} {result:<8} {_times(outcome.ended)}")
+    processor_s = sum(outcome.ended.processor_s for outcome in outcomes)
+    print(f"{'all':<29} {wall_s:8.1f} s {processor_s:10.1f} s")
+    total = summed(outcomes)
+    print(f"\n{total.passed} passed, {total.failed} failed, {total.skipped} skipped", flush=True)
+
+
+def _times(ended: Ended) -> str:
+    return f"{ended.wall_s:8.1f} s {ended.processor_s:10.1f} s"
+
+
+def as_json(outcomes: Sequence[Outcome], wall_s: float) -> dict[str, Any]:
+    """The same for machines; `./run test --help` describes it."""
+    total = summed(outcomes)
+    return {
+        "ok": all(outcome.passed for outcome in outcomes),
+        "wall_s": wall_s,
+        "processor_s": sum(outcome.ended.processor_s for outcome in outcomes),
+        **_counts(total),
+        "stages": [
+            {
+                "name": outcome.stage.name,
+                "ok": outcome.passed,
+                "wall_s": outcome.ended.wall_s,
+                "processor_s": outcome.ended.processor_s,
+                **_counts(outcome.tally),
+            }
+            for outcome in outcomes
+        ],
+        "slowest": [{"name": test, "seconds": taken_s} for test, taken_s in total.slowest],
+        "skips": [{"name": test, "reason": reason} for test, reason in total.skips],
+    }
+
+
+def _counts(tally: Tally) -> dict[str, int]:
+    return {"passed": tally.passed, "failed": tally.failed, "skipped": tally.skipped}
