@@ -137,9 +137,9 @@ def test_wings_are_looked_into_and_stand_on_the_platform(build: Build) -> None:
             "app/features/__init__.py": "",
             "app/features/care/rights/service.py": "import app.features.care.network",
             "app/features/care/network.py": "import app.platform.live",
-            "app/features/record/cockpit/view.py": "import app.features.record.tablet.help\n"
+            "app/features/record/cockpit/view.py": "import app.features.record.tablet.service\n"
             "import app.features.record.tablet.call\nimport app.platform.live",
-            "app/features/record/tablet/help.py": "import app.features.record.cockpit.view",
+            "app/features/record/tablet/service.py": "import app.features.record.cockpit.view",
             "app/features/record/tablet/call.py": "import app.platform.live",
             "app/platform/live.py": "def lazily():\n    import app.features.care.network",
         }
@@ -154,7 +154,7 @@ def test_wings_are_looked_into_and_stand_on_the_platform(build: Build) -> None:
     assert found.upward_inside_wings == {"care": 0, "record": 1}
     assert found.upward_imports == 2
     assert ("app/platform/live.py", "app/features/care/network.py") in found.upward_import_list
-    assert ("app/features/record/tablet/help.py", "app/features/record/cockpit/view.py") in (
+    assert ("app/features/record/tablet/service.py", "app/features/record/cockpit/view.py") in (
         found.upward_import_list
     )
 

@@ -1,8 +1,8 @@
 """What the operator has to know now: raised, cleared, and kept."""
 
 from app.features.record.alarms.alarm import STANDING, Alarm, Change, Condition, Moment, WatchLimits
-from app.features.record.alarms.schemas import AlarmView
 from app.features.record.alarms.service import (
+    AlarmView,
     clear_all,
     open_alarms,
     open_rows,

@@ -2,8 +2,7 @@
 
 from fastapi import APIRouter
 
-from app.features.record.alarms.schemas import AlarmView
-from app.features.record.alarms.service import alarm_history
+from app.features.record.alarms.service import AlarmView, alarm_history
 from app.platform.access import session_by_id
 from app.platform.dependencies import Reading, SignedIn
 

@@ -3,16 +3,40 @@
 import math
 from collections.abc import Collection, Iterable
 from datetime import datetime, timedelta
+from typing import Literal
 
+from pydantic import BaseModel
 from sqlalchemy import Select, bindparam, case, func, select
 from sqlalchemy.orm import Session
 
 from app.features.record.alarms.alarm import Change, Condition
-from app.features.record.alarms.schemas import AlarmView
 from app.models import AlarmRow, StudySession
 
 MESSAGE_LENGTH = 400
 TICK = timedelta(microseconds=1)
+
+
+class AlarmView(BaseModel):
+    """One alarm from its raising to its clearing; `cleared_at` is null while it is open.
+
+    `value` with its `unit` says how much when it was raised, `client_t_s` when it was on the
+    headset's clock. `outcome` says why it was cleared, where there is more to say than that its
+    cause was gone.
+    """
+
+    id: str
+    code: str
+    severity: Literal["info", "warning", "critical"]
+    stream: str | None
+    message: str
+    value: float | None
+    unit: str | None
+    client_t_s: float | None
+    since: datetime
+    cleared_at: datetime | None
+    outcome: str | None
+
+
 _NEWEST_FIRST = (
     select(AlarmRow)
     .where(AlarmRow.session_id == bindparam("session_id"))

@@ -2,8 +2,10 @@
 
 from fastapi import APIRouter
 
-from app.features.record.calibrations.schemas import CalibrationView, NewCalibration, Retirement
 from app.features.record.calibrations.service import (
+    CalibrationView,
+    NewCalibration,
+    Retirement,
     add_calibration,
     calibrations,
     retire_calibration,

@@ -15,8 +15,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from app.errors import NotSignedIn, ReembodyError
 from app.features.record.headset import TOPICS, TOUCHES
-from app.features.record.poses.schemas import Setup, Touches
-from app.features.record.poses.setting import setup_of
+from app.features.record.poses.setting import Setup, Touches, setup_of
 from app.platform.context import AppContext
 from app.platform.dependencies import admitted
 from app.wire import StreamName

@@ -1,18 +1,60 @@
 """What a console needs before it can draw a pose: the body, the boxes, and whether it is blind."""
 
+from typing import Literal
+
+from pydantic import BaseModel
 from sqlalchemy.orm import Session
 
-from app.features.record.headset import headset_state, participant_info
-from app.features.record.poses.schemas import Setup, SurfaceView, Vector
+from app.features.record.headset import Touch, headset_state, participant_info
 from app.features.record.sessions import plan_of, protocol_of_session
 from app.models import StudySession
 from app.platform.access import Caller, is_blind, session_by_id
 from app.protocol import StudyProtocol
 from app.science.skeleton import JOINT_NAMES, PARENTS, SkeletonError, build_skeleton
+from app.science.tasks.names import SurfaceKind
 
 USUAL_STATURE_M = 1.72
 """Until the participant's is known."""
 Limb = str | None
+Vector = tuple[float, float, float]
+
+
+class Touches(BaseModel):
+    """The last few touches, the oldest first: who has missed some finds them here again."""
+
+    type: Literal["touches"] = "touches"
+    touches: tuple[Touch, ...]
+
+
+class SurfaceView(BaseModel):
+    """A block of the task's place: world frame, metres."""
+
+    key: str
+    kind: SurfaceKind
+    box: int | None
+    center_m: Vector
+    half_size_m: Vector
+
+
+class Setup(BaseModel):
+    """What poses are drawn with; told first, and again whenever it has changed.
+
+    Joint j stands at `offsets_m[j]` in its parent's frame (-1: the world); the rest pose is the
+    T-pose facing -z, y up. `surfaces` are those of the present step's task. Who is `blinded` gets
+    the participant's figure only, and no touches: both would tell by how much the avatar lags.
+    """
+
+    type: Literal["setup"] = "setup"
+    blinded: bool
+    simulated: bool
+    recording: bool
+    limb: Literal["hand", "foot"] | None
+    stature_m: float
+    stature_known: bool
+    joints: tuple[str, ...]
+    parents: tuple[int, ...]
+    offsets_m: tuple[Vector, ...]
+    surfaces: tuple[SurfaceView, ...]
 
 
 def setup_of(db: Session, caller: Caller, session_id: str) -> Setup:

@@ -8,8 +8,7 @@ from typing import Any, cast
 from sqlalchemy import Table, bindparam, insert, select
 from sqlalchemy.orm import Session
 
-from app.errors import NotNow
-from app.features.record.questionnaires.checks import check_answers
+from app.errors import InvalidInput, NotNow
 from app.features.record.questionnaires.due import DueForm, due_form
 from app.features.record.questionnaires.due import current_administration as current_administration
 from app.features.record.questionnaires.refused import keep_refused, request_hash
@@ -25,7 +24,7 @@ from app.models import Answer, ScoreValue, StudySession, Submission
 from app.models.types import new_id
 from app.platform.context import AppContext
 from app.rows import insert_rows
-from app.science.instruments import Instrument, score_answers
+from app.science.instruments import Instrument, score_answers, validate_answers
 
 Row = dict[str, Any]
 ANSWERS = cast("Table", Answer.__table__)
@@ -156,3 +155,44 @@ def _score_rows(id_: str, instrument: Instrument, answers: Mapping[str, AnswerVa
         {"submission_id": id_, "score": key, "value": value}
         for key, value in score_answers(instrument, answers).items()
     ]
+
+
+def check_answers(
+    instrument: Instrument, request: SubmissionRequest, *, allow_missing: bool
+) -> None:
+    """Raise InvalidInput with every answer that does not fit, or for an order or a language that
+    is not the form's. `allow_missing`: required answers may be left out.
+    """
+    problems = [
+        problem
+        for problem in validate_answers(instrument, request.answers)
+        if not (allow_missing and problem.value is None)
+    ]
+    if problems:
+        raise InvalidInput(
+            f"{len(problems)} answer{'s do' if len(problems) != 1 else ' does'} not fit",
+            value=[problem.item for problem in problems],
+            remedy="Mend the answers named below; nothing was stored.",
+            details=[
+                {
+                    "item": problem.item,
+                    "message": problem.message,
+                    "value": problem.value,
+                    "valid": problem.valid,
+                    "remedy": problem.remedy,
+                }
+                for problem in problems
+            ],
+        )
+    if sorted(request.shown_order) != sorted(instrument.by_key):
+        raise InvalidInput(
+            "shown_order must name every item once",
+            value=request.shown_order,
+            valid=sorted(instrument.by_key),
+        )
+    if request.language not in instrument.languages:
+        raise InvalidInput(
+            f"the form is not written in {request.language!r}",
+            value=request.language,
+            valid=list(instrument.languages),
+        )

@@ -1,7 +1,6 @@
 """The receipt: what of a session is there, proven from what is stored."""
 
-from app.features.record.receipts.service import receipt_of
-from app.features.record.receipts.text import receipt_text
+from app.features.record.receipts.service import receipt_of, receipt_text
 
 __all__ = [
     "receipt_of",

@@ -2,8 +2,10 @@
 
 from fastapi import APIRouter
 
-from app.features.record.suggestions.schemas import Decision, NewSuggestion, SuggestionView
 from app.features.record.suggestions.service import (
+    Decision,
+    NewSuggestion,
+    SuggestionView,
     add_suggestion,
     decide_suggestion,
     suggestions_of,

@@ -18,14 +18,13 @@ from app.features.record.sessions import (
     plan_of,
     state_of,
 )
-from app.features.record.tablet.help import may_ask, note_help
 from app.features.record.tablet.schemas import (
     Acknowledgement,
     HelpWish,
     LanguageChoice,
     TabletState,
 )
-from app.features.record.tablet.service import tablet_state
+from app.features.record.tablet.service import may_ask, note_help, tablet_state
 from app.models import Device, StudySession, StudyVersion
 from app.platform.access import session_by_id
 from app.platform.context import AppContext

@@ -1,9 +1,16 @@
-"""Which screen a tablet shows: its own session's current step and nothing about the condition."""
+"""Which screen a tablet shows, and how its participant calls the experimenter.
+
+The screen tells of its own session's current step and nothing about the condition. A call is an
+alarm of the session: it is on record with its times, no page can miss it, and it stands until
+somebody answers it, the participant takes it back or the session ends.
+"""
 
 from collections.abc import Mapping, Sequence
+from typing import Literal
 
 from sqlalchemy.orm import Session
 
+from app.features.record.alarms import Change, Condition, open_rows, store_change
 from app.features.record.questionnaires import current_administration
 from app.features.record.sessions import (
     SessionState,
@@ -12,12 +19,19 @@ from app.features.record.sessions import (
     protocol_of_session,
     state_of,
 )
-from app.features.record.tablet.help import help_asked
 from app.features.record.tablet.schemas import Screen, TabletState
 from app.models import StudySession
+from app.platform.context import AppContext
 from app.protocol import StudyProtocol
 from app.protocol.plan import Step
 
+CODE = "help_asked"
+_OVER = ("completed", "aborted", "withdrawn")
+_CALL_WORDS = {
+    "asked": "The participant calls the experimenter from the tablet.",
+    "taken_back": "The participant no longer needs help.",
+    "answered": "The experimenter went to the participant.",
+}
 _SCREENS: dict[str, Screen] = {
     "consent": "consent",
     "instructions": "instructions",
@@ -89,3 +103,29 @@ def _next(plan: Sequence[Step], state: SessionState, language: str) -> str | Non
 
 def _text(text: Mapping[str, str], language: str) -> str:
     return text.get(language) or next(iter(text.values()), "")
+
+
+def help_asked(db: Session, session_id: str) -> bool:
+    """Whether a call waits for an answer."""
+    return any(row.code == CODE for row in open_rows(db, session_id))
+
+
+def may_ask(state: SessionState) -> bool:
+    """A session that has not ended has somebody who comes."""
+    return state.status not in _OVER
+
+
+def note_help(
+    db: Session,
+    context: AppContext,
+    session: StudySession,
+    what: Literal["asked", "taken_back", "answered"],
+) -> None:
+    """Put a call, its end or its answer on record; what changes nothing is not recorded."""
+    change: Literal["raised", "cleared"] = "raised" if what == "asked" else "cleared"
+    if store_change(
+        db,
+        session.id,
+        Change(change, Condition(CODE, _CALL_WORDS[what]), context.clock.utc_now()),
+    ):
+        context.hub.publish_after_commit(db, session.id)

@@ -9,8 +9,8 @@ from app.features.record.telemetry.frames import (
     iter_frames,
     iter_pieces,
 )
-from app.features.record.telemetry.hinges import hinges_of
 from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
+from app.features.record.telemetry.movement import hinges_of
 from app.features.record.telemetry.positions import (
     Outcome,
     certain_active_s,

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.features.record.telemetry.hinges import hinges_of
+from app.features.record.telemetry.movement import hinges_of
 from app.science.avatar.targets.hinge_reference import HingeReference
 from app.science.rotations import identity
 from app.science.skeleton import JOINT_COUNT, JOINT_NAMES

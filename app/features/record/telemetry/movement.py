@@ -13,6 +13,8 @@ from functools import cached_property
 import numpy as np
 from sqlalchemy.orm import Session
 
+from app.features.movement.avatar.service import configuration_by_hash
+from app.features.movement.humanoids.service import figure_by_hash
 from app.features.record.telemetry.encoding import DamagedChunkError, Frames
 from app.features.record.telemetry.frames import (
     concatenate,
@@ -20,8 +22,8 @@ from app.features.record.telemetry.frames import (
     iter_pieces,
     phase_frames,
 )
-from app.features.record.telemetry.hinges import hinges_of
 from app.models import TelemetryChunk
+from app.platform.access import session_by_id
 from app.science.avatar.targets.hinge_reference import HingeReference
 from app.science.recorded_error import Asked
 from app.wire import StreamName
@@ -79,3 +81,19 @@ def _between(
             yield decode_piece(piece)
         except DamagedChunkError as error:
             log.warning("target of %s, seq %d: %s", session_id, piece.seq_first, error)
+
+
+def hinges_of(db: Session, session_id: str) -> HingeReference | None:
+    """The hinges as the session's configuration has them; None for a delayed copy.
+
+    The first one in a process loads the compiler, which takes a second: not for the event loop.
+    Raises NotFound where there is no such session.
+    """
+    content_hash = session_by_id(db, session_id).avatar_configuration_hash
+    if content_hash is None:
+        return None
+    configuration = configuration_by_hash(db, content_hash)
+    figure = figure_by_hash(db, configuration.humanoid)
+    # What a model lacks is left out of the body, whatever the configuration says about it.
+    parts = [part for part in configuration.parts if figure is None or part in figure.places_m]
+    return HingeReference(configuration.in_force, parts)

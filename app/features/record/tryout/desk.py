@@ -5,17 +5,53 @@ import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
-from typing import Any, Self
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, StringConstraints
 
 from app.clock import Clock
 from app.database import Database
 from app.errors import Conflict, NotDurable, NotFound
 from app.features.people.accounts.service import issue_token, revoke_token
 from app.features.record.tryout.performance import Performance
-from app.features.record.tryout.schemas import TryoutState, TryoutTrouble, TryoutView
 from app.models import Account
 from app.platform.access import Caller
 from app.platform.context import AppContext, Part
+
+TryoutState = Literal["starting", "running", "done", "stopped", "failed"]
+
+
+class TryoutWish(BaseModel):
+    """In which language the scripted participant answers."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    language: Annotated[str, StringConstraints(min_length=2, max_length=8)]
+
+
+class TryoutTrouble(BaseModel):
+    """Why it ended early, and what to do about it."""
+
+    message: str
+    remedy: str
+
+
+class TryoutView(BaseModel):
+    """The newest tryout. `session_id` is there once the session is; `step` says where it is.
+
+    `speed`: how many times faster than a person. `mine`: whether the reader began it.
+    """
+
+    state: TryoutState
+    study_key: str
+    session_id: str | None
+    step: str | None
+    speed: float
+    started_at: datetime
+    started_by: str
+    mine: bool
+    trouble: TryoutTrouble | None
+
 
 log = logging.getLogger(__name__)
 SPEED = 4.0

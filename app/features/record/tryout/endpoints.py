@@ -9,8 +9,7 @@ from app.features.design.studies.service import (
     require_open,
     study_by_key,
 )
-from app.features.record.tryout.desk import TryoutDesk
-from app.features.record.tryout.schemas import TryoutView, TryoutWish
+from app.features.record.tryout.desk import TryoutDesk, TryoutView, TryoutWish
 from app.platform.access import Caller, require_object
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn

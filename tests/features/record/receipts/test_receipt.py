@@ -4,7 +4,7 @@ import json
 
 from sqlalchemy import delete, update
 
-from app.features.record.receipts.text import receipt_text
+from app.features.record.receipts.service import receipt_text
 from app.models import Phase, SessionEvent, TelemetryChunk
 from tests.features.lab import Lab, ok
 from tests.features.record.receipts.conftest import Kept

@@ -5,7 +5,7 @@ Once the participant's data are erased nothing is added any more, or they would 
 
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
-from app.features.record.sessions.engine.refused import Refused
+from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.state import SessionState, SessionStatus
 
 

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
 from app.features.record.sessions.engine.beside import decide_beside
+from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.holding import decide_override, require_not_held, rules_met
 from app.features.record.sessions.engine.phases import decide_headset_lost, decide_report
-from app.features.record.sessions.engine.refused import Refused
 from app.features.record.sessions.engine.state import (
     PhaseState,
     PhaseStatus,

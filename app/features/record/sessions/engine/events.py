@@ -5,22 +5,16 @@ by id, with a salted hash: erasure removes content and salt, and the chain still
 """
 
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from pydantic import TypeAdapter
 
-from app.features.record.sessions.engine.event import Event as Event
-from app.features.record.sessions.engine.events_beside import AnswersCorrected as AnswersCorrected
-from app.features.record.sessions.engine.events_beside import AvatarBuilt as AvatarBuilt
-from app.features.record.sessions.engine.events_beside import BlindingLifted as BlindingLifted
-from app.features.record.sessions.engine.events_beside import CheckOverridden as CheckOverridden
-from app.features.record.sessions.engine.events_beside import DataErased as DataErased
-from app.features.record.sessions.engine.events_beside import FormRefused as FormRefused
-from app.features.record.sessions.engine.events_beside import NoteAdded as NoteAdded
-from app.features.record.sessions.engine.events_holding import StopRuleMet as StopRuleMet
-from app.features.record.sessions.engine.events_holding import (
-    StopRuleOverridden as StopRuleOverridden,
-)
+
+@dataclass(frozen=True, kw_only=True)
+class Event:
+    """Base of all events; `type` is its stored name."""
+
+    type: ClassVar[str]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -201,6 +195,100 @@ class SessionEnded(Event):
     status: str
     content_id: str | None = None
     content_hash: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlindingLifted(Event):
+    """The session's condition was shown to somebody on purpose, for the reason given."""
+
+    type = "blinding_lifted"
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class NoteAdded(Event):
+    """The operator wrote a note."""
+
+    type = "note_added"
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class AvatarBuilt(Event):
+    """The headset took up a physics avatar: how it behaves, by the hash of its configuration.
+
+    The content holds the stature it was built for and the model itself.
+    """
+
+    type = "avatar_built"
+    configuration_hash: str
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class CheckOverridden(Event):
+    """Somebody goes on although the pre-flight's check `check` was not green.
+
+    The content holds the reason, and what the check had found.
+    """
+
+    type = "check_overridden"
+    check: str
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class FormRefused(Event):
+    """Other answers came for a form that is stored: that one stands, these are kept beside."""
+
+    type = "form_refused"
+    submission_id: str
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class AnswersCorrected(Event):
+    """A stored answer was corrected: the first one is kept, the newest counts."""
+
+    type = "answers_corrected"
+    submission_id: str
+    content_id: str
+    content_hash: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class DataErased(Event):
+    """The participant's data are gone; `erasure_id` is the tombstone's.
+
+    `reason_code`: withdrawn, requested, retention or mistake.
+    """
+
+    type = "data_erased"
+    erasure_id: str
+    reason_code: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopRuleMet(Event):
+    """A form met a stop rule of the study, by its index: the session is held from here."""
+
+    type = "stop_rule_met"
+    rule: int
+    submission_id: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class StopRuleOverridden(Event):
+    """The operator goes on although a stop rule was met, for the reason given."""
+
+    type = "stop_rule_overridden"
+    content_id: str
+    content_hash: str
 
 
 EVENT_TYPES: dict[str, type[Event]] = {

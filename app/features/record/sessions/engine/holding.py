@@ -6,7 +6,7 @@ reports come in, notes can be written, and the session can be ended at any momen
 
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
-from app.features.record.sessions.engine.refused import Refused
+from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.state import SessionState
 
 GOES_ON = (c.BeginPhase, c.CompleteStep, c.Materialise, c.Redo, c.Resume, c.Skip)

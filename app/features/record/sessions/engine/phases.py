@@ -15,7 +15,7 @@ from typing import TypeVar
 
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
-from app.features.record.sessions.engine.refused import Refused
+from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.state import PhaseState, PhaseStatus, SessionState
 from app.protocol.plan import Step
 
