@@ -1,7 +1,7 @@
 import { existsSync, readdirSync } from "node:fs";
 import { resolve } from "node:path";
 import react from "@vitejs/plugin-react";
-import { defineConfig, type Plugin } from "vitest/config";
+import { defineConfig, type Plugin } from "vite";
 import { tabletWorker, WORKER } from "./tabletWorker.ts";
 
 const source = resolve(import.meta.dirname, "src");
@@ -52,5 +52,4 @@ export default defineConfig({
     },
   },
   server: { port: 5173, proxy: { "/api": { target: "http://127.0.0.1:8000", ws: true } } },
-  test: { root: source, include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
 });

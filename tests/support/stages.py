@@ -23,7 +23,7 @@ from tests.support.tally import TALLY_VARIABLE, Tally
 REPOSITORY = Path(__file__).resolve().parents[2]
 FRONTEND = REPOSITORY / "frontend"
 # Not ".": outside of a git checkout ruff does not know what is ignored, such as uv in `.uv`.
-OURS = ("app", "migrations", "tests", "hatch_build.py")
+OURS = ("app", "migrations", "tests", "build_pages.py", "hatch_build.py", "set_up.py")
 # As many as a small machine has cores: with three, tests that keep real time took twice as long.
 WORKERS = "2"
 # Everything in there is a browser test, and nothing else is one.
