@@ -9,7 +9,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 # The build backend loads this file alone, from wherever it runs.
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from build_pages import PagesError, build_pages, say  # noqa: E402 - found by the line above
+from build_pages import PagesError, build_pages, say
 
 
 class PagesBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its parameter is hatchling's own

@@ -84,7 +84,9 @@ def test_names_and_contents_both_count(builder: ModuleType, frontend: Path) -> N
     assert len(hashes) == 4
 
 
-def test_a_failed_build_shows_npms_words_and_is_not_done(builder: ModuleType, frontend: Path) -> None:
+def test_a_failed_build_shows_npms_words_and_is_not_done(
+    builder: ModuleType, frontend: Path
+) -> None:
     """The message carries what npm said, and the next call tries again."""
     build(builder, frontend)
     (frontend / "build.js").write_text("throw new Error('the page is unhappy')")

@@ -26,6 +26,7 @@ def main(arguments: list[str]) -> int:
     duration = parser.add_mutually_exclusive_group()
     duration.add_argument("--seconds", type=float, help="how long a load lasts, where there is one")
     duration.add_argument("--minutes", type=float, help="the same in minutes")
+    parser.add_argument("--runs", type=int, help="how often, where all is done several times")
     parser.add_argument("--write", action="store_true", help="store what the product ships of it")
     asked = parser.parse_args(arguments)
     # Whoever ends a benchmark ends its servers too.
@@ -34,6 +35,8 @@ def main(arguments: list[str]) -> int:
     given: dict[str, float | bool] = {"write": True} if asked.write else {}
     if asked.seconds or asked.minutes:
         given["duration_s"] = asked.seconds or 60.0 * asked.minutes
+    if asked.runs:
+        given["runs"] = asked.runs
     report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS), **given)
     print(json.dumps(report.as_json(), indent=2) if asked.json else as_table(report))
     return 0
