@@ -37,9 +37,10 @@ ASSET = re.compile(r"""<(?:script[^>]*\ssrc|link[^>]*\shref)="([^"]+\.(?:js|css)
 OTREE = """\
 set -e
 "$1" -m venv venv
-venv/bin/python -m pip install --quiet "otree==$2"
+PATH=$PWD/venv/bin:$PATH
+python -m pip install --quiet "otree==$2"
 cd project
-exec ../venv/bin/otree devserver "$3"
+exec otree devserver "$3"
 """
 
 

@@ -61,6 +61,8 @@ class Player(BasePlayer):
         locals()["q%d" % _number] = models.IntegerField(
             label=_text, choices=STEPS, widget=widgets.RadioSelectHorizontal
         )
+    # Its development server refuses what is neither a field nor a method.
+    del _number, _text
 
 
 class Form(Page):
