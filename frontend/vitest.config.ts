@@ -5,6 +5,6 @@ import vite from "./vite.config.ts";
 export default mergeConfig(
   vite,
   defineConfig({
-    test: { root: vite.root, include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
+    test: { include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
   }),
 );
