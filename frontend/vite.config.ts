@@ -2,8 +2,7 @@ import { existsSync, readdirSync } from "node:fs";
 import type { ClientRequest, IncomingMessage } from "node:http";
 import { resolve } from "node:path";
 import react from "@vitejs/plugin-react";
-import type { ProxyOptions } from "vite";
-import { defineConfig, type Plugin } from "vitest/config";
+import { defineConfig, type Plugin, type ProxyOptions } from "vite";
 import { tabletWorker, WORKER } from "./tabletWorker.ts";
 
 const source = resolve(import.meta.dirname, "src");
@@ -75,5 +74,4 @@ export default defineConfig({
     },
   },
   server: { port: 5173, proxy: { "/api": proxyToServer } },
-  test: { root: source, include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
 });

@@ -67,6 +67,7 @@ def serve(
     new_database: Annotated[
         bool, typer.Option("--new-database", help="Begin an empty one behind one in quarantine.")
     ] = False,
+    until_input_ends: Annotated[bool, typer.Option("--until-input-ends", hidden=True)] = False,
 ) -> None:
     """Serve the product on this machine, with --lan also on the lab's network."""
     from app.cli.serve.run import serve_forever
@@ -82,7 +83,7 @@ def serve(
         "key": key,
         "without_tls": without_tls,
     }
-    serve_forever(given, new_database=new_database)
+    serve_forever(given, new_database=new_database, until_input_ends=until_input_ends)
 
 
 @app.command()

@@ -86,18 +86,20 @@ def _own_server(data: Path | None) -> Iterator[tuple[str, str]]:
             "REEMBODY_LAN": "false",
             "REEMBODY_HOST": "127.0.0.1",
         }
-        process = subprocess.Popen(  # noqa: S603 - our own command
-            [sys.executable, "-m", "app.cli", "serve", "--port", str(port)],
+        with subprocess.Popen(  # noqa: S603 - our own command
+            [sys.executable, "-m", "app.cli", "serve", "--port", str(port), "--until-input-ends"],
             env=environment,
+            # This process holds the other end, so the server ends with it, also if it is killed.
+            stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
-        )
-        try:
-            url = f"http://127.0.0.1:{port}"
-            _wait_for(url, process)
-            yield url, password
-        finally:
-            process.send_signal(signal.SIGTERM)
-            process.wait(timeout=20)
+        ) as process:
+            try:
+                url = f"http://127.0.0.1:{port}"
+                _wait_for(url, process)
+                yield url, password
+            finally:
+                process.send_signal(signal.SIGTERM)
+                process.wait(timeout=20)
 
 
 def _wait_for(url: str, process: "subprocess.Popen[bytes]") -> None:

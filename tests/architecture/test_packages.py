@@ -69,7 +69,12 @@ def test_the_wheel_brings_what_is_read_but_not_imported(
 
 def test_the_sdist_brings_the_pages_and_their_sources(sdist: set[str]) -> None:
     """From an sdist the pages can be rebuilt, and need not be."""
-    assert {"frontend/package.json", "frontend/package-lock.json", "hatch_build.py"} <= sdist
+    assert {
+        "frontend/package.json",
+        "frontend/package-lock.json",
+        "hatch_build.py",
+        "build_pages.py",
+    } <= sdist
     assert "app/static/.build-hash" in sdist
 
 

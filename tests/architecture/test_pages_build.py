@@ -1,11 +1,10 @@
-"""The build hook builds the pages when their sources changed, and only then.
+"""The pages are built when their sources changed, and only then.
 
 A frontend of one script and no packages stands in for the real one; npm and Node are the real ones.
 """
 
 import importlib.util
 import json
-import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -22,12 +21,9 @@ fs.appendFileSync("../builds", "x");
 
 
 @pytest.fixture
-def hook(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The module `hatch_build`; hatchling itself lives in the build's environment only."""
-    interface = ModuleType("hatchling.builders.hooks.plugin.interface")
-    interface.BuildHookInterface = object  # type: ignore[attr-defined]  # all it needs here
-    monkeypatch.setitem(sys.modules, interface.__name__, interface)
-    spec = importlib.util.spec_from_file_location("hatch_build", REPOSITORY / "hatch_build.py")
+def builder() -> ModuleType:
+    """The module `build_pages`, which is no part of any package."""
+    spec = importlib.util.spec_from_file_location("build_pages", REPOSITORY / "build_pages.py")
     assert spec
     assert spec.loader
     module = importlib.util.module_from_spec(spec)
@@ -49,57 +45,70 @@ def frontend(tmp_path: Path) -> Path:
     return folder
 
 
-def build(hook: ModuleType, frontend: Path) -> tuple[str, int]:
+def build(builder: ModuleType, frontend: Path) -> tuple[str, int]:
     """Build, and return the page and how often it has been built."""
     static = frontend.parent / "app" / "static"
-    hook.build_pages(frontend, static)
+    builder.build_pages(frontend, static)
     page = (static / "index.html").read_text()
     return page, len((frontend.parent / "builds").read_text())
 
 
-def test_unchanged_sources_are_not_built_again(hook: ModuleType, frontend: Path) -> None:
+def test_unchanged_sources_are_not_built_again(builder: ModuleType, frontend: Path) -> None:
     """Equal hash, nothing to do; another hash, another build."""
-    assert build(hook, frontend) == ("first", 1)
-    assert build(hook, frontend) == ("first", 1)
+    assert build(builder, frontend) == ("first", 1)
+    assert build(builder, frontend) == ("first", 1)
     (frontend / "src" / "page.html").write_text("second")
-    assert build(hook, frontend) == ("second", 2)
+    assert build(builder, frontend) == ("second", 2)
 
 
-def test_products_are_not_sources(hook: ModuleType, frontend: Path) -> None:
+def test_products_are_not_sources(builder: ModuleType, frontend: Path) -> None:
     """Installed packages, hidden files and compilers' notes leave the hash as it is."""
-    before = hook.sources_hash(frontend)
+    before = builder.sources_hash(frontend)
     for name in ("node_modules/a/index.js", "dist/page.js", ".vite/x", "tsconfig.tsbuildinfo"):
         (frontend / name).parent.mkdir(parents=True, exist_ok=True)
         (frontend / name).write_text("a product")
-    assert hook.sources_hash(frontend) == before
+    assert builder.sources_hash(frontend) == before
 
 
-def test_names_and_contents_both_count(hook: ModuleType, frontend: Path) -> None:
+def test_names_and_contents_both_count(builder: ModuleType, frontend: Path) -> None:
     """A renamed file, and text moved from one file into the next, are changes."""
-    hashes = {hook.sources_hash(frontend)}
+    hashes = {builder.sources_hash(frontend)}
     (frontend / "src" / "page.html").rename(frontend / "src" / "pagf.html")
-    hashes.add(hook.sources_hash(frontend))
+    hashes.add(builder.sources_hash(frontend))
     (frontend / "src" / "pagf.html").write_text("fir")
     (frontend / "src" / "pagg.html").write_text("st")
-    hashes.add(hook.sources_hash(frontend))
+    hashes.add(builder.sources_hash(frontend))
     (frontend / "src" / "pagf.html").write_text("f")
     (frontend / "src" / "pagg.html").write_text("irst")
-    hashes.add(hook.sources_hash(frontend))
+    hashes.add(builder.sources_hash(frontend))
     assert len(hashes) == 4
 
 
-def test_a_failed_build_shows_npms_words_and_is_not_done(hook: ModuleType, frontend: Path) -> None:
+def test_a_failed_build_shows_npms_words_and_is_not_done(
+    builder: ModuleType, frontend: Path
+) -> None:
     """The message carries what npm said, and the next call tries again."""
-    build(hook, frontend)
+    build(builder, frontend)
     (frontend / "build.js").write_text("throw new Error('the page is unhappy')")
     for _ in range(2):
-        with pytest.raises(hook.PagesError, match="the page is unhappy"):
-            build(hook, frontend)
+        with pytest.raises(builder.PagesError, match="the page is unhappy"):
+            build(builder, frontend)
+
+
+def test_what_checks_the_pages_is_not_installed_to_build_them(
+    builder: ModuleType, frontend: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The build's packages are a part of all, so all are enough for it and not the reverse."""
+    asked: list[tuple[str, ...]] = []
+    monkeypatch.setattr(builder, "npm", lambda _, *arguments: asked.append(arguments))
+    for every_package in (False, False, True, True, False):
+        builder.install_packages(frontend, every_package=every_package)
+    assert ["--omit=dev" in arguments for arguments in asked] == [True, False]
 
 
 def test_a_tree_without_a_frontend_has_nothing_to_build(
-    hook: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    builder: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It is said, not raised: the server runs without pages."""
-    hook.build_pages(tmp_path / "frontend", tmp_path / "static")
+    builder.build_pages(tmp_path / "frontend", tmp_path / "static")
     assert "no pages to build" in capsys.readouterr().err

@@ -16,26 +16,47 @@ import pytest
 REPOSITORY = Path(__file__).resolve().parents[2]
 INPUTS = (
     "run",
-    "pyproject.toml",
+    "set_up.py",
+    "build_pages.py",
     "hatch_build.py",
+    "pyproject.toml",
     "requirements.lock",
+    "requirements-build.lock",
     "requirements-dev.lock",
 )
 UV = """
-import pathlib, sys
+import pathlib, sys, time
 here = pathlib.Path({folder!r})
-with (here / "uv.log").open("a") as log:
+with (here / "calls.log").open("a") as log:
     print(*sys.argv[1:3], pathlib.Path(sys.argv[-1]).name, file=log)
 print("noise of uv")
 if (here / "broken").exists():
     sys.exit("uv: no network")
+if (here / "endless").exists() and sys.argv[-1].endswith("requirements.lock"):
+    time.sleep(1000)
 if sys.argv[1] == "venv":
     programs = pathlib.Path(sys.argv[-1]) / "bin"
     programs.mkdir(parents=True)
     for name in ("python", "reembody"):
         program = programs / name
-        program.write_text('#!/bin/sh\\nprintf "%s|" {{0}} "$PWD" "$@"\\n'.format(name))
+        program.write_text(pathlib.Path(here / "program").read_text().replace("NAME", name))
         program.chmod(0o755)
+elif "--target" in sys.argv:
+    pathlib.Path(sys.argv[sys.argv.index("--target") + 1]).mkdir(parents=True)
+"""
+# What is installed: it sets up for real, makes pages that are only a stamp, and else says its name.
+PROGRAM = """#!/bin/sh
+case "$*" in
+    *set_up.py*) exec {python} "$@" ;;
+    *build_pages.py*)
+        echo "build pages" >>{folder}/calls.log
+        if [ -e {folder}/unhappy ]; then echo "npm: the page is unhappy" >&2; exit 1; fi
+        cd "$(dirname "$1")" && mkdir -p app/static
+        exec {python} -c 'import build_pages as b, pathlib
+pathlib.Path("app/static", b.STAMP).write_text(b.sources_hash(pathlib.Path("frontend")))' ;;
+    "-c import"*) ;;
+    *) printf "%s|" NAME "$PWD" "$@" ;;
+esac
 """
 
 
@@ -58,12 +79,12 @@ class Checkout:
             check=False,
         )
 
-    def uv_calls(self) -> list[str]:
-        """What uv was asked since the last call of this."""
-        log = self.tools / "uv.log"
+    def calls(self) -> list[str]:
+        """What was done since the last call of this, in no order: two sides share the time."""
+        log = self.tools / "calls.log"
         calls = log.read_text().splitlines() if log.exists() else []
         log.unlink(missing_ok=True)
-        return calls
+        return sorted(calls)
 
 
 def append(path: Path, line: str) -> None:
@@ -81,8 +102,12 @@ def checkout(tmp_path: Path) -> Checkout:
     tools.mkdir()
     for name in INPUTS:
         shutil.copy(REPOSITORY / name, folder / name)
+    (folder / "frontend").mkdir()
+    (folder / "frontend" / "package.json").write_text("{}")
     script = tools / "uv.py"
     script.write_text(UV.format(folder=str(tools)))
+    python = shlex.quote(sys.executable)
+    (tools / "program").write_text(PROGRAM.format(python=python, folder=shlex.quote(str(tools))))
     uv = tools / "uv"
     # Not a Python script itself: this Python's own path may hold spaces.
     uv.write_text(
@@ -96,13 +121,15 @@ def test_the_second_call_sets_nothing_up(checkout: Checkout) -> None:
     """Setting up is idempotent: what is current is left alone, silently."""
     first = checkout.run("score")
     assert first.returncode == 0, first.stderr
-    assert checkout.uv_calls() == [
-        "venv --quiet .venv",
-        "pip install requirements.lock",
+    assert checkout.calls() == [
+        "build pages",
         f"pip install {checkout.folder.name}",
+        "pip install requirements-build.lock",
+        "pip install requirements.lock",
+        "venv --quiet .venv",
     ]
     again = checkout.run("score")
-    assert checkout.uv_calls() == []
+    assert checkout.calls() == []
     assert again.stderr == ""
     assert again.stdout == first.stdout
 
@@ -113,7 +140,7 @@ def test_standard_output_and_folder_are_the_commands_own(
     """Arguments pass through unchanged, relative paths stay relative to the caller."""
     result = checkout.run("score", "two words", "*", cwd=tmp_path)
     assert result.stdout == f"reembody|{tmp_path}|score|two words|*|"
-    assert "installing requirements.lock" in result.stderr
+    assert "installing the Python packages of requirements.lock" in result.stderr
 
 
 @pytest.mark.parametrize("arguments", [[], ["serve"]])
@@ -133,9 +160,9 @@ def test_tests_get_the_development_requirements(checkout: Checkout) -> None:
     """They contain all that running needs, so running afterwards installs nothing."""
     assert checkout.run("test", "-k", "x").stdout.endswith("|-m|tests.support.stages|-k|x|")
     assert checkout.run("check", "app").stdout.endswith("|-m|tests.support.checking|app|")
-    assert "pip install requirements-dev.lock" in checkout.uv_calls()
+    assert "pip install requirements-dev.lock" in checkout.calls()
     checkout.run("score")
-    assert checkout.uv_calls() == []
+    assert checkout.calls() == []
 
 
 @pytest.mark.parametrize(
@@ -144,18 +171,33 @@ def test_tests_get_the_development_requirements(checkout: Checkout) -> None:
         ("requirements.lock", "pip install requirements.lock"),
         ("pyproject.toml", "pip install it's a folder"),
         ("hatch_build.py", "pip install it's a folder"),
-        ("frontend/src/page.ts", "pip install it's a folder"),
+        ("frontend/src/page.ts", "build pages"),
     ],
 )
 def test_a_changed_input_repeats_its_own_step(checkout: Checkout, changed: str, call: str) -> None:
     """Each step knows what it depends on."""
     checkout.run("score")
-    checkout.uv_calls()
+    checkout.calls()
     path = checkout.folder / changed
     path.parent.mkdir(parents=True, exist_ok=True)
     append(path, "# changed")
     checkout.run("score")
-    assert checkout.uv_calls() == [call]
+    assert checkout.calls() == [call]
+
+
+def test_the_side_that_fails_is_heard_and_ends_the_other(checkout: Checkout) -> None:
+    """Pages that cannot be built do not wait for Python's packages; both are done again."""
+    (checkout.tools / "unhappy").touch()
+    (checkout.tools / "endless").touch()
+    failed = checkout.run("score")
+    assert failed.returncode != 0
+    assert failed.stdout == ""
+    assert "npm: the page is unhappy" in failed.stderr
+    (checkout.tools / "unhappy").unlink()
+    (checkout.tools / "endless").unlink()
+    checkout.calls()
+    assert checkout.run("score").returncode == 0
+    assert {"build pages", "pip install requirements.lock"} <= set(checkout.calls())
 
 
 def test_an_interrupted_step_is_repeated(checkout: Checkout) -> None:
@@ -168,18 +210,18 @@ def test_an_interrupted_step_is_repeated(checkout: Checkout) -> None:
     assert failed.stdout == ""
     assert "uv: no network" in failed.stderr
     (checkout.tools / "broken").unlink()
-    checkout.uv_calls()
+    checkout.calls()
     assert checkout.run("score").returncode == 0
-    assert checkout.uv_calls() == ["pip install requirements.lock"]
+    assert checkout.calls() == ["pip install requirements.lock"]
 
 
 def test_a_moved_folder_is_installed_again(checkout: Checkout, tmp_path: Path) -> None:
     """The project is installed by reference to its folder, which must follow it."""
     checkout.run("score")
-    checkout.uv_calls()
+    checkout.calls()
     moved = Checkout(checkout.folder.rename(tmp_path / "elsewhere"), checkout.tools)
     assert moved.run("score").returncode == 0
-    assert moved.uv_calls() == ["pip install elsewhere"]
+    assert moved.calls() == ["pip install elsewhere"]
 
 
 def test_without_uv_and_pip_the_remedy_is_named(checkout: Checkout) -> None:

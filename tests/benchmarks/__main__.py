@@ -49,6 +49,7 @@ def parser() -> argparse.ArgumentParser:
     duration = made.add_mutually_exclusive_group()
     duration.add_argument("--seconds", type=float, help="how long a load lasts, where there is one")
     duration.add_argument("--minutes", type=float, help="the same in minutes")
+    made.add_argument("--runs", type=int, help="how often, where all is done several times")
     made.add_argument("--write", action="store_true", help="store what the product ships of it")
     made.add_argument("--against", metavar="COMMIT", help="compare with COMMIT, in pairs of runs")
     made.add_argument("--pairs", type=int, default=PAIRS, help=f"how many pairs ({PAIRS})")
@@ -81,6 +82,8 @@ def _measured(asked: argparse.Namespace) -> Report:
     given: dict[str, float | bool] = {"write": True} if asked.write else {}
     if asked.seconds or asked.minutes:
         given["duration_s"] = asked.seconds or 60.0 * asked.minutes
+    if asked.runs:
+        given["runs"] = asked.runs
     report: Report = benchmark.measure(frozenset(asked.only or benchmark.PARTS), **given)
     return report
 

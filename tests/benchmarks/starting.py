@@ -59,7 +59,7 @@ def start_once(repository: Path, caches: Path) -> Start:
     process = subprocess.Popen(
         ["./run", "serve", "--port", str(port)],
         cwd=repository,
-        env=_environment(caches),
+        env=environment_with(caches),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         start_new_session=True,
@@ -73,7 +73,7 @@ def start_once(repository: Path, caches: Path) -> Start:
         process.wait(timeout=30)
 
 
-def _environment(caches: Path) -> dict[str, str]:
+def environment_with(caches: Path) -> dict[str, str]:
     """This machine's settings (they say where the registries are) with empty caches."""
     kept = {name: value for name, value in os.environ.items() if name not in LEFT_OUT}
     return {

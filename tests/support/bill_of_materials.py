@@ -20,6 +20,9 @@ PINNED = re.compile(r"^(?P<name>[a-z0-9._-]+)==(?P<version>[^ ;\\]+)")
 HASHED = re.compile(r"--hash=sha256:(?P<hash>[0-9a-f]{64})")
 BY = re.compile(r"^    #(?: via)? +(?P<who>[a-z0-9._-]+)")
 NAMESPACE = uuid.UUID("5b4f7f9e-7a51-4d0c-9a3a-6a4a3f0f7d11")
+# They stand among the dependencies, since the pages are built where nothing else of use only to
+# developers is installed; no page contains them.
+BUILD_TOOLS = {"vite", "@vitejs/plugin-react"}
 Json = dict[str, Any]
 
 
@@ -70,8 +73,9 @@ def _javascript() -> Iterator[Json]:
         name: {*part.get("dependencies", {}), *part.get("peerDependencies", {})}
         for name, part in packages.items()
     }
+    in_pages = _needed_by_pages(packages)
     for path, part in sorted(packages.items()):
-        if not path or part.get("dev") or part.get("optional"):
+        if path not in in_pages or part.get("dev") or part.get("optional"):
             continue
         name = path.rpartition("node_modules/")[2]
         made = _component("npm", name, part["version"])
@@ -80,6 +84,20 @@ def _javascript() -> Iterator[Json]:
                 by = other.rpartition("node_modules/")[2]
                 made["needed_by"].append(f"npm/{by}" if by else "reembody")
         yield made
+
+
+def _needed_by_pages(packages: Json) -> set[str]:
+    """The paths of what the pages import, and of what that needs in turn."""
+    found: set[str] = set()
+    names = [name for name in packages[""]["dependencies"] if name not in BUILD_TOOLS]
+    while names:
+        name = names.pop()
+        for path in packages.keys() - found:
+            if path.endswith(f"node_modules/{name}"):
+                found.add(path)
+                part = packages[path]
+                names += [*part.get("dependencies", {}), *part.get("peerDependencies", {})]
+    return found
 
 
 def _component(kind: str, name: str, version: str) -> Json:

@@ -46,7 +46,7 @@ def npm_ci(folder: Path) -> None:
 def install_packages(folder: Path) -> None:
     """`npm_ci`, unless `node_modules` already holds what the lock file says.
 
-    The mark is the one that the build of the pages leaves (`hatch_build.py`).
+    The mark is the one that the build of the pages leaves (`build_pages.py`).
     """
     lock = hashlib.sha256((folder / "package-lock.json").read_bytes()).hexdigest()
     mark = folder / "node_modules" / ".lock-hash"

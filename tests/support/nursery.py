@@ -11,6 +11,7 @@ installed script does, and can be killed like any other process.
 Whether the script itself starts is seen by tests/lan and tests/architecture, which run it.
 """
 
+import ctypes
 import json
 import os
 import select
@@ -25,6 +26,8 @@ from pathlib import Path
 from typing import Any
 
 MOST_BYTES = 64 * 1024
+PARENT_DEATH_SIGNAL = 1
+"""PR_SET_PDEATHSIG of linux/prctl.h."""
 CHEAP_PASSWORDS = "TESTS_HAVE_CHEAP_PASSWORDS"
 """Set where servers need not take a sixth of a second for each password."""
 EAGER = (
@@ -159,6 +162,8 @@ def serve_wishes(wishes: socket.socket) -> dict[str, Any] | None:
 
 def become(request: dict[str, Any]) -> None:
     """Be a process of one's own: group, folder, environment, output."""
+    # The nursery ends with the test process, however that ends, and a server must not stay behind.
+    ctypes.CDLL(None).prctl(PARENT_DEATH_SIGNAL, signal.SIGKILL)
     os.setsid()
     os.chdir(request["folder"])
     os.environ.clear()

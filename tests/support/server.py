@@ -16,7 +16,7 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import IO, Self
 
 import httpx2
 
@@ -54,6 +54,7 @@ class LiveServer:
         self.port = free_port()
         self._log_file = folder / "server.log"
         self._command = [*command, "serve", "--port", str(self.port), *arguments]
+        self._lifeline: IO[bytes] | None = None
         self._as_installed = tuple(command) == REEMBODY
         self._environment = dict(environment or {})
         self._process: subprocess.Popen[bytes] | Child | None = None
@@ -96,15 +97,17 @@ class LiveServer:
             wish = Wish(self._command[len(REEMBODY) :], environment, folder, self._log_file)
             return nursery().start(wish)
         with self._log_file.open("ab") as log:
-            return subprocess.Popen(
-                self._command,
+            process = subprocess.Popen(
+                [*self._command, "--until-input-ends"],
                 env=environment,
                 cwd=folder,
-                stdin=subprocess.DEVNULL,
+                stdin=subprocess.PIPE,
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
+        self._lifeline = process.stdin
+        return process
 
     def stop(self) -> None:
         """Ask it to end, as a service manager does; kill it if it does not."""
@@ -176,6 +179,9 @@ class LiveServer:
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
+        if self._lifeline is not None:
+            self._lifeline.close()
+            self._lifeline = None
 
 
 def free_port() -> int:

@@ -25,7 +25,7 @@ from tests.support.stage_runner import (
 
 FRONTEND = REPOSITORY / "frontend"
 # Not ".": outside of a git checkout ruff does not know what is ignored, such as uv in `.uv`.
-OURS = ("app", "migrations", "tests", "hatch_build.py")
+OURS = ("app", "migrations", "tests", "build_pages.py", "hatch_build.py", "set_up.py")
 # Everything in there is a browser test, and nothing else is one.
 BROWSER_TESTS = "tests/e2e"
 # These look at the repository as a whole and build it: alone, so that nobody reads half a build.

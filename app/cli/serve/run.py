@@ -1,6 +1,10 @@
 """Starting the server: on this machine, and on the lab's network if asked to."""
 
+import os
+import signal
 import sys
+import threading
+import time
 from collections.abc import Mapping
 from typing import NoReturn
 
@@ -22,19 +26,25 @@ from app.main import create_app
 from app.settings import Settings
 
 UNUSABLE = 2
+ENDS_WITHIN_S = 15.0
 SWITCH_INTERVAL_S = 0.0005
 """The event loop and the telemetry writer let go of the interpreter at every call into the network
 or the database. With Python's own 5 ms, each then waits that long for a thread that computes."""
 
 
-def serve_forever(given: Mapping[str, object], *, new_database: bool = False) -> None:
+def serve_forever(
+    given: Mapping[str, object], *, new_database: bool = False, until_input_ends: bool = False
+) -> None:
     """Serve until interrupted; says where, and on the first start the admin's password.
 
     `given` are settings from the command line, None where nothing was said. A database that cannot
     be worked with, a port that is taken or an address that may not be opened ends it before it
     listens, saying why and what to do; `new_database` begins an empty one in the place of one in
-    quarantine.
+    quarantine. With `until_input_ends` it ends when its standard input is closed: then whoever
+    holds the other end is gone, also where they were killed and could end nobody.
     """
+    if until_input_ends:
+        threading.Thread(target=_end_with_the_input, daemon=True).start()
     settings = settings_with(given)
     try:
         plan = make_plan(settings, Clock())
@@ -115,6 +125,15 @@ def _prepare(settings: Settings, *, new_database: bool) -> None:
 def _give_up(why: str) -> NoReturn:
     print(f"reembody: {why}", file=sys.stderr)
     raise SystemExit(UNUSABLE)
+
+
+def _end_with_the_input() -> None:
+    # Not through `sys.stdin`: a thread that waits there is in the way of Python's own end.
+    while os.read(0, 1024):
+        pass
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(ENDS_WITHIN_S)
+    os._exit(1)
 
 
 def _where(settings: Settings) -> str:

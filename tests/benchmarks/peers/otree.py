@@ -61,6 +61,8 @@ class Player(BasePlayer):
         locals()["q%d" % _number] = models.IntegerField(
             label=_text, choices=STEPS, widget=widgets.RadioSelectHorizontal
         )
+    # Its development server refuses what is neither a field nor a method.
+    del _number, _text
 
 
 class Form(Page):
@@ -108,7 +110,7 @@ def running_otree(
         RuntimeError: it did not start.
     """
     programs = python_peer("otree", f"otree=={VERSION}")
-    _write_project(folder, statements, rounds)
+    write_project(folder, statements, rounds)
     port = free_port()
     with (folder / "log").open("w") as log:
         process = subprocess.Popen(
@@ -128,7 +130,8 @@ def running_otree(
         process.wait()
 
 
-def _write_project(folder: Path, statements: Sequence[str], rounds: int) -> None:
+def write_project(folder: Path, statements: Sequence[str], rounds: int) -> None:
+    """A project of one app with one page, as small as oTree starts it."""
     app = folder / "form"
     # Without these two it does not start.
     for path in (app, folder / "_static", folder / "_templates" / "global"):

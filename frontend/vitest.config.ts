@@ -1,0 +1,10 @@
+import { defineConfig, mergeConfig } from "vitest/config";
+import vite from "./vite.config.ts";
+
+// Apart from the build's own configuration, since building the pages installs no test runner.
+export default mergeConfig(
+  vite,
+  defineConfig({
+    test: { include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
+  }),
+);

@@ -1,0 +1,271 @@
+"""Installs Reembody where something changed: Python packages and pages side by side.
+
+    python set_up.py run|dev --check      exit code 0 if there is nothing to do
+    python set_up.py run|dev --uv PATH    do it
+
+`run` calls it, with the Python of `.venv` and before anything is installed there, so it needs
+nothing but the standard library. Two sides share the time:
+
+    Python: the packages of a lock file, then the project, then one import of the server
+    pages:  npm's packages, then the build
+
+Both need the build's tools (hatchling and Node), which are fetched first, into a folder of their
+own: `.venv` holds what runs. Everything it says goes to standard error.
+"""
+
+import argparse
+import hashlib
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Sequence
+from concurrent.futures import FIRST_EXCEPTION, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from build_pages import are_current, say
+
+ROOT = Path(__file__).resolve().parent
+VENV = ROOT / ".venv"
+PYTHON = VENV / "bin" / "python"
+TOOLS = ROOT / ".cache" / "build"
+FRONTEND = ROOT / "frontend"
+# What a server imports before it listens: to import it is to compile it, and nothing else.
+STARTS = "import app.cli.commands, app.main, uvicorn.protocols.http.httptools_impl"
+SAYS_AGAIN_AFTER_S = 20.0
+TERMINATED = 128 + signal.SIGTERM
+
+
+class StepFailed(Exception):
+    """A command failed, having said why, or was ended because another failed."""
+
+
+@dataclass(frozen=True)
+class Stamp:
+    """A step is done when its file says what went into it.
+
+    The file goes first and comes last: an interrupted step is never taken for a finished one.
+    """
+
+    file: Path
+
+    def says(self, *accepted: str) -> bool:
+        """Whether the step is done for one of these."""
+        return self.file.is_file() and self.file.read_text().strip() in accepted
+
+    def begin(self) -> None:
+        """The step is no longer done."""
+        self.file.unlink(missing_ok=True)
+
+    def finish(self, what: str) -> None:
+        """The step is done for this."""
+        self.file.write_text(f"{what}\n")
+
+
+@dataclass
+class Commands:
+    """The commands under way; `end` ends them all, with every process that they began."""
+
+    _running: "dict[subprocess.Popen[bytes], str]" = field(default_factory=dict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+    _over: bool = False
+
+    def run(self, doing: str, *command: str | Path, **environment: str | None) -> None:
+        """Say what is done and do it; None takes a variable out of the environment."""
+        given = {**os.environ, **environment}
+        with self._lock:
+            if self._over:
+                raise StepFailed
+            say(doing)
+            process = subprocess.Popen(
+                command,
+                cwd=ROOT,
+                env={name: value for name, value in given.items() if value is not None},
+                stdin=subprocess.DEVNULL,
+                stdout=sys.stderr,
+                process_group=0,
+            )
+            self._running[process] = doing
+        code = process.wait()
+        with self._lock:
+            del self._running[process]
+        if code != 0:
+            raise StepFailed
+
+    def underway(self) -> str:
+        """What is being done now, in words."""
+        with self._lock:
+            return ", ".join(self._running.values())
+
+    def end(self) -> None:
+        """End what runs, and begin nothing more."""
+        with self._lock:
+            self._over = True
+            for process in self._running:
+                os.killpg(process.pid, signal.SIGTERM)
+
+
+@dataclass(frozen=True)
+class SetUp:
+    """What is to be set up: for running it, or for developing it too."""
+
+    mode: str
+    uv: Path
+    commands: Commands = field(default_factory=Commands)
+
+    @property
+    def lock_file(self) -> Path:
+        """The Python packages wanted."""
+        return ROOT / ("requirements.lock" if self.mode == "run" else "requirements-dev.lock")
+
+    def is_ready(self) -> bool:
+        """Whether there is nothing to do."""
+        return self.has_packages() and self.has_project() and has_pages()
+
+    def has_packages(self) -> bool:
+        """Whether the Python packages are there: what development needs includes the rest."""
+        accepted = {"run", "dev"} if self.mode == "run" else {"dev"}
+        return PACKAGES.says(*(packages_key(mode) for mode in accepted))
+
+    def has_project(self) -> bool:
+        """Whether the project is installed, from this folder and as it is described now."""
+        return PROJECT.says(project_key())
+
+    def do(self) -> None:
+        """Set up what is not; raises StepFailed when it has been said why not."""
+        began_s = time.monotonic()
+        with ThreadPoolExecutor() as pool:
+            tools = pool.submit(self.get_tools)
+            sides = {
+                pool.submit(self.install_python, tools),
+                pool.submit(self.build_pages, tools),
+            }
+            try:
+                while sides:
+                    done, sides = wait(sides, SAYS_AGAIN_AFTER_S, FIRST_EXCEPTION)
+                    for side in done:
+                        side.result()
+                    if sides and (doing := self.commands.underway()):
+                        say(f"still {doing} ({time.monotonic() - began_s:.0f} s)")
+            except BaseException:
+                self.commands.end()
+                raise
+
+    def get_tools(self) -> None:
+        """Hatchling and Node, unless they are there or of no use."""
+        stamp, key = Stamp(TOOLS / ".done"), hash_of("requirements-build.lock")
+        if (self.has_project() and has_pages()) or stamp.says(key):
+            return
+        shutil.rmtree(TOOLS, ignore_errors=True)
+        self.pip_install(
+            "fetching Node and the build's tools",
+            *("--require-hashes", "--no-build", "--target", TOOLS),
+            *("--requirement", ROOT / "requirements-build.lock"),
+        )
+        stamp.finish(key)
+
+    def install_python(self, tools: "Future[None]") -> None:
+        """The side of Python."""
+        if not self.has_packages():
+            PACKAGES.begin()
+            self.pip_install(
+                f"installing the Python packages of {self.lock_file.name}",
+                *("--require-hashes", "--no-build"),
+                # Tests run in many processes, and not all of them may write it down compiled.
+                *(["--compile-bytecode"] if self.mode == "dev" else []),
+                *("--requirement", self.lock_file),
+            )
+            PACKAGES.finish(packages_key(self.mode))
+        if not self.has_project():
+            tools.result()
+            PROJECT.begin()
+            self.pip_install(
+                "installing the project",
+                *("--no-deps", "--no-build-isolation", "--reinstall", "--editable", ROOT),
+                PYTHONPATH=str(TOOLS),
+                REEMBODY_SKIP_FRONTEND="1",
+            )
+            self.compile()
+            PROJECT.finish(project_key())
+
+    def compile(self) -> None:
+        """What starts is compiled now, while the pages are built; the rest when it is needed."""
+        everything = ("-m", "compileall", "-q", "app", "migrations")
+        self.commands.run(
+            "compiling the project",
+            *(PYTHON, *(("-c", STARTS) if self.mode == "run" else everything)),
+            PYTHONDONTWRITEBYTECODE=None,
+        )
+
+    def build_pages(self, tools: "Future[None]") -> None:
+        """The side of the pages."""
+        if has_pages():
+            return
+        tools.result()
+        everything = ["--every-package"] if self.mode == "dev" else []
+        self.commands.run(
+            "making the pages",
+            *(PYTHON, ROOT / "build_pages.py", *everything),
+            PYTHONPATH=str(TOOLS),
+        )
+
+    def pip_install(self, doing: str, *what: str | Path, **environment: str) -> None:
+        """`uv pip install` into `.venv`, or where `what` says."""
+        install: Sequence[str | Path] = (self.uv, "pip", "install", "--quiet", "--python", PYTHON)
+        self.commands.run(doing, *install, *what, **environment)
+
+
+PACKAGES, PROJECT = Stamp(VENV / ".done-packages"), Stamp(VENV / ".done-project")
+
+
+def hash_of(*names: str) -> str:
+    """Over the contents of these files."""
+    digests = [hashlib.sha256((ROOT / name).read_bytes()).hexdigest() for name in names]
+    return hashlib.sha256(" ".join(digests).encode()).hexdigest()
+
+
+def packages_key(mode: str) -> str:
+    """What the Python packages of a mode come from."""
+    more = ["requirements-dev.lock"] if mode == "dev" else []
+    return f"{mode} {hash_of('requirements.lock', *more)}"
+
+
+def project_key() -> str:
+    """What an installation of the project depends on; it points to this very folder."""
+    return f"{hash_of('pyproject.toml', 'hatch_build.py')} {ROOT}"
+
+
+def has_pages() -> bool:
+    """Whether the pages are those of the sources, or are not wanted."""
+    wanted = (FRONTEND / "package.json").is_file() and not os.environ.get("REEMBODY_SKIP_FRONTEND")
+    return not wanted or are_current(FRONTEND, ROOT / "app" / "static")
+
+
+def main() -> int:
+    """Check or set up; 1 if it did not succeed."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("mode", choices=["run", "dev"])
+    parser.add_argument("--check", action="store_true")
+    parser.add_argument("--uv", type=Path, default=Path("uv"))
+    asked = parser.parse_args()
+    wanted = SetUp(asked.mode, asked.uv)
+    if asked.check:
+        return 0 if wanted.is_ready() else 1
+    for request in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(request, lambda *_: sys.exit(TERMINATED))
+    try:
+        wanted.do()
+    except StepFailed:
+        say("the set-up did not succeed, see above; ./run goes on from here when called again")
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

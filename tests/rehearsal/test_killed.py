@@ -1,0 +1,76 @@
+"""Whoever is killed leaves no server behind: neither a rehearsal nor a test run."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+
+REHEARSE = (sys.executable, "-m", "app.cli", "rehearse", "--speed", "5", "--seed", "1")
+TEST_RUN = """
+import pathlib, sys, time
+from tests.support.server import LiveServer
+server = LiveServer(pathlib.Path(sys.argv[1])).start()
+print(server.pid, flush=True)
+time.sleep(1000)
+"""
+GENEROUS_S = 120.0
+
+
+def test_a_killed_rehearsal_leaves_no_process(tmp_path: Path) -> None:
+    """In the middle of a session: its server goes, and with it the server's own processes."""
+    environment = {**os.environ, "TMPDIR": str(tmp_path)}
+    with subprocess.Popen(
+        REHEARSE, env=environment, stderr=subprocess.PIPE, text=True, start_new_session=True
+    ) as rehearsal:
+        assert rehearsal.stderr is not None
+        # A few steps in, so that there is movement to be stored.
+        steps = [rehearsal.stderr.readline() for _ in range(6)]
+        descended = psutil.Process(rehearsal.pid).children(recursive=True)
+        rehearsal.kill()
+        rehearsal.stderr.close()
+    assert all(steps), steps
+    assert descended
+    eventually(lambda: not any(map(runs, descended)) and not group_of(rehearsal.pid))
+
+
+def test_a_killed_test_run_leaves_no_server(tmp_path: Path) -> None:
+    """The server was forked by another process, which ends with the test run."""
+    command = [sys.executable, "-c", TEST_RUN, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as run:
+        assert run.stdout is not None
+        server = psutil.Process(int(run.stdout.readline()))
+        run.send_signal(signal.SIGKILL)
+    eventually(lambda: not runs(server))
+
+
+def runs(process: psutil.Process) -> bool:
+    """Whether it has not ended; one that nobody collected has."""
+    try:
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
+
+
+def group_of(leader: int) -> list[psutil.Process]:
+    """The processes of a group that still run."""
+    found = []
+    for process in psutil.process_iter():
+        try:
+            if os.getpgid(process.pid) == leader and runs(process):
+                found.append(process)
+        except ProcessLookupError:
+            continue
+    return found
+
+
+def eventually(happened: Callable[[], bool]) -> None:
+    """Wait for it; fails after a time that only a hung process takes."""
+    give_up_s = time.monotonic() + GENEROUS_S
+    while not happened():
+        assert time.monotonic() < give_up_s, "a process is still there"
+        time.sleep(0.1)
