@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from tests.support import postgres, shared_run
-from tests.support.nursery import CHEAP_PASSWORDS, make_passwords_cheap
+from tests.support.forked_workers import use_fork_server
+from tests.support.nursery import CHEAP_PASSWORDS, make_passwords_cheap, nursery
 from tests.support.server import LiveServer
 from tests.support.sqlite import fresh_sqlite
 
@@ -43,6 +44,12 @@ def _cheap_passwords() -> None:
     """
     make_passwords_cheap()
     os.environ[CHEAP_PASSWORDS] = "1"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _cheap_workers() -> None:
+    """Worker processes of applications in this process are forked instead of spawned."""
+    use_fork_server(lambda: nursery().workers)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

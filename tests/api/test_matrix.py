@@ -76,6 +76,7 @@ def outsiders(bench: Bench, route: str) -> Iterator[tuple[str, TestClient]]:
             yield name, client
 
 
+@pytest.mark.one_engine
 def test_nobody_gets_more_than_the_table_gives(bench: Bench) -> None:
     """Refusals are 401 for strangers, 403 for the wrong role; foreign objects do not exist."""
     leaks: list[str] = []

@@ -22,6 +22,7 @@ from tests.support.browser import (
 )
 from tests.support.bundle import Bundle, bundled
 from tests.support.server import ADMIN_PASSWORD, LiveServer
+from tests.support.shared_run import once, run_folder
 
 SCREENSHOTS_VARIABLE = "REEMBODY_SCREENSHOTS"
 HERE = Path(__file__).resolve().parent
@@ -71,9 +72,15 @@ def page_factory(new_context: ContextFactory) -> Callable[..., Page]:
 
 
 @pytest.fixture
-def screenshot(tmp_path: Path) -> Callable[[Page, str], Path]:
-    """`screenshot(page, name)` saves to $REEMBODY_SCREENSHOTS, else to the test's own folder."""
-    folder = Path(os.environ.get(SCREENSHOTS_VARIABLE) or tmp_path / "screenshots")
+def screenshot() -> Callable[[Page, str], object]:
+    """`screenshot(page, name)` saves to the folder $REEMBODY_SCREENSHOTS, if it is set.
+
+    No test looks at its pictures, and to draw whole pages costs more than most of what is tested.
+    """
+    chosen = os.environ.get(SCREENSHOTS_VARIABLE)
+    if not chosen:
+        return lambda _page, _name: None
+    folder = Path(chosen)
     folder.mkdir(parents=True, exist_ok=True)
     return lambda page, name: take_screenshot(page, folder, name)
 
@@ -84,10 +91,15 @@ def axe() -> Callable[[Page], list[str]]:
     return accessibility_violations
 
 
-@pytest.fixture(scope="module")
-def telemetry_bundle(tmp_path_factory: pytest.TempPathFactory) -> Bundle:
-    """The client, bundled for the browser."""
-    return bundled("vr/telemetry/testing/bench.ts", tmp_path_factory.mktemp("bundle"))
+@pytest.fixture(scope="session")
+def telemetry_bundle() -> Bundle:
+    """The client, bundled for the browser once in a run."""
+    folder = run_folder() / "telemetry-bundle"
+    with once("telemetry-bundle") as mark:
+        if mark:
+            bundled("vr/telemetry/testing/bench.ts", folder)
+            mark.touch()
+    return Bundle(folder)
 
 
 @pytest.fixture

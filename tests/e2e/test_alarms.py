@@ -3,7 +3,6 @@
 import re
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -20,7 +19,7 @@ def test_an_alarm_comes_up_and_goes_away(
     headset_site: Site,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
 ) -> None:
     """The headset falls silent in a phase and wakes; nothing else on the page moves meanwhile."""

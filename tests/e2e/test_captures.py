@@ -262,7 +262,7 @@ def test_every_page_of_a_capture_is_accessible(
     new_console: NewConsole,
     walk: dict[str, Any],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
 ) -> None:
     """Nothing serious or critical on the list and on each tab."""

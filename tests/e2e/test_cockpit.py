@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Callable
-from pathlib import Path
 
 from playwright.sync_api import Page, expect
 
@@ -17,7 +16,7 @@ def test_a_start_needs_a_reason_and_the_boxes_light_up(
     headset_site: Site,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """Without a tablet the start is asked about; avatar and boxes are drawn as they move."""
     if headset_site.operator.get(f"/api/studies/{STUDY}").status_code == 404:

@@ -1,7 +1,6 @@
 """Figures and tests on the pages: chosen by the address, saved as files, read by everybody."""
 
 from collections.abc import Callable
-from pathlib import Path
 
 from playwright.sync_api import Page, expect
 
@@ -24,7 +23,7 @@ def test_figures_are_chosen_by_the_address_and_saved(
     live_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """A filter in the address, a picture and rows of a figure, statistics, what was declared."""
     database = open_database(f"sqlite:///{live_server.data_dir / 'reembody.sqlite'}")

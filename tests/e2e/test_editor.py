@@ -1,7 +1,6 @@
 """Writing a study and an instrument in the console, as a lab does it, on a real server."""
 
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -50,7 +49,7 @@ def writer(live_server: LiveServer, page_factory: Callable[..., Page]) -> Writer
 
 
 def test_a_study_from_template_to_second_version(
-    writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], Path]
+    writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
     """Create it, break it, see where, undo, dry run, save, change, see what changes, compare."""
     page = writer.page
@@ -137,7 +136,7 @@ def test_an_archived_study_comes_back(writer: Writer) -> None:
 
 
 def test_an_own_instrument_is_written_tried_and_stored(
-    writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], Path]
+    writer: Writer, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
     """A slip in a formula is shown at its line; the preview scores as the formula says."""
     page = writer.page
@@ -166,7 +165,7 @@ def test_editor_and_library_are_accessible(
     running_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
 ) -> None:
     """Every section of the form and every tab of an instrument: nothing serious, in German too."""

@@ -1,7 +1,6 @@
 """An expert looks a study over; the equipment is measured; heights that differ are asked about."""
 
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -28,7 +27,7 @@ def experimenter(running_server: LiveServer, page_factory: Callable[..., Page]) 
 def test_what_an_expert_advises_reaches_the_study(
     experimenter: Experimenter,
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """Written beside the step they are in, listed by version, decided once."""
     page = experimenter.page
@@ -58,7 +57,7 @@ def test_what_an_expert_advises_reaches_the_study(
 def test_a_measurement_of_the_equipment_is_recorded_and_retired(
     experimenter: Experimenter,
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """The newest is marked; a mistake stays in the history with its reason."""
     page = experimenter.page

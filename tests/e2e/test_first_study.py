@@ -5,7 +5,6 @@ import io
 import re
 import zipfile
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -63,7 +62,7 @@ def test_a_whole_session_from_login_to_csv(
     pages: tuple[Experimenter, Participant],
     live_server: LiveServer,
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """An experimenter runs a session by the pages; dashboard and CSV then hold its score."""
     experimenter, participant = pages

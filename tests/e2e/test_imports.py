@@ -21,7 +21,7 @@ def test_a_file_is_mapped_checked_and_taken_in(
     shared_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     tmp_path: Path,
 ) -> None:
     """A word without a number stops it; with the number it goes in, and is marked as imported."""

@@ -114,7 +114,7 @@ def test_the_help_page_fits_and_can_be_read(
     lan: LanServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
     size: tuple[int, int],
 ) -> None:
@@ -135,7 +135,7 @@ def test_the_console_shows_how_to_reach_the_lab(
     lan: LanServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
     size: tuple[int, int],
 ) -> None:
@@ -159,7 +159,7 @@ def test_pairing_offers_the_certificate_first(
     lan: LanServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """The tablet's address is the network's, and the help page is one click away."""
     operator = Experimenter(page_factory(), lan.url)

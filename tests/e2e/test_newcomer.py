@@ -27,7 +27,7 @@ def test_a_newcomer_sees_a_session_and_takes_its_data(
     fresh_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """Empty page, scripted participant, tour by the keyboard, stop, download, storage."""
     page = page_factory()
@@ -58,7 +58,7 @@ def test_a_newcomer_sees_a_session_and_takes_its_data(
 
 
 def _tour(
-    page: Page, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], Path]
+    page: Page, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
 ) -> None:
     """Every page of it by the arrow keys; Escape ends it, and it does not come back by itself."""
     callout = page.get_by_role("dialog")
@@ -78,7 +78,7 @@ def _download(
     page: Page,
     experimenter: Experimenter,
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """The file comes by itself once it is ready, under its name, and the list says so."""
     experimenter.open_tab(STUDY, "export")

@@ -1,16 +1,14 @@
 """Every page of the console and the tablet, in both sizes and themes, on a real server."""
 
 import os
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter, Participant
 from tests.support.browser import ColorScheme, PageWatch
+from tests.support.nursery import Wish, nursery
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 from tests.support.traffic import Traffic
 
@@ -25,17 +23,15 @@ def played_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServ
         with server.client() as api:
             api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
         environment = {**os.environ, "REEMBODY_DATA_DIR": str(server.data_dir)}
-        reembody = str(Path(sys.executable).with_name("reembody"))
-        token = subprocess.run(
-            [reembody, "token"], env=environment, capture_output=True, text=True, check=True
-        ).stdout.strip()
-        subprocess.run(
-            [reembody, "rehearse", "--url", server.url, "--token", token, "--speed", "60"],
-            env=environment,
-            capture_output=True,
-            check=True,
-            timeout=240,
-        )
+        said = tmp_path_factory.mktemp("commands") / "said.txt"
+
+        def run(*arguments: str) -> str:
+            child = nursery().start(Wish(arguments, environment, said.parent, said))
+            assert child.wait(240) == 0, said.read_text()
+            return said.read_text()
+
+        token = run("token").strip()
+        run("rehearse", "--url", server.url, "--token", token, "--speed", "60")
         yield server
 
 
@@ -44,7 +40,7 @@ def test_every_console_page_is_accessible(
     played_server: LiveServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     scheme: ColorScheme,
 ) -> None:
     """Nothing serious or critical on any page of the console, and no error in its log."""
@@ -87,7 +83,7 @@ def test_the_tablet_is_accessible(
     page_factory: Callable[..., Page],
     page_watch: PageWatch,
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     size: tuple[int, int],
 ) -> None:
     """Pairing, consent, a form: nothing serious, in both orientations, and in German."""

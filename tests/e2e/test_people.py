@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -22,7 +21,7 @@ from tests.support.browser import ColorScheme, PageWatch
 from tests.support.server import LiveServer
 
 Axe = Callable[[Page], list[str]]
-Screenshot = Callable[[Page, str], Path]
+Screenshot = Callable[[Page, str], object]
 
 
 @pytest.fixture(scope="module")

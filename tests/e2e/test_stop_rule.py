@@ -2,7 +2,6 @@
 
 import uuid
 from collections.abc import Callable
-from pathlib import Path
 
 import httpx2
 import pytest
@@ -57,7 +56,7 @@ def pages(
 def test_the_session_is_held_until_the_experimenter_decides(
     pages: tuple[Experimenter, Participant, str],
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
 ) -> None:
     """Unmissable on the console, calm on the tablet; a reason lets it go on."""
     experimenter, participant, _ = pages

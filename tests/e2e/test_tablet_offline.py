@@ -106,7 +106,7 @@ def noted_status(response: Response, arrived: list[int]) -> None:
 
 @pytest.mark.timeout(120)
 def test_ten_minutes_offline_and_a_killed_browser_lose_nothing(
-    browser: Browser, headset_site: Site, tmp_path: Path, screenshot: Callable[[Page, str], Path]
+    browser: Browser, headset_site: Site, tmp_path: Path, screenshot: Callable[[Page, str], object]
 ) -> None:
     """Answers, a kill, answers, sending, ten minutes, a kill; with the network, one form."""
     site, url = headset_site, headset_site.server.url

@@ -1,7 +1,6 @@
 """A path is drawn at the console and answered with a distribution of durations."""
 
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import pytest
 from playwright.sync_api import Page, expect
@@ -23,7 +22,7 @@ def test_a_drawn_path_is_answered(
     server: LiveServer,
     new_context: ContextFactory,
     axe: Callable[[Page], list[str]],
-    screenshot: Callable[[Page, str], Path],
+    screenshot: Callable[[Page, str], object],
     page_watch: PageWatch,
 ) -> None:
     """Fitted, drawn by mouse, moved by keys, undone; an obstacle in the way is named."""

@@ -27,6 +27,8 @@ from sqlalchemy import (
     text,
 )
 
+from tests.support.postgres_cleaning import MARKS
+
 ROWS = 3
 KEPT = 16
 T = TypeVar("T")
@@ -37,9 +39,21 @@ QUOTED = re.compile(r"'(\w+)'")
 
 def tables_of(engine: Engine | Connection) -> list[Table]:
     """The product's tables as they are, those that are referred to first."""
-    if isinstance(engine, Connection) and engine.dialect.name == "sqlite":
-        return _tables_in(statements_of(engine), engine)
+    if isinstance(engine, Connection):
+        return _tables_in(schema_of(engine), engine)
     return _reflected(engine)
+
+
+def schema_of(connection: Connection) -> tuple[str, ...]:
+    """What tells a schema from another, for `remembered`; empty where nothing does.
+
+    On PostgreSQL the marks of a database: those of one template's copies are equal.
+    """
+    if connection.dialect.name == "sqlite":
+        return statements_of(connection)
+    if not inspect(connection).has_table(VERSION_TABLE):
+        return ()
+    return (str(connection.scalar(text(MARKS))),)
 
 
 def statements_of(connection: Connection) -> tuple[str, ...]:
@@ -54,15 +68,17 @@ def statements_of(connection: Connection) -> tuple[str, ...]:
 def remembered(
     ask: Callable[[Connection], T],
 ) -> Callable[[tuple[str, ...], Connection], T]:
-    """Keep what a SQLite database told of its schema, by the statements that made it."""
+    """Keep what a database told of its schema, by what tells the schema from another."""
     told: OrderedDict[tuple[str, ...], T] = OrderedDict()
 
-    def tell(statements: tuple[str, ...], connection: Connection) -> T:
-        if statements not in told:
-            told[statements] = ask(connection)
+    def tell(schema: tuple[str, ...], connection: Connection) -> T:
+        if not schema:
+            return ask(connection)
+        if schema not in told:
+            told[schema] = ask(connection)
             while len(told) > KEPT:
                 told.popitem(last=False)
-        return told[statements]
+        return told[schema]
 
     return tell
 
@@ -80,8 +96,9 @@ def fill(engine: Engine, rows: int = ROWS) -> None:
     """Put `rows` rows into every table; each refers to those of the same number."""
     writes = engine.execution_options(reembody_writes=True)
     with writes.begin() as connection:
-        for table in tables_of(connection):
-            listed = _listed(connection, table)
+        schema = schema_of(connection)
+        for table in _tables_in(schema, connection):
+            listed = _listed_in(schema, connection).get(table.name, {})
             connection.execute(table.insert(), [_row(table, listed, at) for at in range(rows)])
 
 
@@ -99,14 +116,18 @@ def contents(engine: Engine) -> dict[str, list[dict[str, Any]]]:
         }
 
 
-def _listed(connection: Connection, table: Table) -> dict[str, list[str]]:
-    """For each column that allows only some words: those words."""
-    allowed = {}
-    for check in inspect(connection).get_check_constraints(table.name):
-        found = LISTED.search(check["sqltext"])
-        if found:
-            allowed[found[1]] = QUOTED.findall(found[2])
+def _listed(connection: Connection) -> dict[str, dict[str, list[str]]]:
+    """For each table and each of its columns that allows only some words: those words."""
+    allowed: dict[str, dict[str, list[str]]] = {}
+    for (_, table), checks in inspect(connection).get_multi_check_constraints().items():
+        for check in checks:
+            found = LISTED.search(check["sqltext"])
+            if found:
+                allowed.setdefault(table, {})[found[1]] = QUOTED.findall(found[2])
     return allowed
+
+
+_listed_in = remembered(_listed)
 
 
 def _row(table: Table, listed: dict[str, list[str]], at: int) -> dict[str, Any]:

@@ -19,11 +19,14 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
+
+from tests.support.forked_workers import leave_fork_server, listener, use_fork_server
 
 MOST_BYTES = 64 * 1024
 PARENT_DEATH_SIGNAL = 1
@@ -100,15 +103,18 @@ class Nursery:
 
     def __init__(self) -> None:
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        with theirs:
+        with theirs, listener() as workers:
+            self.workers: bytes = workers.getsockname()
+            descriptors = [theirs.fileno(), workers.fileno()]
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "tests.support.nursery", str(theirs.fileno())],
-                pass_fds=[theirs.fileno()],
+                [sys.executable, "-m", "tests.support.nursery", *map(str, descriptors)],
+                pass_fds=descriptors,
                 stdin=subprocess.DEVNULL,
                 env={**_plain_environment(), "PYTHONUNBUFFERED": "1"},
                 cwd=Path(__file__).resolve().parents[2],
             )
         self._socket = ours
+        self._one_question = threading.Lock()
 
     def start(self, wish: Wish) -> Child:
         """Run a command."""
@@ -124,17 +130,26 @@ class Nursery:
 
     def ask(self, request: dict[str, Any]) -> dict[str, Any]:
         """One request, one answer."""
-        self._socket.sendall(json.dumps(request).encode())
-        answered = self._socket.recv(MOST_BYTES)
+        with self._one_question:
+            self._socket.sendall(json.dumps(request).encode())
+            answered = self._socket.recv(MOST_BYTES)
         if not answered:
             raise RuntimeError(f"the nursery ended with exit code {self._process.wait()}")
         answer: dict[str, Any] = json.loads(answered)
         return answer
 
 
-@cache
 def nursery() -> Nursery:
     """The one of this process; it ends with it."""
+    with _BEGINNING:
+        return _nursery()
+
+
+_BEGINNING = threading.Lock()
+
+
+@cache
+def _nursery() -> Nursery:
     return Nursery()
 
 
@@ -186,7 +201,9 @@ def main() -> None:
     _read_shipped_files()
     if os.environ.get(CHEAP_PASSWORDS):
         make_passwords_cheap()
-    wishes = socket.socket(fileno=int(sys.argv[1]))
+    wishes, workers = (socket.socket(fileno=int(argument)) for argument in sys.argv[1:])
+    use_fork_server(partial(bytes, workers.getsockname()))
+    leave_fork_server(workers, wishes.fileno())
     request = serve_wishes(wishes)
     if request is not None:
         become(request)

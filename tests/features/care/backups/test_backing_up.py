@@ -12,8 +12,10 @@ from app.database import Database, open_database
 from app.errors import Conflict, NotDurable, NotFound
 from app.features.care.backups.manifest import read_manifest
 from app.models import Account, SessionEvent
-from tests.faults.interrupted import steps, upgrade
+from tests.faults.bench import SqliteBench
+from tests.faults.interrupted import steps
 from tests.features.care.backups.lab import NOW, make
+from tests.features.care.opening.older import OLDER, older_database
 from tests.support.filled import ROWS, contents, fill, tables_of
 
 
@@ -161,12 +163,11 @@ def test_a_database_without_tables_is_told_apart(tmp_path: Path) -> None:
     wrong.close()
 
 
-@pytest.mark.parametrize("revision", [after for _, after in steps()][:-1])
+@pytest.mark.parametrize("revision", OLDER)
 def test_an_older_schema_is_backed_up_as_it_is(tmp_path: Path, revision: str) -> None:
     """The way back from a migration."""
-    url = f"sqlite:///{tmp_path / 'old.sqlite'}"
-    upgrade(url, revision)
-    old = open_database(url)
-    fill(old.engine)
-    assert make(old, tmp_path / "old.reembody").revision == revision
-    old.close()
+    bench = SqliteBench(tmp_path)
+    with bench.copy(older_database(bench, revision).url) as url:
+        old = open_database(url)
+        assert make(old, tmp_path / "old.reembody").revision == revision
+        old.close()

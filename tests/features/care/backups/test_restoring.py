@@ -11,10 +11,12 @@ from app.errors import Conflict, InvalidInput, NotFound
 from app.features.care.backups.rows import Row, write_rows
 from app.features.care.backups.shapes import TableShape
 from app.models import Account, Device, StudySession
-from tests.faults.interrupted import found, steps, upgrade
+from tests.faults.bench import SqliteBench
+from tests.faults.interrupted import found
 from tests.features.care.backups.lab import make, put_back
+from tests.features.care.opening.older import OLDER, older_database
 from tests.features.lab import Lab
-from tests.support.filled import contents, fill
+from tests.support.filled import contents
 
 
 def test_around_both_engines_and_back(sqlite: Database, postgres_url: str, tmp_path: Path) -> None:
@@ -89,17 +91,18 @@ def test_rows_that_do_not_come_out_alike_are_refused(
     assert contents(database.engine) == before
 
 
-@pytest.mark.parametrize("revision", [after for _, after in steps()][:-1])
+@pytest.mark.one_engine
+@pytest.mark.parametrize("revision", OLDER)
 def test_an_older_backup_is_migrated_in_a_copy(
     database_url: str, tmp_path: Path, revision: str
 ) -> None:
     """The database gets what migrating gives; the file stays as it is, byte for byte."""
-    url = f"sqlite:///{tmp_path / 'old.sqlite'}"
-    upgrade(url, revision)
-    old = open_database(url)
-    fill(old.engine)
-    make(old, tmp_path / "old.reembody")
-    old.close()
+    bench = SqliteBench(tmp_path)
+    older = older_database(bench, revision)
+    with bench.copy(older.url) as url:
+        old = open_database(url)
+        make(old, tmp_path / "old.reembody")
+        old.close()
     bytes_before = hashlib.sha256((tmp_path / "old.reembody").read_bytes()).hexdigest()
     target = open_database(database_url)
     put_back(target, tmp_path / "old.reembody")
@@ -107,10 +110,9 @@ def test_an_older_backup_is_migrated_in_a_copy(
     target.close()
     assert hashlib.sha256((tmp_path / "old.reembody").read_bytes()).hexdigest() == bytes_before
     assert not list((tmp_path / "kept").iterdir())
-    upgrade(url, steps()[-1][1])
     restored = found(f"sqlite:///{tmp_path / 'restored.reembody'}").contents
     del restored["backup_manifest"]
-    assert restored == found(url).contents
+    assert restored == older.new.contents
 
 
 def test_a_missing_file_is_said_to_be_missing(sqlite: Database, tmp_path: Path) -> None:

@@ -16,6 +16,8 @@ from tests.faults.figures import note
 from tests.features.care.opening.files import filled, flip, killed, log
 
 PAGE = 4096
+STEPS = [5, pytest.param(1, marks=pytest.mark.long)]
+"""Every fifth page, which meets the header and pages of each kind; in the long form every page."""
 
 
 @pytest.fixture
@@ -24,15 +26,17 @@ def file(tmp_path: Path) -> Path:
     return filled(tmp_path / "reembody.sqlite")
 
 
-def overwritten(file: Path, noise: bool) -> Iterator[tuple[int, str | None]]:  # noqa: FBT001 - by name
+def overwritten(file: Path, step: int, *, noise: bool) -> Iterator[tuple[int, str | None]]:
     """What is said of the file with one page after the other overwritten."""
     rng = np.random.default_rng(6)
     data = file.read_bytes()
-    for page in range(len(data) // PAGE):
-        other = rng.bytes(PAGE) if noise else bytes(PAGE)
-        file.write_bytes(data[: page * PAGE] + other + data[(page + 1) * PAGE :])
-        yield page, damage_of(file)
-    file.write_bytes(data)
+    with file.open("r+b", buffering=0) as written:
+        for start in range(0, len(data), step * PAGE):
+            written.seek(start)
+            written.write(rng.bytes(PAGE) if noise else bytes(PAGE))
+            yield start // PAGE, damage_of(file)
+            written.seek(start)
+            written.write(data[start : start + PAGE])
 
 
 def ends_of_blobs(file: Path) -> set[int]:
@@ -60,17 +64,19 @@ def test_looking_changes_nothing(tmp_path: Path) -> None:
         assert (file.read_bytes(), log(file).read_bytes()) == before
 
 
-def test_a_page_of_noise_is_noticed(file: Path) -> None:
-    """Every page, in its turn."""
-    found = dict(overwritten(file, noise=True))
+@pytest.mark.parametrize("step", STEPS)
+def test_a_page_of_noise_is_noticed(file: Path, step: int) -> None:
+    """One page after the other, each in a file that is whole but for it."""
+    found = dict(overwritten(file, step, noise=True))
     note(6, "a page of noise", "noticed", count(found))
     assert [page for page, damage in found.items() if damage is None] == []
 
 
-def test_a_page_of_zeros_is_noticed(file: Path) -> None:
+@pytest.mark.parametrize("step", STEPS)
+def test_a_page_of_zeros_is_noticed(file: Path, step: int) -> None:
     """Every page but those that hold only the end of a long value: see the next test."""
     ends = ends_of_blobs(file)
-    found = dict(overwritten(file, noise=False))
+    found = dict(overwritten(file, step, noise=False))
     unnoticed = {page for page, damage in found.items() if damage is None}
     note(6, "a page of zeros", "noticed", count(found))
     note(6, "a page of zeros", "of the others: ends of long values", len(unnoticed & ends))

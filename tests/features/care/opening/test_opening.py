@@ -22,15 +22,14 @@ from app.features.care.opening.service import (
 from app.schema_revisions import migrate
 from app.settings import Settings
 from tests.faults.bench import Bench, PostgresBench, SqliteBench
-from tests.faults.interrupted import Found, found, steps, upgrade
+from tests.faults.interrupted import found, steps
 from tests.features.care.opening.files import filled
+from tests.features.care.opening.older import NEWEST, OLDER, older_database
 from tests.support.filled import fill
 from tests.support.postgres import running_cluster
 
 NOW = datetime(2026, 11, 21, 6, 11, 8, 123456, UTC)
 CLOCK = Clock(utc_now=lambda: NOW)
-NEWEST = steps()[-1][1]
-OLDER = [after for _, after in steps()][:-1]
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
@@ -64,28 +63,17 @@ def test_an_older_database_is_backed_up_and_migrated(
     bench: Bench, tmp_path: Path, revision: str
 ) -> None:
     """The backup is the database as it was; then it is the same as migrated by hand."""
-    with bench.empty() as url:
-        old, new = older(bench, url, revision)
+    older = older_database(bench, revision)
+    with bench.copy(older.url) as url:
         kept = prepare_database(settings_for(url, tmp_path), CLOCK)
-        assert found(url) == new
+        assert found(url) == older.new
         assert kept is not None
         assert kept.name == f"before-migration-{revision}-20261121T061108.123456Z.reembody"
         assert backups_in(tmp_path) == [kept]
         with opened_backup(kept) as backup:
             rows = {name: table.rows for name, table in backup.tables.items()}
             assert backup.manifest.revision == revision
-        assert rows == {name: len(those) for name, those in old.contents.items()}
-
-
-def older(bench: Bench, url: str, revision: str) -> tuple[Found, Found]:
-    """Make an older database; what it is, and what it becomes."""
-    upgrade(url, revision)
-    database = open_database(url)
-    fill(database.engine)
-    database.close()
-    with bench.copy(url) as copy:
-        upgrade(copy, NEWEST)
-        return found(url), found(copy)
+        assert rows == {name: len(those) for name, those in older.old.contents.items()}
 
 
 @pytest.mark.parametrize("revision", OLDER)
@@ -94,11 +82,11 @@ def test_without_a_backup_nothing_is_migrated(
 ) -> None:
     """A full disk leaves the older database as it was."""
     monkeypatch.setattr("app.features.care.backups.writing.SPARE_BYTES", 10**18)
-    with bench.empty() as url:
-        old, _ = older(bench, url, revision)
+    older = older_database(bench, revision)
+    with bench.copy(older.url) as url:
         with pytest.raises(NotDurable, match="left; nothing was written"):
             prepare_database(settings_for(url, tmp_path), CLOCK)
-        assert found(url) == old
+        assert found(url) == older.old
 
 
 def test_a_newer_programs_database_is_left_alone(bench: Bench, tmp_path: Path) -> None:

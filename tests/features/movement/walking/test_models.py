@@ -47,6 +47,7 @@ def test_a_model_tells_what_it_is(walking_lab: Lab, model: Json) -> None:
         assert summary["model_hash"] in archive["header"].tobytes().decode()
 
 
+@pytest.mark.one_engine
 def test_a_path_is_answered_with_a_distribution(walking_lab: Lab, model: Json) -> None:
     """The same seed gives the same, another another; quantiles are in order; walkers arrive."""
     path = f"/api/walking/models/{model['id']}/prediction"
@@ -66,6 +67,7 @@ def test_a_path_is_answered_with_a_distribution(walking_lab: Lab, model: Json) -
     assert (first["stat"], first["adapt"]) == (other["stat"], other["adapt"])
 
 
+@pytest.mark.one_engine
 def test_a_slice_is_part_of_the_map(walking_lab: Lab, model: Json) -> None:
     """Rows are values of y; nothing is larger than the whole map's largest; an unknown is named."""
     path = f"/api/walking/models/{model['id']}/slice"
@@ -85,6 +87,7 @@ def test_a_slice_is_part_of_the_map(walking_lab: Lab, model: Json) -> None:
     assert "velocity, acceleration, angular" in refusal["remedy"]
 
 
+@pytest.mark.one_engine
 def test_impossible_paths_are_refused(walking_lab: Lab, model: Json) -> None:
     """Through an obstacle, into one, out of the scene, nowhere: each says which and where."""
     path = f"/api/walking/models/{model['id']}/prediction"

@@ -81,6 +81,7 @@ def test_every_figure_is_valid_and_travels_as_plain_json(database: Database) -> 
     assert list(_figures(view)) == [key for key in KEYS if key not in NEEDS_MOVEMENT]
 
 
+@pytest.mark.one_engine
 def test_every_figure_says_what_it_shows(database: Database) -> None:
     """Title, caption, units on the axes, hover texts, a clear background, and how many people."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
@@ -128,6 +129,7 @@ def test_nobody_gives_a_sentence_instead_of_a_plot(database: Database) -> None:
         assert entry.empty.startswith("No ")
 
 
+@pytest.mark.one_engine
 def test_one_participant_is_drawn_without_an_interval(database: Database) -> None:
     """The first participant is shown, and the caption says that an interval is missing."""
     _build(database, SessionSpec("P-1"))
@@ -197,6 +199,7 @@ def test_a_filter_leaves_only_what_was_chosen_and_says_so(database: Database) ->
     assert all((one.empty or "").startswith("Among what was chosen: ") for one in none.figures)
 
 
+@pytest.mark.one_engine
 def test_rows_that_do_not_count_are_drawn_only_when_asked_for(database: Database) -> None:
     """A withdrawn session is in the figures of all rows, and the captions say so."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002", status="withdrawn"))
@@ -208,6 +211,7 @@ def test_rows_that_do_not_count_are_drawn_only_when_asked_for(database: Database
     assert "do not count are drawn too" in figures["all"]["completions"].caption
 
 
+@pytest.mark.one_engine
 def test_the_rows_of_a_figure_are_those_drawn(database: Database) -> None:
     """Means and intervals of the file are those of the trace; simulated data say so twice."""
     _build(database, *(SessionSpec(f"SIM-{at}", kind="simulated") for at in range(3)))

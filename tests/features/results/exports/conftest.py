@@ -1,6 +1,7 @@
 """A database with the shipped study, on both engines."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 
 import pytest
 
@@ -8,20 +9,23 @@ from app.database import Database, open_database
 from app.wire import StreamName
 from tests.features.builders import SessionSpec, build_session, build_study
 from tests.features.movement_builders import moving_values, store_chunks
+from tests.support.postgres import fresh_postgres
+from tests.support.sqlite import fresh_sqlite
 
 
-@pytest.fixture
-def database(database_url: str) -> Iterator[Database]:
+@contextmanager
+def with_studies(url: str) -> Iterator[Database]:
     """A migrated database that knows the shipped studies."""
-    database = open_database(database_url)
-    with database.writing() as db:
-        build_study(db)
-    yield database
-    database.close()
+    database = open_database(url)
+    try:
+        with database.writing() as db:
+            build_study(db)
+        yield database
+    finally:
+        database.close()
 
 
-@pytest.fixture
-def filled(database: Database) -> Database:
+def fill(database: Database) -> None:
     """Two people and one simulated session, one person with movement."""
     with database.writing() as db:
         first = build_session(db, SessionSpec("P-0001", open_answer='=HYPERLINK("http://x","y")'))
@@ -29,4 +33,26 @@ def filled(database: Database) -> Database:
         build_session(db, SessionSpec("SIM-0001", kind="simulated"))
         for seed, stream in enumerate(StreamName):
             store_chunks(db, first.id, stream, range(200), moving_values(200, seed))
-    return database
+
+
+@pytest.fixture
+def database(database_url: str) -> Iterator[Database]:
+    """A migrated database that knows the shipped studies, for this test alone."""
+    with with_studies(database_url) as database:
+        yield database
+
+
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+def filled(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Database]:
+    """A filled database for a whole module: exporting only reads."""
+    if request.param == "postgresql":
+        with fresh_postgres() as url, with_studies(url) as database:
+            fill(database)
+            yield database
+    else:
+        file = tmp_path_factory.mktemp("exports") / "reembody.sqlite"
+        with with_studies(fresh_sqlite(file)) as database:
+            fill(database)
+            yield database

@@ -3,21 +3,50 @@
 import hashlib
 import io
 import zipfile
+from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
 from sqlalchemy.orm import Session
 
 from app.database import Database
 from app.features.results.analysis.codebook import CODEBOOK, columns_of
-from app.features.results.exports.service import study_archive, usual_kind
+from app.features.results.exports.service import Exported, study_archive, usual_kind
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.features.results.exports.whole import FILES, TABLES, export, rows_of, tree_of
 
 
-def test_an_export_has_every_file(filled: Database, tmp_path: Path) -> None:
+@dataclass(frozen=True)
+class Made:
+    """An export that was made once for the tests that look at it."""
+
+    done: Exported
+    told: list[str]
+    tree: dict[str, bytes]
+
+
+@pytest.fixture(scope="module")
+def people(filled: Database, tmp_path_factory: pytest.TempPathFactory) -> Made:
+    """The export of people's sessions."""
+    return made(filled, "people", tmp_path_factory)
+
+
+@pytest.fixture(scope="module")
+def simulated(filled: Database, tmp_path_factory: pytest.TempPathFactory) -> Made:
+    """The export of simulated sessions."""
+    return made(filled, "simulated", tmp_path_factory)
+
+
+def made(filled: Database, kind: str, tmp_path_factory: pytest.TempPathFactory) -> Made:
+    """Export a kind, noting the progress that was told."""
+    told: list[str] = []
+    out = tmp_path_factory.mktemp("exported") / "out"
+    return Made(export(filled, out, kind=kind, progress=told.append), told, tree_of(out))
+
+
+def test_an_export_has_every_file(people: Made) -> None:
     """The tables, the codebook, the README, and frames and a receipt for each session."""
-    done = export(filled, tmp_path / "out")
-    tree = tree_of(tmp_path / "out")
+    done, tree = people.done, people.tree
     samples = {name for name in tree if name.startswith("samples/")}
     receipts = {name for name in tree if name.startswith("receipts/")}
     assert set(tree) - samples - receipts == FILES
@@ -25,31 +54,31 @@ def test_an_export_has_every_file(filled: Database, tmp_path: Path) -> None:
     assert done.files == len(tree)
 
 
-def test_every_column_of_every_file_is_in_the_codebook(filled: Database, tmp_path: Path) -> None:
+def test_every_column_of_every_file_is_in_the_codebook(people: Made) -> None:
     """Headers and entries are the same, in the same order."""
-    export(filled, tmp_path / "out")
-    for name, data in tree_of(tmp_path / "out").items():
+    for name, data in people.tree.items():
         if name.endswith(".csv"):
             table = "samples" if name.startswith("samples/") else name.removesuffix(".csv")
             header = data.decode().partition("\n")[0].split(",")
             assert header == [column.name for column in columns_of(table)]
-    assert len(rows_of((tmp_path / "out" / "codebook.csv").read_bytes())) == len(CODEBOOK)
+    assert len(rows_of(people.tree["codebook.csv"])) == len(CODEBOOK)
 
 
-def test_kinds_stay_apart_in_files(filled: Database, tmp_path: Path) -> None:
+def test_kinds_stay_apart_in_files(people: Made, simulated: Made) -> None:
     """People's export holds no simulated row, and the reverse."""
-    for kind, other in (("people", "simulated"), ("simulated", "people")):
-        export(filled, tmp_path / kind, kind=kind)
+    for made, kind, other in (
+        (people, "people", "simulated"),
+        (simulated, "simulated", "people"),
+    ):
         for name in (*TABLES, "events"):
-            rows = rows_of((tmp_path / kind / f"{name}.csv").read_bytes())
+            rows = rows_of(made.tree[f"{name}.csv"])
             assert {row["kind"] for row in rows} == {kind}
             assert other not in {row["kind"] for row in rows}
 
 
-def test_the_readme_says_where_it_comes_from(filled: Database, tmp_path: Path) -> None:
+def test_the_readme_says_where_it_comes_from(simulated: Made) -> None:
     """Kind, time, study, content hash, counts, and a hash of each file that holds."""
-    export(filled, tmp_path / "out", kind="simulated")
-    tree = tree_of(tmp_path / "out")
+    tree = simulated.tree
     readme = tree["README.txt"].decode()
     for words in (STUDY, "2026-03-02T09:30:00Z", "simulated", "1 completed", "by a simulation"):
         assert words in readme
@@ -59,31 +88,28 @@ def test_the_readme_says_where_it_comes_from(filled: Database, tmp_path: Path) -
             assert f"{hashlib.sha256(data).hexdigest()}" in readme
 
 
-def test_the_archive_holds_the_same_files(filled: Database, tmp_path: Path) -> None:
+def test_the_archive_holds_the_same_files(filled: Database, people: Made) -> None:
     """Folder and ZIP agree byte for byte."""
-    export(filled, tmp_path / "out")
     data = b"".join(study_archive(filled, STUDY, "people", now=NOW))
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         assert archive.testzip() is None
-        assert {name: archive.read(name) for name in archive.namelist()} == tree_of(
-            tmp_path / "out"
-        )
+        assert {name: archive.read(name) for name in archive.namelist()} == people.tree
 
 
-def test_two_exports_of_the_same_data_are_the_same(filled: Database, tmp_path: Path) -> None:
+def test_two_exports_of_the_same_data_are_the_same(
+    filled: Database, people: Made, tmp_path: Path
+) -> None:
     """Nothing depends on when or where, but the time in the README that is given."""
-    export(filled, tmp_path / "one")
     export(filled, tmp_path / "two")
-    assert tree_of(tmp_path / "one") == tree_of(tmp_path / "two")
+    assert people.tree == tree_of(tmp_path / "two")
 
 
-def test_a_formula_in_the_open_prompt_is_inert(filled: Database, tmp_path: Path) -> None:
+def test_a_formula_in_the_open_prompt_is_inert(people: Made) -> None:
     """No cell of any file begins with what a spreadsheet runs, but numbers."""
-    export(filled, tmp_path / "out")
     cells = [
         cell
         for name in FILES - {"README.txt"}
-        for row in rows_of((tmp_path / "out" / name).read_bytes())
+        for row in rows_of(people.tree[name])
         for cell in row.values()
     ]
     assert '\'=HYPERLINK("http://x","y")' in cells
@@ -99,12 +125,10 @@ def test_an_earlier_export_is_replaced(filled: Database, tmp_path: Path) -> None
     assert not list(tmp_path.glob(".*"))
 
 
-def test_progress_tells_each_file(filled: Database, tmp_path: Path) -> None:
+def test_progress_tells_each_file(people: Made) -> None:
     """Every path once, as it is begun, the README last."""
-    told: list[str] = []
-    export(filled, tmp_path / "out", progress=told.append)
-    assert set(told) == set(tree_of(tmp_path / "out"))
-    assert told[-1] == "README.txt"
+    assert set(people.told) == set(people.tree)
+    assert people.told[-1] == "README.txt"
 
 
 def _kind_of(db: Session, *specs: SessionSpec) -> str:

@@ -3,30 +3,23 @@
 import io
 import re
 import zipfile
-from collections.abc import Iterator
 
 import pytest
 from fastapi.testclient import TestClient
-from pydantic import SecretStr
 
 from app.features.results.analysis.codebook import CODEBOOK
-from app.main import create_app
-from app.settings import Settings
 from tests.features.builders import STUDY, SessionSpec, build_session
+from tests.features.lab import Lab
 
 
-@pytest.fixture
-def client(database_url: str) -> Iterator[TestClient]:
-    """A signed-in client of an application with two people and one simulated session."""
-    app = create_app(Settings(database_url=database_url, admin_password=SecretStr("secret-words")))
-    with TestClient(app) as client:
-        with app.state.context.database.writing() as db:
-            build_session(db, SessionSpec("P-0001"))
-            build_session(db, SessionSpec("P-0002"))
-            build_session(db, SessionSpec("SIM-0001", kind="simulated"))
-        login = {"username": "admin", "password": "secret-words"}
-        assert client.post("/api/login", json=login).status_code == 200
-        yield client
+@pytest.fixture(scope="module")
+def client(lab: Lab) -> TestClient:
+    """The operator of an application with two people and one simulated session."""
+    with lab.database.writing() as db:
+        build_session(db, SessionSpec("P-0001"))
+        build_session(db, SessionSpec("P-0002"))
+        build_session(db, SessionSpec("SIM-0001", kind="simulated"))
+    return lab.operator
 
 
 def test_the_export_is_a_zip_of_csv(client: TestClient) -> None:
@@ -68,10 +61,9 @@ def test_names_that_are_not_ours_are_refused(client: TestClient, path: str, stat
 
 
 @pytest.mark.parametrize("what", ["export", "codebook"])
-def test_nobody_gets_them_without_signing_in(client: TestClient, what: str) -> None:
+def test_nobody_gets_them_without_signing_in(lab: Lab, what: str) -> None:
     """Both ask who is there."""
-    client.cookies.clear()
-    assert client.get(f"/api/studies/{STUDY}/{what}").status_code == 401
+    assert lab.stranger().get(f"/api/studies/{STUDY}/{what}").status_code == 401
 
 
 def test_the_codebook_describes_every_column(client: TestClient) -> None:

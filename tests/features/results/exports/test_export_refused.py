@@ -76,11 +76,11 @@ def test_a_hostile_study_key_cannot_break_the_header() -> None:
     )
 
 
-def test_a_hostile_code_in_the_database_stays_inside(filled: Database, tmp_path: Path) -> None:
+def test_a_hostile_code_in_the_database_stays_inside(database: Database, tmp_path: Path) -> None:
     """Even if such a code got into the database, its file is written into samples/."""
-    with filled.writing() as db:
+    with database.writing() as db:
         build_session(db, SessionSpec("../../../escape", kind="test"))
-    export(filled, tmp_path / "out", kind="test")
+    export(database, tmp_path / "out", kind="test")
     names = [name for name in tree_of(tmp_path / "out") if name.startswith("samples/")]
     assert len(names) == 1
     assert names[0].startswith("samples/_________escape_")

@@ -1,0 +1,54 @@
+"""Filled databases of older schemas, made once in a run; tests work on copies of them."""
+
+import pickle
+from dataclasses import dataclass
+
+from app.database import open_database
+from tests.faults.bench import Bench, SqliteBench
+from tests.faults.interrupted import Found, found, steps, upgrade
+from tests.support.filled import fill
+from tests.support.shared_run import once, run_folder
+
+NEWEST = steps()[-1][1]
+OLDER = [after for _, after in steps()][:-1]
+
+
+@dataclass(frozen=True)
+class Older:
+    """An older database.
+
+    Attributes:
+        url: where it is; `Bench.copy` copies it, and nobody may open it.
+        old: what it is.
+        new: what the migrations alone make of it.
+    """
+
+    url: str
+    old: Found
+    new: Found
+
+
+def older_database(bench: Bench, revision: str) -> Older:
+    """The one of that revision, on the engine of `bench`."""
+    engine = "sqlite" if isinstance(bench, SqliteBench) else "postgresql"
+    with once(f"older-{engine}-{revision}") as mark:
+        if mark:
+            mark.write_bytes(pickle.dumps(_made(bench, revision)))
+    made = (run_folder() / f"older-{engine}-{revision}.done").read_bytes()
+    older: Older = pickle.loads(made)  # noqa: S301 - written above
+    return older
+
+
+def _made(bench: Bench, revision: str) -> Older:
+    if isinstance(bench, SqliteBench):
+        url = f"sqlite:///{run_folder() / f'older-{revision}.sqlite'}"
+    else:
+        bench.cluster.execute("CREATE DATABASE {} TEMPLATE template0", f"older_{revision}")
+        url = bench.cluster.url(f"older_{revision}")
+    upgrade(url, revision)
+    database = open_database(url)
+    fill(database.engine)
+    database.close()
+    with bench.copy(url) as copy:
+        upgrade(copy, NEWEST)
+        return Older(url, found(url), found(copy))

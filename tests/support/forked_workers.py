@@ -1,0 +1,66 @@
+"""The product's worker processes, forked from one process that has already imported what they need.
+
+The product starts each worker with `spawn`: a new Python that imports for one to three seconds
+before its first task. In the tests `spawn` is multiprocessing's own fork server instead, a process
+with a single thread that forks a worker whenever it is asked over a socket:
+
+    test process, or a server of its nursery --(socket)--> fork server --(fork)--> worker
+
+Tasks and answers are pickled as with `spawn`, but a worker does not inherit the environment, the
+limits or the output of the process that asked for it. `spawn` itself is covered by the tests that
+start a Python of their own (tests/platform/test_workers.py, tests/lan, tests/house).
+"""
+
+import multiprocessing
+import os
+import select
+import socket
+from collections.abc import Callable
+from functools import partial
+from importlib import import_module
+from multiprocessing import forkserver
+from typing import Any
+
+HEAVY = ("mujoco", "numba", "pandas", "plotly.graph_objects", "scipy.ndimage", "scipy.stats")
+"""What workers import and servers do not."""
+
+
+def listener() -> socket.socket:
+    """The socket of a fork server that starts later; who connects before that waits for it."""
+    listener = socket.socket(socket.AF_UNIX)
+    listener.bind("")  # Linux names it; no file is left behind
+    listener.listen(100)
+    return listener
+
+
+def use_fork_server(address: Callable[[], bytes]) -> None:
+    """From now on `spawn` asks the fork server at `address()`, also in forks of this process."""
+    server = vars(forkserver._forkserver)
+    # The descriptor is what would keep a fork server alive; this one ends with the nursery.
+    server["_forkserver_alive_fd"] = os.open(os.devnull, os.O_RDONLY)
+    server["ensure_running"] = lambda: server.update(_forkserver_address=address())
+    vars(multiprocessing).update(get_context=partial(_context, multiprocessing.get_context))
+
+
+def _context(original: Any, method: str | None = None) -> Any:
+    return original("forkserver" if method == "spawn" else method)
+
+
+def leave_fork_server(listener: socket.socket, *foreign: int) -> None:
+    """Fork: the child is the fork server, and ends when this process has ended.
+
+    Args:
+        listener: where it is asked.
+        foreign: descriptors of this process that the child must not keep open.
+    """
+    ended, held = os.pipe()
+    if os.fork() == 0:
+        for descriptor in (*foreign, held):
+            os.close(descriptor)
+        readable, _, _ = select.select([listener.fileno(), ended], [], [])
+        if listener.fileno() in readable:
+            for name in HEAVY:
+                import_module(name)
+        forkserver.main(listener.fileno(), ended, [])
+    os.close(ended)
+    listener.close()
