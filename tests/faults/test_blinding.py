@@ -18,7 +18,7 @@ from app.platform.policy import POLICY
 from app.rehearsal.cast import Cast, perform
 from app.rehearsal.rehearse import RehearsalPlan, assembled
 from tests.faults.figures import note
-from tests.faults.short_study import KEY, PHASE_S, ROAM_S
+from tests.faults.short_study import KEY, ONE_LATENCY_LESS, PHASE_S, ROAM_S
 from tests.protocol.helpers import edited
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
@@ -28,7 +28,7 @@ CANARIES = re.compile(rb"(?<![0-9a-f.])(?:0?\.?137[.]?25|0?\.?262[.]?5)|canary",
 A number begins where they begin: the microseconds of a time of day and the middle of an identifier
 hold every sequence of four digits sooner or later.
 """
-LOOK_EVERY_S = 0.4
+LOOK_EVERY_S = 0.02
 SPEED = 16.0
 PAGES = ("/", "/tablet")
 
@@ -37,6 +37,7 @@ def canary_study() -> str:
     """The shipped study, short and blinded, with conditions that can be told from all else."""
     return edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
+        ONE_LATENCY_LESS,
         ("duration_s: 120", f"duration_s: {ROAM_S}"),
         *[("duration_s: 60\n        freeze_s: 5", f"duration_s: {PHASE_S}\n        freeze_s: 1")]
         * 2,
@@ -118,14 +119,28 @@ async def _done(asked: Any) -> Any:
     return answer.json()
 
 
+def _moment(cast: Cast) -> tuple[object, ...]:
+    """What kind of step is under way, and with which limb and latency."""
+    state = cast.headset.client.state
+    if state is None:
+        return ()
+    order = state.phase
+    return (state.step_kind, *((order.limb, order.latency_ms) if order is not None else ()))
+
+
 async def _watched(cast: Cast, spies: list[Spy]) -> None:
-    """Look and listen until the rehearsal is over."""
+    """Listen, and look at one kind of moment after the other, until the rehearsal is over."""
     session_id = cast.operator.session_id
+    seen: set[tuple[object, ...]] = set()
     async with asyncio.TaskGroup() as group:
         listening = [group.create_task(spy.listen(session_id)) for spy in spies]
         acting = group.create_task(perform(cast))
         while not acting.done():
-            await asyncio.sleep(LOOK_EVERY_S)
+            moment = _moment(cast)
+            if moment in seen:
+                await asyncio.sleep(LOOK_EVERY_S)
+                continue
+            seen.add(moment)
             for spy in spies:
                 await spy.look(session_id)
         for task in listening:
