@@ -37,24 +37,37 @@ QUOTED = re.compile(r"'(\w+)'")
 
 def tables_of(engine: Engine | Connection) -> list[Table]:
     """The product's tables as they are, those that are referred to first."""
-    if isinstance(engine, Connection) and engine.dialect.name == "sqlite":
+    if isinstance(engine, Connection):
         return _tables_in(statements_of(engine), engine)
     return _reflected(engine)
 
 
 def statements_of(connection: Connection) -> tuple[str, ...]:
-    """What made a SQLite database as it is, word by word: what it tells of itself follows from it.
+    """What a database is made of, word by word: what it tells of its schema follows from it.
 
     So databases with the same statements need to be asked only once.
     """
-    query = text("SELECT type || ' ' || name || ' ' || sql FROM sqlite_master WHERE sql > ''")
+    query = _ON_SQLITE if connection.dialect.name == "sqlite" else _ON_POSTGRES
     return tuple(sorted(connection.scalars(query)))
+
+
+_ON_SQLITE = text("SELECT type || ' ' || name || ' ' || sql FROM sqlite_master WHERE sql > ''")
+# Each column with all that the standard knows of it; the catalog is the database's own name.
+_ON_POSTGRES = text("""
+    SELECT 'column ' || (jsonb_strip_nulls(to_jsonb(c)) - 'table_catalog' - 'udt_catalog')::text
+    FROM information_schema.columns AS c WHERE table_schema = 'public'
+    UNION ALL
+    SELECT concat_ws(' ', 'constraint', conrelid::regclass, conname, pg_get_constraintdef(oid))
+    FROM pg_constraint WHERE connamespace = 'public'::regnamespace
+    UNION ALL
+    SELECT 'index ' || indexdef FROM pg_indexes WHERE schemaname = 'public'
+""")
 
 
 def remembered(
     ask: Callable[[Connection], T],
 ) -> Callable[[tuple[str, ...], Connection], T]:
-    """Keep what a SQLite database told of its schema, by the statements that made it."""
+    """Keep what a database told of its schema, by what it is made of."""
     told: OrderedDict[tuple[str, ...], T] = OrderedDict()
 
     def tell(statements: tuple[str, ...], connection: Connection) -> T:
