@@ -41,6 +41,13 @@ def performed(request: pytest.FixtureRequest) -> Performed:
     return performed_once("rehearsal-sqlite", plan, None, {}, SHORT)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Whoever asks first waits for the whole rehearsal, on a busy machine for minutes."""
+    for item in items:
+        if "performed" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.timeout(900))
+
+
 @pytest.fixture
 def db(performed: Performed) -> Iterator[Session]:
     """The record of the rehearsal."""
