@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from tests.support import postgres, shared_run
 from tests.support.forked_workers import use_fork_server
@@ -16,6 +17,10 @@ from tests.support.server import LiveServer
 from tests.support.sqlite import fresh_sqlite
 
 SHARED_DATA_VARIABLE = "REEMBODY_SHARED_DATA"
+
+# How long an example takes says something about the machine, nothing about the code.
+settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("untimed")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

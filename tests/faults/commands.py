@@ -1,14 +1,14 @@
 """Commands of the product on the installation of a server, as an operator would type them."""
 
 import json
-import resource
-import subprocess
+import tempfile
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from tests.support.server import REEMBODY, LiveServer
+from tests.support.nursery import Wish, nursery
+from tests.support.server import LiveServer
 
 UNUSABLE = 2
 
@@ -32,20 +32,17 @@ class Said:
 
 def reembody(server: LiveServer, *arguments: object, max_file_bytes: int | None = None) -> Said:
     """Run a command; `max_file_bytes` is the longest file it can write."""
-    began_s = time.monotonic()
-    ended = subprocess.run(
-        [*REEMBODY, *map(str, arguments)],
-        env=server._full_environment(),
-        capture_output=True,
-        text=True,
-        check=False,
-        preexec_fn=_limit(max_file_bytes),
-    )
-    return Said(ended.returncode, ended.stdout, ended.stderr, time.monotonic() - began_s)
-
-
-def _limit(max_file_bytes: int | None) -> Callable[[], None] | None:
-    if max_file_bytes is None:
-        return None
-    limits = (max_file_bytes, max_file_bytes)
-    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    with tempfile.TemporaryDirectory() as folder:
+        out, err = Path(folder) / "out", Path(folder) / "err"
+        wish = Wish(
+            list(map(str, arguments)),
+            server._full_environment(),
+            Path(folder),
+            out,
+            errors=err,
+            max_file_bytes=max_file_bytes,
+        )
+        began_s = time.monotonic()
+        code = nursery().start(wish).wait()
+        took_s = time.monotonic() - began_s
+        return Said(code, out.read_text(), err.read_text(), took_s)

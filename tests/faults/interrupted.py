@@ -70,9 +70,7 @@ def found(url: str) -> Found:
 
 
 def _schema_of(connection: Connection) -> dict[str, Any]:
-    if connection.dialect.name == "sqlite":
-        return _remembered_words(statements_of(connection), connection)
-    return _in_words(connection)
+    return _remembered_words(statements_of(connection), connection)
 
 
 def _in_words(connection: Connection) -> dict[str, Any]:

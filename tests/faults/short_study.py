@@ -1,4 +1,7 @@
-"""The shipped study with short phases, stored on a server: faults need seconds, not minutes."""
+"""The shipped study with short phases, stored on a server: faults need seconds, not minutes.
+
+It has two of the three latencies: the block in which things go wrong, and one that comes after.
+"""
 
 import asyncio
 from collections.abc import Callable
@@ -11,7 +14,15 @@ from tests.protocol.helpers import edited
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 KEY, PHASE_S, ROAM_S = "short-latency", 8.0, 4.0
+TASKS = 4
 LOOK_EVERY_S = 0.005
+ONE_LATENCY_LESS = (
+    """  - key: latency_0
+    latency_ms: 0
+    label: {en: no added latency, de: keine zusätzliche Verzögerung}
+""",
+    "",
+)
 FIRST_FOOT_STEP = next(step.index for step in PLAN if step.limb == "foot")
 
 
@@ -19,6 +30,7 @@ def add_short_study(server: LiveServer) -> str:
     """Store it; its key."""
     text = edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
+        ONE_LATENCY_LESS,
         ("duration_s: 120", f"duration_s: {ROAM_S}"),
         *[("duration_s: 60\n        freeze_s: 5", f"duration_s: {PHASE_S}\n        freeze_s: 1")]
         * 2,

@@ -23,7 +23,7 @@ from app.rehearsal.rehearse import RehearsalPlan, assembled, tasks_of
 from app.wire import StreamName
 from tests.faults.record import record_of
 from tests.faults.relay import Relay, relayed
-from tests.faults.short_study import PHASE_S, ROAM_S, Watch, add_short_study
+from tests.faults.short_study import PHASE_S, ROAM_S, TASKS, Watch, add_short_study
 from tests.rehearsal.ledger import LedgerJournal, reconcile
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
@@ -59,7 +59,7 @@ def rehearse_with(server: LiveServer, wear: Wear, ledger: LedgerJournal) -> Outc
     outcome = asyncio.run(_perform(server, study, wear, ledger))
     active_s = [phase["active_s"] for phase in outcome.view["phases"]]
     assert outcome.view["status"] == "completed"
-    assert active_s == pytest.approx([ROAM_S] + [PHASE_S] * 6, abs=FRAME_S)
+    assert active_s == pytest.approx([ROAM_S] + [PHASE_S] * TASKS, abs=FRAME_S)
     assert {(step["status"], step["attempt"]) for step in outcome.view["steps"]} == {("done", 1)}
     return outcome
 

@@ -15,9 +15,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from sqlalchemy import func, select
 
 from app.database import open_database
 from app.features.record.sessions.journal import events_of, verify_chain
+from app.models import TelemetryBatch
 from app.platform.access import session_by_id
 from tests.faults.commands import reembody
 from tests.faults.figures import note
@@ -115,12 +117,18 @@ def refused_after_withdrawal(site: Site, visit: Visit) -> int:
     return sum(one["frames_stored"] for one in streams if one["epoch"] == headset.epoch)
 
 
-def settled(site: Site, visit: Visit, within_s: float = 30.0) -> Mapping[str, int]:
+def settled(site: Site, visit: Visit, within_s: float = 60.0) -> Mapping[str, int]:
     """Where a visit is found once its last movement has gone from batches into chunks."""
     give_up_s = time.monotonic() + within_s
-    while "telemetry_batches.message" in (found := in_tables(visit, site.database.engine)):
-        assert time.monotonic() < give_up_s, found
+    waiting = select(func.count()).where(TelemetryBatch.session_id == visit.session_id)
+    while True:
+        with site.database.reading() as db:
+            if not db.scalar(waiting):
+                break
+        assert time.monotonic() < give_up_s, "batches were not folded"
         time.sleep(0.1)
+    found = in_tables(visit, site.database.engine)
+    assert "telemetry_batches.message" not in found
     return found
 
 

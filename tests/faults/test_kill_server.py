@@ -19,38 +19,46 @@ from tests.faults.killer import Kill, Killer, figures
 from tests.faults.record import record_of
 from tests.faults.schedule import KILLS_PER_SESSION, KINDS, draw_schedule
 from tests.rehearsal.ledger import LedgerJournal, Reconciliation, reconcile
-from tests.rehearsal.performed import STUDY
+from tests.rehearsal.performed import SHIPPED, Lengths
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 FRAME_S = 1 / 90
 SHORT_KILLS = 8
 SPEED = 20.0
+# A second of a machine's time each: longer than the longest wait for a kill in it.
+SHORT = Lengths(30.0, 20.0)
 
 
+@pytest.mark.timeout(900)
 def test_kills_lose_nothing_and_every_phase_goes_on(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A session at high speed, killed again and again from its set-up to its last phase."""
-    kills = kill_until(tmp_path, SHORT_KILLS, first_seed=1, capsys=capsys)
+    kills = kill_until(tmp_path, SHORT_KILLS, SHORT, first_seed=1, capsys=capsys)
     assert {"setup", "preparing", "running"} <= {kill.before.kind for kill in kills}
 
 
 @pytest.mark.long
 @pytest.mark.timeout(3600)
 def test_two_hundred_kills_lose_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Ten sessions and more, each with other moments."""
-    kills = kill_until(tmp_path, 10 * KILLS_PER_SESSION, first_seed=2, capsys=capsys)
+    """Ten sessions and more of the shipped length, each with other moments."""
+    kills = kill_until(tmp_path, 10 * KILLS_PER_SESSION, SHIPPED, first_seed=2, capsys=capsys)
     assert set(KINDS) <= {kill.before.kind for kill in kills}
 
 
 def kill_until(
-    folder: Path, wanted: int, *, first_seed: int, capsys: pytest.CaptureFixture[str]
+    folder: Path,
+    wanted: int,
+    lengths: Lengths,
+    *,
+    first_seed: int,
+    capsys: pytest.CaptureFixture[str],
 ) -> list[Kill]:
     """Rehearse sessions, each to its end, until there were so many kills; every one is checked."""
     kills: list[Kill] = []
     seed = first_seed
     while len(kills) < wanted:
-        kills += _kill_during_a_session(folder / str(seed), seed, wanted - len(kills))
+        kills += _kill_during_a_session(folder / str(seed), lengths, seed, wanted - len(kills))
         seed += 1
     note(
         1,
@@ -71,23 +79,24 @@ def kill_until(
     return kills
 
 
-def _kill_during_a_session(folder: Path, seed: int, most: int) -> list[Kill]:
+def _kill_during_a_session(folder: Path, lengths: Lengths, seed: int, most: int) -> list[Kill]:
     ledger = LedgerJournal()
     with LiveServer(folder) as server:
-        kills, session_id = asyncio.run(_rehearse(server, ledger, seed, most))
+        study = lengths.store(server)
+        kills, session_id = asyncio.run(_rehearse(server, study, ledger, seed, most))
         for kill in kills:
             check_kill(kill)
-        check_session(server, session_id, ledger)
+        check_session(server, session_id, ledger, lengths)
     return kills
 
 
 async def _rehearse(
-    server: LiveServer, ledger: LedgerJournal, seed: int, most: int
+    server: LiveServer, study: str, ledger: LedgerJournal, seed: int, most: int
 ) -> tuple[list[Kill], str]:
     targets = draw_schedule(np.random.default_rng(seed))
     if most < KILLS_PER_SESSION:
         targets = targets[:: max(1, len(targets) // (most + 1))]
-    plan = RehearsalPlan(server.url, STUDY, speed=SPEED, seed=seed, password=ADMIN_PASSWORD)
+    plan = RehearsalPlan(server.url, study, speed=SPEED, seed=seed, password=ADMIN_PASSWORD)
     async with assembled(plan, journal=ledger) as cast:
         killer = Killer(server, cast, ledger)
         async with asyncio.TaskGroup() as group:
@@ -107,7 +116,9 @@ def check_kill(kill: Kill) -> None:
         assert kill.acked_active_s - 1e-9 <= after.active_s <= kill.used_active_s + 1e-9, kill
 
 
-def check_session(server: LiveServer, session_id: str, ledger: LedgerJournal) -> None:
+def check_session(
+    server: LiveServer, session_id: str, ledger: LedgerJournal, lengths: Lengths
+) -> None:
     """The session was finished as if nothing had happened."""
     with record_of(server) as db:
         found = reconcile(db, session_id, ledger)
@@ -127,5 +138,5 @@ def check_session(server: LiveServer, session_id: str, ledger: LedgerJournal) ->
     phases = view["phases"]
     assert {phase["status"] for phase in phases} == {"done"}
     assert [phase["active_s"] for phase in phases] == pytest.approx(
-        [120.0] + [60.0] * 6, abs=FRAME_S
+        [lengths.roam_s] + [lengths.task_s] * 6, abs=FRAME_S
     )

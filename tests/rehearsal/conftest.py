@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from app.database import open_database
 from app.rehearsal.rehearse import RehearsalPlan
-from tests.rehearsal.performed import STUDY, Performed, performed_once
+from tests.rehearsal.performed import SHIPPED, SHORT, STUDY, Performed, performed_once
 from tests.support import postgres
 from tests.support.shared_run import once
 
@@ -16,17 +16,36 @@ CAPTURE = Path("motion") / "cmu_bvh" / "02_01.bvh"
 SPEED = 20.0
 
 
-@pytest.fixture(scope="module", params=["sqlite, captured movement", "postgresql"])
+PERFORMED = [
+    "sqlite, captured movement",
+    "postgresql",
+    pytest.param("sqlite, shipped length", marks=pytest.mark.long),
+]
+
+
+@pytest.fixture(scope="module", params=PERFORMED)
 def performed(request: pytest.FixtureRequest) -> Performed:
-    """A finished rehearsal at high speed, on each database."""
+    """A finished rehearsal at high speed, on each database; phases are short but in the long form.
+
+    Another seed each: what holds does so whatever the participant does.
+    """
     if request.param == "postgresql":
         url = _kept_postgres()
         plan = RehearsalPlan(url="", study=STUDY, speed=2 * SPEED, seed=2)
         environment = {"REEMBODY_DATABASE_URL": url}
-        return performed_once("rehearsal-postgresql", plan, url, environment)
+        return performed_once("rehearsal-postgresql", plan, url, environment, SHORT)
     shared_data: Path = request.getfixturevalue("shared_data")
     plan = RehearsalPlan(url="", study=STUDY, speed=SPEED, seed=1, capture=shared_data / CAPTURE)
-    return performed_once("rehearsal-sqlite", plan, None, {})
+    if request.param == "sqlite, shipped length":
+        return performed_once("rehearsal-shipped", plan, None, {}, SHIPPED)
+    return performed_once("rehearsal-sqlite", plan, None, {}, SHORT)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Whoever asks first waits for the whole rehearsal, on a busy machine for minutes."""
+    for item in items:
+        if "performed" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.timeout(900))
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import asyncio
 import json
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,19 +15,50 @@ from app.database import open_database
 from app.models import JointErrorRow
 from app.rehearsal.cast import perform
 from app.rehearsal.rehearse import RehearsalPlan, assembled, report_of
+from tests.protocol.helpers import edited
 from tests.rehearsal.ledger import LedgerJournal, load_ledger
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 from tests.support.shared_run import once, run_folder
 
 STUDY = "reembodiment-latency"
-PHASES = 7
+PHASES, TASK_PHASES = 7, 6
 SUMMARIES_WITHIN_S = 60.0
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """How long the phases of the shipped study are, in s of active time."""
+
+    roam_s: float
+    task_s: float
+
+    def store(self, server: LiveServer) -> str:
+        """Store the study with these lengths; its key."""
+        if self == SHIPPED:
+            return STUDY
+        key = f"{STUDY}-{self.task_s:g}-s"
+        text = edited(
+            (f"key: {STUDY}", f"key: {key}"),
+            ("duration_s: 120", f"duration_s: {self.roam_s}"),
+            *[("duration_s: 60\n", f"duration_s: {self.task_s}\n")] * 2,
+        )
+        with server.client() as client:
+            credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+            client.post("/api/login", json=credentials).raise_for_status()
+            client.post("/api/studies", json={"yaml": text}).raise_for_status()
+        return key
+
+
+SHIPPED = Lengths(120.0, 60.0)
+SHORT = Lengths(30.0, 30.0)
+"""Long enough for a task with each limb, and for a latency to be measured in every phase."""
 
 
 @dataclass(frozen=True)
 class Performed:
     """What is left of a rehearsal: the record, and what its own side knows."""
 
+    lengths: Lengths
     database_url: str
     report: dict[str, Any]
     view: dict[str, Any]
@@ -41,19 +72,28 @@ class Performed:
 
 
 def performed_once(
-    name: str, plan: RehearsalPlan, database_url: str | None, environment: Mapping[str, str]
+    name: str,
+    plan: RehearsalPlan,
+    database_url: str | None,
+    environment: Mapping[str, str],
+    lengths: Lengths = SHIPPED,
 ) -> Performed:
-    """Perform `plan` in the first process that asks; `database_url` None is the server's SQLite."""
+    """Perform `plan` in the first process that asks; `database_url` None is the server's SQLite.
+
+    The study of the plan is the shipped one, with phases of these `lengths`.
+    """
     folder = run_folder() / name
     with once(name) as mark:
         if mark:
             with LiveServer(folder, environment=environment) as server:
                 url = database_url or f"sqlite:///{server.data_dir / 'reembody.sqlite'}"
-                told = asyncio.run(_perform(plan, server, folder / "ledger.json"))
+                here = replace(plan, study=lengths.store(server))
+                told = asyncio.run(_perform(here, server, folder / "ledger.json"))
                 _wait_for_summaries(url, told["report"]["session_id"])
             mark.write_text(json.dumps({"database_url": url, **told}))
         told = json.loads((run_folder() / f"{name}.done").read_text())
     return Performed(
+        lengths,
         told["database_url"],
         told["report"],
         told["view"],

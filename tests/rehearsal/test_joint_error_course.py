@@ -7,11 +7,10 @@ from sqlalchemy.orm import Session
 
 from app.models import JointErrorCourseRow, JointErrorRow, Phase
 from app.science.joint_error_course import COURSE_BIN_S
-from tests.rehearsal.performed import Performed
+from tests.rehearsal.performed import TASK_PHASES, Performed
 
 RATE_HZ = 90.0
 JOINTS = 21
-TASK_S = 60.0
 
 
 def _courses(performed: Performed, db: Session) -> list[tuple[Phase, JointErrorCourseRow]]:
@@ -31,13 +30,14 @@ def _courses(performed: Performed, db: Session) -> list[tuple[Phase, JointErrorC
 def test_every_bin_of_a_task_has_its_five_seconds(performed: Performed, db: Session) -> None:
     """As the frames tell the active time, walks back left out, to a few frames; no bin is over."""
     courses = [course for phase, course in _courses(performed, db) if phase.kind == "task"]
-    assert len(courses) == 2 * 6
+    assert len(courses) == 2 * TASK_PHASES
+    task_s = performed.lengths.task_s
     for course in courses:
         frames = np.array(course.samples) / JOINTS
-        assert len(frames) == TASK_S / COURSE_BIN_S
+        assert len(frames) == task_s / COURSE_BIN_S
         np.testing.assert_allclose(frames[:-1], COURSE_BIN_S * RATE_HZ, atol=3.0)
         # What pauses cost or give, up to a frame each, is in the last.
-        assert frames.sum() == pytest.approx(TASK_S * RATE_HZ, abs=20.0)
+        assert frames.sum() == pytest.approx(task_s * RATE_HZ, abs=20.0)
 
 
 def test_the_mean_of_the_bins_is_that_of_the_phase(performed: Performed, db: Session) -> None:

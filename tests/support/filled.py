@@ -23,11 +23,8 @@ from sqlalchemy import (
     LargeBinary,
     MetaData,
     Table,
-    inspect,
     text,
 )
-
-from tests.support.postgres_cleaning import MARKS
 
 ROWS = 3
 KEPT = 16
@@ -40,40 +37,39 @@ QUOTED = re.compile(r"'(\w+)'")
 def tables_of(engine: Engine | Connection) -> list[Table]:
     """The product's tables as they are, those that are referred to first."""
     if isinstance(engine, Connection):
-        return _tables_in(schema_of(engine), engine)
+        return _tables_in(statements_of(engine), engine)
     return _reflected(engine)
 
 
-def schema_of(connection: Connection) -> tuple[str, ...]:
-    """What tells a schema from another, for `remembered`; empty where nothing does.
-
-    On PostgreSQL the marks of a database: those of one template's copies are equal.
-    """
-    if connection.dialect.name == "sqlite":
-        return statements_of(connection)
-    if not inspect(connection).has_table(VERSION_TABLE):
-        return ()
-    return (str(connection.scalar(text(MARKS))),)
-
-
 def statements_of(connection: Connection) -> tuple[str, ...]:
-    """What made a SQLite database as it is, word by word: what it tells of itself follows from it.
+    """What a database is made of, word by word: what it tells of its schema follows from it.
 
     So databases with the same statements need to be asked only once.
     """
-    query = text("SELECT type || ' ' || name || ' ' || sql FROM sqlite_master WHERE sql > ''")
+    query = _ON_SQLITE if connection.dialect.name == "sqlite" else _ON_POSTGRES
     return tuple(sorted(connection.scalars(query)))
+
+
+_ON_SQLITE = text("SELECT type || ' ' || name || ' ' || sql FROM sqlite_master WHERE sql > ''")
+# Each column with all that the standard knows of it; the catalog is the database's own name.
+_ON_POSTGRES = text("""
+    SELECT 'column ' || (jsonb_strip_nulls(to_jsonb(c)) - 'table_catalog' - 'udt_catalog')::text
+    FROM information_schema.columns AS c WHERE table_schema = 'public'
+    UNION ALL
+    SELECT concat_ws(' ', 'constraint', conrelid::regclass, conname, pg_get_constraintdef(oid))
+    FROM pg_constraint WHERE connamespace = 'public'::regnamespace
+    UNION ALL
+    SELECT 'index ' || indexdef FROM pg_indexes WHERE schemaname = 'public'
+""")
 
 
 def remembered(
     ask: Callable[[Connection], T],
 ) -> Callable[[tuple[str, ...], Connection], T]:
-    """Keep what a database told of its schema, by what tells the schema from another."""
+    """Keep what a database told of its schema, by what it is made of."""
     told: OrderedDict[tuple[str, ...], T] = OrderedDict()
 
     def tell(schema: tuple[str, ...], connection: Connection) -> T:
-        if not schema:
-            return ask(connection)
         if schema not in told:
             told[schema] = ask(connection)
             while len(told) > KEPT:
@@ -96,7 +92,7 @@ def fill(engine: Engine, rows: int = ROWS) -> None:
     """Put `rows` rows into every table; each refers to those of the same number."""
     writes = engine.execution_options(reembody_writes=True)
     with writes.begin() as connection:
-        schema = schema_of(connection)
+        schema = statements_of(connection)
         for table in _tables_in(schema, connection):
             listed = _listed_in(schema, connection).get(table.name, {})
             connection.execute(table.insert(), [_row(table, listed, at) for at in range(rows)])

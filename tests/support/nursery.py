@@ -14,6 +14,7 @@ Whether the script itself starts is seen by tests/lan and tests/architecture, wh
 import ctypes
 import json
 import os
+import resource
 import select
 import signal
 import socket
@@ -96,6 +97,10 @@ class Wish:
     environment: dict[str, str]
     folder: Path
     output: Path
+    errors: Path | None = None
+    """Where standard error goes, if not to `output` too."""
+    max_file_bytes: int | None = None
+    """The longest file that it can write, if not any."""
 
 
 class Nursery:
@@ -124,6 +129,8 @@ class Nursery:
                 "environment": wish.environment,
                 "folder": str(wish.folder),
                 "output": str(wish.output),
+                "errors": str(wish.errors or wish.output),
+                "max_file_bytes": wish.max_file_bytes,
             }
         )
         return Child(self, int(started["pid"]))
@@ -183,10 +190,13 @@ def become(request: dict[str, Any]) -> None:
     os.chdir(request["folder"])
     os.environ.clear()
     os.environ.update(request["environment"])
-    output = os.open(request["output"], os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
-    for standard in (1, 2):
-        os.dup2(output, standard)
-    os.close(output)
+    for standard, name in ((1, "output"), (2, "errors")):
+        file = os.open(request[name], os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+        os.dup2(file, standard)
+        os.close(file)
+    if request["max_file_bytes"] is not None:
+        limits = (request["max_file_bytes"], request["max_file_bytes"])
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
     script = str(Path(sys.executable).with_name("reembody"))
     sys.argv = [script, *request["arguments"]]
     # What the processes that it makes will look for.

@@ -2,8 +2,8 @@
 
 import asyncio
 import time
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,9 @@ from tests.faults.tracing.running import RECORD, traced_server
 from tests.rehearsal.ledger import LedgerJournal
 from tests.support.server import REEMBODY
 
+Flush = tuple[int, int, Mapping[Position, int]]
+"""Stamp and time of a sync's return, and the positions that are on disk by then."""
+
 
 @dataclass(frozen=True)
 class Recording:
@@ -27,6 +30,8 @@ class Recording:
     events: Sequence[Event]
     promises: Sequence[Promise]
     ledgers: Mapping[str, LedgerJournal]
+    flushes: list[Flush] = field(default_factory=list)
+    """What each flush made certain, once `prove_acks` has looked; variants of a run share it."""
 
     @property
     def data_dir(self) -> str:
@@ -78,13 +83,9 @@ def prove_acks(recording: Recording) -> AckProof:
 
     So it is SQLite's own recovery that says whether the bytes on disk hold a position.
     """
-    flushed: list[tuple[int, int, Mapping[Position, int]]] = []
-    disk = Disk(recording.data_dir)
-    for stamp, returned, event in timeline(recording.events):
-        replay(disk, [(stamp, returned, event)])
-        if returned and event.what == "sync":
-            database = write_image(recording.folder / "image", disk.certain())
-            flushed.append((stamp, event.ended_ns, positions_in(database)))
+    flushed = recording.flushes
+    if not flushed:
+        flushed += _flushes_of(recording)
     acks = [promise for promise in recording.promises if promise.is_ack]
     waits_ms, early = [], 0
     for ack in acks:
@@ -94,6 +95,15 @@ def prove_acks(recording: Recording) -> AckProof:
         else:
             waits_ms.append((ack.began_ns - holding[1]) / 1e6)
     return AckProof(len(acks), len(flushed), early, tuple(waits_ms))
+
+
+def _flushes_of(recording: Recording) -> Iterator[Flush]:
+    disk = Disk(recording.data_dir)
+    for stamp, returned, event in timeline(recording.events):
+        replay(disk, [(stamp, returned, event)])
+        if returned and event.what == "sync":
+            database = write_image(recording.folder / "image", disk.certain())
+            yield stamp, event.ended_ns, positions_in(database)
 
 
 def _holds(stored: Mapping[Position, int], promised: Mapping[Position, int]) -> bool:
