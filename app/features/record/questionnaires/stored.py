@@ -5,7 +5,6 @@ are those of the answers that count. What the scores were at first follows from 
 """
 
 import json
-from collections import defaultdict
 from collections.abc import Mapping
 from datetime import datetime, timedelta
 
@@ -32,7 +31,6 @@ from app.models import (
 )
 from app.science.instruments import Instrument, score_answers, validate_answers
 
-Answers = dict[str, str | float | None]
 _TICK = timedelta(microseconds=1)
 
 
@@ -43,19 +41,7 @@ def stored_answers(db: Session, session: StudySession) -> list[StoredAnswers]:
         .where(Submission.session_id == session.id)
         .order_by(Submission.submitted_at, Submission.id)
     ).all()
-    # All forms at once: the cockpit asks for them whenever it looks at a session.
-    own = select(Submission.id).where(Submission.session_id == session.id)
-    answers = _answers(db, own)
-    scores: defaultdict[str, dict[str, float | None]] = defaultdict(dict)
-    corrections: defaultdict[str, list[CorrectionView]] = defaultdict(list)
-    for score in db.scalars(select(ScoreValue).where(ScoreValue.submission_id.in_(own))):
-        scores[score.submission_id][score.score] = score.value
-    for correction in _corrections(db, own):
-        corrections[correction.submission_id].append(_correction_view(correction))
-    return [
-        _stored_answers(db, one, answers.get(one.id, {}), scores[one.id], corrections[one.id])
-        for one in submissions
-    ]
+    return [_stored_answers(db, submission) for submission in submissions]
 
 
 def stored_scores(db: Session, session: StudySession) -> list[StoredScores]:
@@ -67,22 +53,18 @@ def stored_scores(db: Session, session: StudySession) -> list[StoredScores]:
     ]
 
 
-def answers_of(db: Session, submission_id: str) -> Answers:
+def answers_of(db: Session, submission_id: str) -> dict[str, str | float | None]:
     """The answers of a form that count, in the order in which its items were shown."""
-    own = select(Submission.id).where(Submission.id == submission_id)
-    return _answers(db, own).get(submission_id, {})
-
-
-def _answers(db: Session, submissions: Select[str]) -> dict[str, Answers]:
     rows = db.scalars(
-        select(Answer).where(Answer.submission_id.in_(submissions)).order_by(Answer.position)
+        select(Answer).where(Answer.submission_id == submission_id).order_by(Answer.position)
     )
-    corrected = newest_corrections(db, submissions)
-    answers: dict[str, Answers] = {}
-    for row in rows:
-        counts = corrected.get((row.submission_id, row.item), row)
-        answers.setdefault(row.submission_id, {})[row.item] = _value(counts)
-    return answers
+    corrected = newest_corrections(db, select(Submission.id).where(Submission.id == submission_id))
+    return {
+        row.item: _value(corrected[row.submission_id, row.item])
+        if (row.submission_id, row.item) in corrected
+        else _given(row)
+        for row in rows
+    }
 
 
 def newest_corrections(
@@ -169,19 +151,21 @@ def _corrections(db: Session, submissions: Select[str]) -> list[AnswerCorrection
     return list(db.scalars(query.order_by(AnswerCorrection.at, AnswerCorrection.id)))
 
 
-def _value(row: Answer | AnswerCorrection) -> str | float | None:
+def _value(row: AnswerCorrection) -> str | float | None:
     return row.value_number if row.value_text is None else row.value_text
 
 
-def _stored_answers(
-    db: Session,
-    submission: Submission,
-    answers: Answers,
-    scores: dict[str, float | None],
-    corrections: list[CorrectionView],
-) -> StoredAnswers:
+def _given(row: Answer) -> str | float | None:
+    return row.value_number if row.value_text is None else row.value_text
+
+
+def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
+    rows = db.scalars(select(ScoreValue).where(ScoreValue.submission_id == submission.id))
+    scores = {row.score: row.value for row in rows}
     version = db.get_one(InstrumentVersion, submission.instrument_version_id)
     instrument = instrument_of(version)
+    answers = answers_of(db, submission.id)
+    own = select(Submission.id).where(Submission.id == submission.id)
     return StoredAnswers(
         submission_id=submission.id,
         administration=submission.administration,
@@ -192,7 +176,7 @@ def _stored_answers(
         shown_order=submission.shown_order,
         submitted_at=submission.submitted_at,
         answers=_as_sent(answers),
-        corrections=corrections,
+        corrections=[_correction_view(row) for row in _corrections(db, own)],
         definition=json.loads(version.canonical_json),
         scores=scores,
         score_views=[
