@@ -1,10 +1,10 @@
 import type { Allowed, Current, SessionView } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { guidance, primaryAction } from "./action";
-import { changesBetween } from "./changes";
 import { at, session, steps } from "./example";
-import { groupSteps } from "./groupSteps";
-import { redoable, redoTarget } from "./redo";
+import { guidance, primaryAction } from "./session/action";
+import { changesBetween } from "./session/changes";
+import { groupSteps } from "./session/groupSteps";
+import { redoable, redoTarget } from "./session/redo";
 
 const view = (
   current: Current | null,

@@ -11,7 +11,7 @@ import { inLanguage } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { type JSX, lazy, Suspense, useMemo, useState } from "react";
-import { useFormTexts } from "../cockpit/formTexts";
+import { useFormTexts } from "../cockpit/step/formTexts";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Instruments.module.css";

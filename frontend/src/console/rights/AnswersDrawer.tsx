@@ -6,7 +6,7 @@ import { dateTime } from "@shared/format";
 import { inLanguage } from "@shared/text";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { RecordDrawer } from "../cockpit/RecordDrawer";
+import { RecordDrawer } from "../cockpit/record/RecordDrawer";
 import { useTexts } from "../i18n";
 import { formsQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";

@@ -10,7 +10,7 @@ import { openPoses, type PoseSetup, type PoseTouch } from "@shared/api/poses";
 import { paletteOf } from "@shared/stage/figure";
 import { type Mounted, mount } from "@shared/stage/mount";
 import { type RefObject, useEffect, useRef, useState } from "react";
-import type { TelemetryStore } from "../telemetryStore";
+import type { TelemetryStore } from "../session/telemetryStore";
 import { DARK, type Lights, nextChange, tonesAt, withTouches } from "./lights";
 import type { LiveScene } from "./scene";
 import type { View } from "./views";

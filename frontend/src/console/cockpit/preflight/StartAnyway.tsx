@@ -1,7 +1,7 @@
 /** Asked when somebody starts although a check has failed. */
 import type { SessionView } from "@shared/api/types";
 import type { JSX } from "react";
-import type { useSession } from "../useSession";
+import type { useSession } from "../session/useSession";
 import { OverrideDialog } from "./OverrideDialog";
 import type { Flight } from "./usePreflight";
 import { failing } from "./words";
