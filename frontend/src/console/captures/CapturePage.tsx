@@ -13,8 +13,9 @@ import classes from "./Capture.module.css";
 import { CaptureHead } from "./CaptureHead";
 import { JointMapTab } from "./JointMapTab";
 import { MovementTab } from "./MovementTab";
+import type { TabProps } from "./NoAvatar";
 import { captureQuery } from "./queries";
-import { type JointMapDraft, useJointMap } from "./useJointMap";
+import { useJointMap } from "./useJointMap";
 import { VerificationTab } from "./VerificationTab";
 
 const TABS = ["movement", "joints", "verification"] as const;
@@ -25,11 +26,6 @@ const ICONS: Readonly<Record<Tab, IconName>> = {
   joints: "body",
   verification: "chart",
 };
-
-export interface TabProps {
-  readonly capture: Capture;
-  readonly map: JointMapDraft;
-}
 
 const CONTENT: Readonly<Record<Tab, (props: TabProps) => JSX.Element>> = {
   movement: MovementTab,

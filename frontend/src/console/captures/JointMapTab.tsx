@@ -11,12 +11,12 @@ import { type Key, useTexts } from "../i18n";
 import { useMay } from "../may";
 import { EmptyState } from "../ui/EmptyState";
 import { BODY, GROUPS, type Group } from "./bodyJoints";
-import type { TabProps } from "./CapturePage";
 import classes from "./JointMap.module.css";
 import { JointRow } from "./JointRow";
 import { type MapProblem, problemsOf, redo, replace, sameMap, undo } from "./jointMapEdit";
 import { LeftOver } from "./LeftOver";
 import { MapPreview } from "./MapPreview";
+import type { TabProps } from "./NoAvatar";
 import { nameOf } from "./nameOf";
 import type { JointMapDraft } from "./useJointMap";
 

@@ -13,9 +13,9 @@ import { CheckPanel } from "./CheckPanel";
 import { ColumnFields } from "./ColumnFields";
 import { FilePreview } from "./FilePreview";
 import classes from "./Imports.module.css";
-import type { OpenedFile } from "./ImportWizard";
 import { ItemColumns } from "./ItemColumns";
 import { checkQuery } from "./queries";
+import type { OpenedFile } from "./readText";
 import { WordFields } from "./WordFields";
 
 interface StepProps {

@@ -8,10 +8,20 @@ import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { sessionsQuery } from "../queries";
 import { KindBadge } from "../ui/KindBadge";
-import type { Wanted } from "./address";
-import type { Chosen } from "./Player";
+import type { Chosen, Wanted } from "./address";
 import { isOver, usePhaseName } from "./phaseNames";
 import classes from "./Replay.module.css";
+
+/** The way from the replay to its session. */
+export function BackLink({ id }: { readonly id: string }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Link href={`/sessions/${id}`} className={classes.back ?? ""}>
+      <Icon name="back" size={16} />
+      {t("replay.back")}
+    </Link>
+  );
+}
 
 interface HeadProps {
   readonly session: SessionView;

@@ -12,25 +12,20 @@ import { CameraBar } from "../captures/Viewer";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { EmptyState } from "../ui/EmptyState";
-import { addressOf, type PhaseRef, type Wanted } from "./address";
-import { Head } from "./Head";
+import { addressOf, type Chosen, type PhaseRef, type Wanted } from "./address";
+import { BackLink, Head } from "./Head";
 import { jumpFrom } from "./happened";
 import { LaneStage } from "./LaneStage";
 import { Options } from "./Options";
 import { usePhaseName } from "./phaseNames";
 import classes from "./Replay.module.css";
 import { ReplayKeys } from "./ReplayKeys";
-import { BackLink } from "./ReplayPage";
 import { Side } from "./Side";
 import { Tracks } from "./Tracks";
 import { Transport } from "./Transport";
 import { useBeside } from "./useBeside";
 import { type Lane, useLane } from "./useLane";
 import { SPEEDS, useReplayKeys } from "./useReplayKeys";
-
-export interface Chosen extends Wanted {
-  readonly phase: number;
-}
 
 interface PlayerProps {
   readonly session: SessionView;

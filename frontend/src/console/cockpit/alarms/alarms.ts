@@ -1,10 +1,9 @@
 /** Which alarms are on, in the order in which they matter, and the words for them. */
-import type { Alarm, LiveAlarm, SessionView } from "@shared/api/types";
+import type { Alarm, LiveAlarm, SessionView, StorageNews } from "@shared/api/types";
 import { clockFace, number } from "@shared/format";
 import { type Milliseconds, seconds } from "@shared/units";
-import type { Key } from "../../i18n";
+import type { Key } from "../../i18n/index";
 import type { Quality } from "../session/telemetryStore";
-import { type Storage, storageAlarms } from "./storage";
 
 /** An alarm as it is shown, whether it was told live or read with the session. */
 export interface ShownAlarm {
@@ -121,3 +120,28 @@ export function jointNames(alarm: ShownAlarm): string | null {
   const named = alarm.joints.slice(0, 3).map((joint) => joint.replace(/([a-z])([A-Z])/g, "$1 $2"));
   return named.join(", ") + (alarm.joints.length > 3 ? " …" : "");
 }
+
+export interface Storage {
+  readonly news: StorageNews;
+  /** When this page heard of it, as an ISO time. */
+  readonly heardAt: string;
+}
+
+/** Trouble with the server's disk, as alarms: it concerns every session, and the record cannot tell. */
+function storageAlarms(storage: Storage | null): readonly ShownAlarm[] {
+  if (storage === null) return [];
+  const { news, heardAt } = storage;
+  if (news.status === "failing") return [alarm("storage", "critical", news.since ?? heardAt)];
+  return news.low_disk ? [alarm("low_disk", "warning", heardAt)] : [];
+}
+
+const alarm = (code: string, severity: ShownAlarm["severity"], since: string): ShownAlarm => ({
+  key: `${code} ${since}`,
+  code,
+  severity,
+  since,
+  stream: null,
+  joints: [],
+  value: null,
+  unit: null,
+});

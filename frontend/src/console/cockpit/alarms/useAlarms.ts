@@ -3,8 +3,7 @@ import type { SessionView } from "@shared/api/types";
 import { milliseconds } from "@shared/units";
 import { useEffect, useState } from "react";
 import { type Quality, type TelemetryStore, useQuality } from "../session/telemetryStore";
-import { currentAlarms, NEWS_LAST, type ShownAlarm } from "./alarms";
-import type { Storage } from "./storage";
+import { currentAlarms, NEWS_LAST, type ShownAlarm, type Storage } from "./alarms";
 
 export interface Alarms {
   readonly on: readonly ShownAlarm[];

@@ -7,7 +7,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
 import { lookAgain } from "../../account";
 import { sessionQuery } from "../../queries";
-import type { Storage } from "../alarms/storage";
+import type { Storage } from "../alarms/alarms";
 import { orderAnew } from "./anew";
 import { type Change, changesBetween } from "./changes";
 import { TelemetryStore } from "./telemetryStore";
