@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { codeCharacters, codeFromAddress, writtenCode } from "./code";
+import { codeCharacters, codeFromAddress, writtenCode } from "./pairing";
 
 describe("a pairing code", () => {
   it("is read however it is typed", () => {

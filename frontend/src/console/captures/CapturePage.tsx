@@ -8,7 +8,7 @@ import { Link, useLocation } from "wouter";
 import { LeaveGuard } from "../editor/LeaveGuard";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import classes from "./Capture.module.css";
 import { CaptureHead } from "./CaptureHead";
 import { JointMapTab } from "./JointMapTab";

@@ -1,26 +1,28 @@
 /** The cockpit: everything one experimenter needs while a participant is in the headset. */
+
+import { Button } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { SessionView } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
-import { useTexts } from "../i18n";
+import { Failure } from "../errors";
+import { useTexts } from "../i18n/index";
 import { useMay } from "../may";
 import { AfterWithdrawal } from "../rights/AfterWithdrawal";
 import { Tour } from "../tour/Tour";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import { AlarmDrawer } from "./alarms/AlarmDrawer";
-import { titleKey } from "./alarms/alarms";
+import { titleKey, useAlarms } from "./alarms/alarms";
 import { SignalStrip } from "./alarms/SignalStrip";
 import { TelemetryCard } from "./alarms/TelemetryCard";
-import { useAlarms } from "./alarms/useAlarms";
 import classes from "./Cockpit.module.css";
 import { DevicesPanel } from "./devices/DevicesPanel";
 import { Header } from "./Header";
 import { KeyboardHelp } from "./KeyboardHelp";
 import { hasMovement, LiveCard } from "./live3d/LiveCard";
+import { StartAnyway } from "./preflight/OverrideDialog";
 import { PreflightBody, PreflightCard } from "./preflight/PreflightCard";
-import { StartAnyway } from "./preflight/StartAnyway";
 import { usePreflight } from "./preflight/usePreflight";
 import { EventDrawer } from "./record/EventDrawer";
 import { NotesPanel } from "./record/NotesPanel";
@@ -29,11 +31,9 @@ import { RecordDrawer } from "./record/RecordDrawer";
 import { ScoresPanel } from "./record/ScoresPanel";
 import { SuggestionsPanel } from "./record/SuggestionsPanel";
 import { Timeline } from "./record/Timeline";
-import { currentStep, primaryAction } from "./session/action";
-import type { Reasoned } from "./session/reasons";
+import { currentStep, primaryAction, type Reasoned } from "./session/action";
 import { useKeys } from "./session/useKeys";
 import { type Send, useSession } from "./session/useSession";
-import { CommandFailure } from "./step/CommandFailure";
 import { CurrentStep } from "./step/CurrentStep";
 import { HeldCard } from "./step/HeldCard";
 import { OperatorEntry } from "./step/OperatorEntry";
@@ -157,4 +157,31 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       />
     </div>
   );
+}
+
+/** Why the last command was not carried out: refused, or overtaken by another operator. */
+function CommandFailure({
+  live,
+}: {
+  readonly live: ReturnType<typeof useSession>;
+}): JSX.Element | null {
+  const { t } = useTexts();
+  if (live.overtaken !== null) {
+    const { command, changes } = live.overtaken;
+    return (
+      <Notice
+        tone="warn"
+        title={t("stale.title")}
+        remedy={t("stale.remedy", { command: t(`command.${command.type}`) })}
+        actions={
+          <Button size="xs" variant="default" onClick={live.dismiss}>
+            {t("action.understood")}
+          </Button>
+        }
+      >
+        {changes.map(({ key, values }) => t(key, values)).join(" ")}
+      </Notice>
+    );
+  }
+  return live.error === null ? null : <Failure error={live.error} />;
 }

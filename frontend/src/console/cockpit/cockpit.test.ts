@@ -1,10 +1,9 @@
 import type { Allowed, Current, SessionView } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { at, session, steps } from "./example";
-import { guidance, primaryAction } from "./session/action";
-import { changesBetween } from "./session/changes";
-import { groupSteps } from "./session/groupSteps";
-import { redoable, redoTarget } from "./session/redo";
+import { groupSteps } from "./record/Timeline";
+import { guidance, primaryAction, redoable, redoTarget } from "./session/action";
+import { changesBetween } from "./session/useSession";
 
 const view = (
   current: Current | null,

@@ -7,9 +7,9 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { sessionsQuery } from "../queries";
-import { KindBadge } from "../ui/KindBadge";
+import { isOver, usePhaseName } from "../steps";
+import { KindBadge } from "../ui/badges";
 import type { Chosen, Wanted } from "./address";
-import { isOver, usePhaseName } from "./phaseNames";
 import classes from "./Replay.module.css";
 
 /** The way from the replay to its session. */

@@ -4,13 +4,13 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
 import { useTexts } from "../i18n";
 import { sessionQuery } from "../queries";
+import { isOver } from "../steps";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import { addressOf, type Wanted, wantedFrom } from "./address";
 import { BackLink } from "./Head";
 import { Player } from "./Player";
-import { isOver } from "./phaseNames";
 import classes from "./Replay.module.css";
 
 export function ReplayPage({ id }: { readonly id: string }): JSX.Element {

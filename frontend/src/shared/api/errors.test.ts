@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { ApiError, errorFromBody, isApiError, isUnauthorised } from "./errors";
+import { ApiError, errorFromBody, isApiError, isUnauthorised } from "./request";
 
 describe("errors of the server", () => {
   it("keep message, remedy and details", () => {

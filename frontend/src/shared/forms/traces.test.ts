@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { answered, type ItemTraces, pageShown } from "./traces";
+import { answered, type ItemTraces, pageShown } from "./draft";
 
 type Step = readonly [atMs: number, item: string | "page", typed?: boolean];
 

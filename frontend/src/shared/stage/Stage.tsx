@@ -8,8 +8,14 @@ import { Center, Loader, useComputedColorScheme } from "@mantine/core";
 import { type JSX, type Ref, useEffect, useImperativeHandle, useRef, useState } from "react";
 import { Notice } from "../ui/Notice";
 import type { Seconds } from "../units";
-import type { Block, BlockTones } from "./blocks";
-import { type CameraMode, type Figure, type LookFrom, paletteOf } from "./figure";
+import {
+  type Block,
+  type BlockTones,
+  type CameraMode,
+  type Figure,
+  type LookFrom,
+  paletteOf,
+} from "./figure";
 import { type Mounted, mount } from "./mount";
 import type { Pointed } from "./pointed";
 import { SideView } from "./SideView";

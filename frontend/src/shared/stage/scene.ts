@@ -14,11 +14,11 @@ import {
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Seconds } from "../units";
-import type { Block, BlockTones } from "./blocks";
 import { Blocks3d } from "./blocks3d";
 import { Body3d } from "./body3d";
-import { lookOut } from "./eyes";
 import {
+  type Block,
+  type BlockTones,
   type CameraMode,
   type Figure,
   facingOf,
@@ -29,7 +29,7 @@ import {
 import { type FloorPlan, floorPlan } from "./floor";
 import { disposeFloor, makeFloor } from "./floor3d";
 import { nearestPoint, type Pointed } from "./pointed";
-import { alongFloor, directionOf, fitting } from "./views";
+import { alongFloor, directionOf, fitting, lookOut } from "./views";
 
 /** What else there is around the figures. */
 export interface Surroundings {

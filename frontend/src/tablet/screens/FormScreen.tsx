@@ -4,7 +4,7 @@ import type { Administration, TabletState } from "@shared/api/types";
 import { FormView } from "@shared/forms/FormView";
 import { Notice } from "@shared/ui/Notice";
 import type { JSX } from "react";
-import { type FormPhase, useKeptForm } from "../drafts/useKeptForm";
+import { type FormPhase, useKeptForm } from "../drafts/useKept";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useFormTexts } from "./formTexts";

@@ -13,6 +13,7 @@ import { type Key, useTexts } from "../../i18n";
 import { useMay } from "../../may";
 import { alarmsQuery } from "../../queries";
 import {
+  type Alarms,
   amount,
   jointNames,
   mostUrgent,
@@ -22,7 +23,6 @@ import {
   titleKey,
 } from "./alarms";
 import classes from "./SignalStrip.module.css";
-import type { Alarms } from "./useAlarms";
 
 interface SignalStripProps {
   readonly session: SessionView;

@@ -1,9 +1,10 @@
 /** Which alarms are on, in the order in which they matter, and the words for them. */
 import type { Alarm, LiveAlarm, SessionView, StorageNews } from "@shared/api/types";
 import { clockFace, number } from "@shared/format";
-import { type Milliseconds, seconds } from "@shared/units";
+import { type Milliseconds, milliseconds, seconds } from "@shared/units";
+import { useEffect, useState } from "react";
 import type { Key } from "../../i18n/index";
-import type { Quality } from "../session/telemetryStore";
+import { type Quality, type TelemetryStore, useQuality } from "../session/telemetryStore";
 
 /** An alarm as it is shown, whether it was told live or read with the session. */
 export interface ShownAlarm {
@@ -20,7 +21,7 @@ export interface ShownAlarm {
 }
 
 /** News of the headset come once a second; when they stop, the session's own word counts. */
-export const NEWS_LAST: Milliseconds = 3000 as Milliseconds;
+const NEWS_LAST: Milliseconds = 3000 as Milliseconds;
 
 /** What is wrong now: critical first, then the newest. */
 export function currentAlarms(
@@ -145,3 +146,36 @@ const alarm = (code: string, severity: ShownAlarm["severity"], since: string): S
   value: null,
   unit: null,
 });
+
+export interface Alarms {
+  readonly on: readonly ShownAlarm[];
+  readonly quality: Quality | null;
+  readonly isSeen: (alarm: ShownAlarm) => boolean;
+  readonly see: (alarm: ShownAlarm) => void;
+}
+
+/** The alarms that are on, and which of them the operator has taken note of. */
+export function useAlarms(
+  session: SessionView,
+  store: TelemetryStore,
+  storage: Storage | null,
+): Alarms {
+  const quality = useQuality(store);
+  const [seen, setSeen] = useState<ReadonlySet<string>>(new Set());
+  useAgain(quality);
+  return {
+    on: currentAlarms(session, quality, storage, milliseconds(performance.now())),
+    quality,
+    isSeen: (alarm) => seen.has(alarm.key),
+    see: (alarm) => setSeen((before) => new Set([...before, alarm.key])),
+  };
+}
+
+/** Draw once more when the news have become old, since nothing else would. */
+function useAgain(quality: Quality | null): void {
+  const [, again] = useState<Quality | null>(null);
+  useEffect(() => {
+    const timer = setTimeout(() => again(quality), NEWS_LAST + 50);
+    return () => clearTimeout(timer);
+  }, [quality]);
+}

@@ -9,7 +9,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { useShown } from "../../ui/useShown";
+import { useShown } from "../../ui/page";
 import classes from "../Panels.module.css";
 
 interface PairingDialogProps {

@@ -3,10 +3,9 @@
  * most, and only after something has changed. This module brings three.js with it: import it lazily.
  */
 import type { PoseSetup, PoseStream } from "@shared/api/poses";
-import type { BlockTones } from "@shared/stage/blocks";
 import { Blocks3d } from "@shared/stage/blocks3d";
 import { Body3d } from "@shared/stage/body3d";
-import type { Figure, StagePalette } from "@shared/stage/figure";
+import type { BlockTones, BodyRoles, Figure, StagePalette } from "@shared/stage/figure";
 import { disposeFloor, makeFloor } from "@shared/stage/floor3d";
 import { seconds } from "@shared/units";
 import {
@@ -19,7 +18,6 @@ import {
 } from "three";
 import { heatColour } from "./heat";
 import { makePlaced, type Placed, place, restValues } from "./kinematics";
-import { rolesOf } from "./roles";
 import { aim, type View } from "./views";
 
 const STREAMS: readonly PoseStream[] = ["actual", "target"];
@@ -210,4 +208,21 @@ function makePlayer(
   }
   body.show(NOW);
   return { body, placed, came: known?.came ?? false };
+}
+
+/** Which joints of the product's body are which part of it, by their HumanBodyBones names. */
+function rolesOf(joints: readonly string[]): BodyRoles {
+  const of = (name: string): number | null => {
+    const at = joints.indexOf(name);
+    return at < 0 ? null : at;
+  };
+  const side = (name: "Left" | "Right"): ReadonlySet<number> =>
+    new Set(joints.flatMap((joint, at) => (joint.startsWith(name) ? [at] : [])));
+  return {
+    head: of("Head"),
+    leftHip: of("LeftUpperLeg"),
+    rightHip: of("RightUpperLeg"),
+    left: side("Left"),
+    right: side("Right"),
+  };
 }

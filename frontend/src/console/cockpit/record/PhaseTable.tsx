@@ -5,7 +5,7 @@ import { latency, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
-import { SessionDownload } from "../../downloads/SessionDownload";
+import { SessionDownload } from "../../downloads/DownloadsButton";
 import { useTexts } from "../../i18n";
 import cockpit from "../Cockpit.module.css";
 import classes from "../Panels.module.css";

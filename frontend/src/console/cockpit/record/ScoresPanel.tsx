@@ -3,15 +3,16 @@ import { Button } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { AdministrationScores, Score, SessionView } from "@shared/api/types";
 import { latency, number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
-import { useTexts } from "../../i18n";
+import { useTexts } from "../../i18n/index";
 import { useMay } from "../../may";
 import { AnswersDrawer } from "../../rights/AnswersDrawer";
 import { stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";
 import classes from "../Panels.module.css";
-import { AnswerHints } from "./AnswerHints";
+import answerHintsClasses from "./AnswerHints.module.css";
 
 export function ScoresPanel({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
@@ -93,4 +94,33 @@ function whereOf(
 function rangeOf({ minimum, maximum }: Score, language: string): string | undefined {
   if (minimum === null || maximum === null) return undefined;
   return `${number(minimum, language)} … ${number(maximum, language)}`;
+}
+
+type Hint = AdministrationScores["hints"][number];
+
+/** What is noticeable about how a form was filled in: quiet lines below its scores. */
+function AnswerHints({ hints }: { readonly hints: readonly Hint[] }): JSX.Element | null {
+  const { t, language } = useTexts();
+  if (hints.length === 0) return null;
+  const words = ({ kind, items, value, seconds }: Hint) => {
+    switch (kind) {
+      case "alike":
+        return t("hint.alike", { items, value: number(value ?? 0, language) });
+      case "fast":
+        return t("hint.fast", { items, seconds: number(seconds ?? 0, language) });
+      case "left_out":
+        return t("hint.left_out", { count: items });
+    }
+  };
+  return (
+    <ul className={answerHintsClasses.hints} title={t("hint.about")}>
+      {hints.map((hint, place) => (
+        // biome-ignore lint/suspicious/noArrayIndexKey: hints have no other name than their place
+        <li key={place}>
+          <Icon name="info" size={16} />
+          <span>{words(hint)}</span>
+        </li>
+      ))}
+    </ul>
+  );
 }

@@ -3,10 +3,9 @@ import type { PhaseSummary, SessionView, Step } from "@shared/api/types";
 import { duration, latency } from "@shared/format";
 import { milliseconds, seconds } from "@shared/units";
 import { type JSX, useEffect, useRef } from "react";
-import { useTexts } from "../../i18n";
+import { useTexts } from "../../i18n/index";
 import { stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";
-import { groupSteps, type StepGroup } from "../session/groupSteps";
 import { AchievedInBrief } from "./AchievedLatency";
 import classes from "./Timeline.module.css";
 
@@ -148,4 +147,32 @@ function StepMark({ status }: { readonly status: Step["status"] }): JSX.Element 
       )}
     </svg>
   );
+}
+
+interface StepGroup {
+  readonly block: number | null;
+  /** The place of the block in this visit, counted from 1; 0 outside blocks. */
+  readonly number: number;
+  /** The block's condition; null where it is hidden or there is none. */
+  readonly latency: number | null;
+  readonly steps: readonly Step[];
+}
+
+/** The steps of a session, gathered into what comes before, the blocks, and what comes after. */
+export function groupSteps(steps: readonly Step[]): readonly StepGroup[] {
+  const groups: { block: number | null; number: number; latency: number | null; steps: Step[] }[] =
+    [];
+  let blocks = 0;
+  for (const step of steps) {
+    const last = groups.at(-1);
+    if (last !== undefined && last.block === step.block) {
+      last.steps.push(step);
+      continue;
+    }
+    if (step.block !== null) blocks += 1;
+    const number = step.block === null ? 0 : blocks;
+    const latency = step.block === null ? null : step.latency_ms;
+    groups.push({ block: step.block, number, latency, steps: [step] });
+  }
+  return groups;
 }

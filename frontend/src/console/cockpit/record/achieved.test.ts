@@ -1,6 +1,6 @@
 import type { PhaseSummary } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { verdictOn } from "./achieved";
+import { verdictOn } from "./AchievedLatency";
 
 const phase = (more: Partial<PhaseSummary>): PhaseSummary => ({
   phase_id: 1,

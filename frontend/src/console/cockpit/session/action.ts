@@ -1,9 +1,10 @@
 /** The one thing to do next, derived from the session; everything else is an exception. */
-import type { Command, SessionView, Step } from "@shared/api/types";
+import type { Command, CommandType, SessionView, Step } from "@shared/api/types";
 import type { IconName } from "@shared/ui/Icon";
-import type { Key } from "../../i18n";
+import type { Key } from "../../i18n/index";
+import { isTimed } from "../../steps";
 
-export interface PrimaryAction {
+interface PrimaryAction {
   readonly command: Command;
   readonly label: Key;
   readonly icon: IconName;
@@ -66,4 +67,44 @@ export function guidance(session: SessionView): Key {
   if (session.current.status !== "ready") return `guide.${session.current.status}`;
   if (step.kind === "task") return step.limb === "foot" ? "guide.task.foot" : "guide.task.hand";
   return `guide.${step.kind}`;
+}
+
+export type Reasoned = Extract<
+  CommandType,
+  "redo" | "skip" | "abort" | "withdraw" | "override_stop"
+>;
+
+/** Reasons that come up again and again, one click away. */
+export const COMMON_REASONS: Readonly<Record<Reasoned | "pause", readonly Key[]>> = {
+  pause: ["reason.break", "reason.tracking", "reason.question", "reason.unwell"],
+  redo: ["reason.tracking", "reason.misunderstood", "reason.interrupted"],
+  skip: ["reason.askedAloud", "reason.time", "reason.wish"],
+  abort: ["reason.equipment", "reason.time", "reason.interrupted", "reason.stopRule"],
+  override_stop: ["reason.recovered", "reason.mistyped"],
+  withdraw: ["reason.wish", "reason.sick", "reason.unwell"],
+};
+
+/**
+ * The step that an operator most likely wants done over.
+ *
+ * The current step while its phase is under way; else the task before it, because that is what goes
+ * wrong; else the step before. Everything from that step on is then done over.
+ */
+export function redoTarget(session: SessionView): number {
+  const { current, steps } = session;
+  if (current === null) return 0;
+  if (current.status !== "ready") return current.index;
+  const before = steps.slice(0, current.index);
+  const block = steps[current.index]?.block ?? null;
+  const task = before.findLast((step) => isTimed(step) && step.block === block);
+  return task?.index ?? Math.max(0, current.index - 1);
+}
+
+/** The steps that can be done over: those behind, and the current one once it has begun. */
+export function redoable(session: SessionView): readonly Step[] {
+  const { current, steps } = session;
+  if (current === null) return [];
+  const step = steps[current.index];
+  const begun = current.status !== "ready" || (step !== undefined && isTimed(step));
+  return steps.slice(0, begun ? current.index + 1 : current.index);
 }

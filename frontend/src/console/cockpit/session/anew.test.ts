@@ -1,7 +1,7 @@
-import { ApiError } from "@shared/api/errors";
+import { ApiError } from "@shared/api/request";
 import type { Command, SessionView } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { orderAnew } from "./anew";
+import { orderAnew } from "./useSession";
 
 const START: Command = { type: "start" };
 const view = (changed: Partial<SessionView> = {}): SessionView =>

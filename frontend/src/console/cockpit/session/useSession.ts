@@ -1,19 +1,18 @@
 /** A session as the server sees it, kept current by its live feed, and the way to command it. */
 import { sessions } from "@shared/api/endpoints";
-import { isApiError, isUnauthorised } from "@shared/api/errors";
 import { type FeedState, openFeed } from "@shared/api/live";
+import { isApiError, isUnauthorised } from "@shared/api/request";
 import type { Command, SessionView, StorageNews, TelemetryNews } from "@shared/api/types";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
 import { lookAgain } from "../../account";
+import type { Key } from "../../i18n/index";
 import { sessionQuery } from "../../queries";
 import type { Storage } from "../alarms/alarms";
-import { orderAnew } from "./anew";
-import { type Change, changesBetween } from "./changes";
 import { TelemetryStore } from "./telemetryStore";
 
 /** A command that came too late: another operator was first. */
-export interface Overtaken {
+interface Overtaken {
   readonly command: Command;
   readonly changes: readonly Change[];
 }
@@ -109,4 +108,57 @@ const isTold = (error: unknown): boolean => isApiError(error, "stale") || isUnau
 /** Answers and live events may cross on the line; the view with the higher version stays. */
 function newer(known: SessionView | undefined, view: SessionView): SessionView {
   return known !== undefined && known.version > view.version ? known : view;
+}
+
+/**
+ * An order that was prepared for a while, with reasons written and put on record meanwhile.
+ *
+ * Notes and reasons, one's own and those of another operator, change the version of a session and
+ * nothing that the order depends on. So it is sent again on the newest version for as long as the
+ * session's status is the one that the order was prepared for.
+ */
+interface Ordered {
+  readonly view: SessionView;
+  /** Another operator was first: the status is another one, and nothing was sent. */
+  readonly overtaken: boolean;
+}
+
+/** Operators write one reason after the other, and there are few of both. */
+const MOST_TIMES = 20;
+
+/** Raises what the server refuses for another reason, or `stale` when notes never end. */
+export async function orderAnew(
+  api: Pick<typeof sessions, "get" | "command">,
+  seen: SessionView,
+  order: Command,
+): Promise<Ordered> {
+  for (let time = 1; ; time += 1) {
+    const fresh = await api.get(seen.id);
+    if (fresh.status !== seen.status) return { view: fresh, overtaken: true };
+    try {
+      return { view: await api.command(seen.id, fresh.version, order), overtaken: false };
+    } catch (error) {
+      if (!isApiError(error, "stale") || time === MOST_TIMES) throw error;
+    }
+  }
+}
+
+interface Change {
+  readonly key: Key;
+  readonly values?: Readonly<Record<string, string | number>>;
+}
+
+/** What another operator changed between two views of a session, in the words of the console. */
+export function changesBetween(before: SessionView, after: SessionView): readonly Change[] {
+  const changes: Change[] = [];
+  if (before.status !== after.status) changes.push({ key: `change.status.${after.status}` });
+  const step = after.current?.index;
+  if (step !== undefined && step !== before.current?.index) {
+    changes.push({ key: "change.step", values: { number: step + 1 } });
+  } else if (after.current !== null && before.current?.status !== after.current.status) {
+    changes.push({ key: `change.phase.${after.current.status}` });
+  }
+  const added = after.notes.length - before.notes.length;
+  if (added > 0) changes.push({ key: "change.notes", values: { count: added } });
+  return changes.length === 0 ? [{ key: "change.other" }] : changes;
 }

@@ -5,16 +5,21 @@ import { latency } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
-import { useTexts } from "../../i18n";
+import { useTexts } from "../../i18n/index";
 import { isForm, isTimed, stepIcon, stepName } from "../../steps";
 import { Key } from "../../ui/Key";
-import { currentStep, guidance, primaryAction, wantsConsent } from "../session/action";
-import type { Reasoned } from "../session/reasons";
+import {
+  COMMON_REASONS,
+  currentStep,
+  guidance,
+  primaryAction,
+  type Reasoned,
+  wantsConsent,
+} from "../session/action";
 import type { useSession } from "../session/useSession";
 import classes from "./CurrentStep.module.css";
 import { HeightForm } from "./HeightForm";
 import { PaperConsent } from "./PaperConsent";
-import { PauseReason } from "./PauseReason";
 import { PhaseClock } from "./PhaseClock";
 
 interface CurrentStepProps {
@@ -193,6 +198,28 @@ function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
           </Menu.Dropdown>
         </Menu>
       )}
+    </div>
+  );
+}
+
+/** Pausing is instant; why is said afterwards, while the clock stands, and kept as a note. */
+function PauseReason({ live }: { readonly live: ReturnType<typeof useSession> }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.why}>
+      <span>{t("pause.why")}</span>
+      {COMMON_REASONS.pause.map((key) => (
+        <Button
+          key={key}
+          size="compact-sm"
+          variant="default"
+          radius="xl"
+          disabled={live.sending}
+          onClick={() => live.send({ type: "note", text: t("pause.note", { reason: t(key) }) })}
+        >
+          {t(key)}
+        </Button>
+      ))}
     </div>
   );
 }

@@ -5,7 +5,7 @@ import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { useMay } from "../../may";
-import type { Reasoned } from "../session/reasons";
+import type { Reasoned } from "../session/action";
 import classes from "./HeldCard.module.css";
 
 interface HeldCardProps {

@@ -1,15 +1,14 @@
 /** Every exception asks why, because the record keeps the reason; common reasons are one key away. */
-import { Button, Group, Modal, Stack, Text } from "@mantine/core";
+import { Button, Group, Modal, Select, Stack, Text } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
-import { useTexts } from "../../i18n";
+import { useTexts } from "../../i18n/index";
+import { stepName } from "../../steps";
+import { useShown } from "../../ui/page";
 import { ReasonField } from "../../ui/ReasonField";
-import { useShown } from "../../ui/useShown";
-import { COMMON_REASONS, type Reasoned } from "../session/reasons";
-import { redoTarget } from "../session/redo";
+import { COMMON_REASONS, type Reasoned, redoable, redoTarget } from "../session/action";
 import type { useSession } from "../session/useSession";
-import { RedoChoice } from "./RedoChoice";
 
 interface ReasonDialogProps {
   readonly type: Reasoned | null;
@@ -71,5 +70,31 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
         </Group>
       </Stack>
     </form>
+  );
+}
+
+interface RedoChoiceProps {
+  readonly session: SessionView;
+  readonly step: number;
+  readonly onChange: (step: number) => void;
+}
+
+/** From which step on the session is done over, and what that costs. */
+function RedoChoice({ session, step, onChange }: RedoChoiceProps): JSX.Element {
+  const { t } = useTexts();
+  const steps = redoable(session).map(({ index, ...one }) => ({
+    value: String(index),
+    label: t("redo.step", { number: index + 1, name: t(stepName(one)) }),
+  }));
+  const last = session.current?.index ?? step;
+  return (
+    <Select
+      label={t("redo.from")}
+      description={last > step ? t("redo.also", { count: last - step }) : undefined}
+      data={steps.reverse()}
+      value={String(step)}
+      allowDeselect={false}
+      onChange={(value) => value !== null && onChange(Number(value))}
+    />
   );
 }

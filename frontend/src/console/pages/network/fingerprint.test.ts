@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { inGroups } from "./fingerprint";
+import { inGroups } from "./NetworkPage";
 
 describe("a fingerprint in groups", () => {
   it("loses no digit and keeps their order", () => {

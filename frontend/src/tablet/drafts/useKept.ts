@@ -1,9 +1,10 @@
 /** One form on this tablet: its draft, and the sending of it until the server has it. */
 import { tablet } from "@shared/api/endpoints";
-import type { ApiError } from "@shared/api/errors";
-import type { Administration, Answer, Submission } from "@shared/api/types";
+import type { ApiError } from "@shared/api/request";
+import type { Administration, Answer, Submission, TabletState } from "@shared/api/types";
 import type { FormDraft } from "@shared/forms/draft";
 import { useCallback, useEffect, useRef, useState } from "react";
+import { type Signing, UNSIGNED } from "../screens/signed";
 import { deliver } from "./deliver";
 import { DraftStore, type Kept } from "./store";
 
@@ -123,4 +124,54 @@ function submissionOf(
     timings: draft.timings,
     item_traces: draft.traces,
   };
+}
+
+/** A stroke changes it many times a second. */
+const KEEP_AFTER_MS = 150;
+
+/** A consent that is being given: its lines and its signature, also after the browser was killed. */
+export function useKeptSigning(
+  state: TabletState,
+): readonly [signing: Signing, change: (signing: Signing) => void] {
+  const [signing, setSigning] = useState<Signing>(UNSIGNED);
+  const touched = useRef(false);
+  const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a consent's page is mounted anew for each step
+  useEffect(() => {
+    void drafts.signing(state).then((kept) => {
+      if (kept !== undefined && !touched.current) setSigning(kept);
+    });
+    return () => clearTimeout(timer.current);
+  }, []);
+  const change = (next: Signing): void => {
+    touched.current = true;
+    setSigning(next);
+    clearTimeout(timer.current);
+    timer.current = setTimeout(() => void drafts.keepSigning(state, next), KEEP_AFTER_MS);
+  };
+  return [signing, change];
+}
+
+/**
+ * Forms that were sent while nobody could say whether they arrived.
+ *
+ * When the answer of the server is lost, the session may have moved on before this tablet knows. So
+ * whenever it hears from the server again, what still waits is sent once more: the server knows the
+ * key and confirms, and the tablet forgets. A form on the screen looks after itself.
+ */
+export function useSweep(state: TabletState, connected: boolean): void {
+  const { session_id: sessionId, version } = state;
+  const shown = state.administration?.key ?? null;
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a new version is a reason to look again
+  useEffect(() => {
+    if (connected) void sweep(sessionId, shown);
+  }, [sessionId, version, shown, connected]);
+}
+
+async function sweep(sessionId: string, shown: string | null): Promise<void> {
+  await drafts.forgetOld(new Date());
+  for (const kept of await drafts.waiting(sessionId)) {
+    if (kept.administration === shown || kept.queued === null) continue;
+    await deliver(drafts, kept.id, kept.queued, tablet.submit);
+  }
 }
