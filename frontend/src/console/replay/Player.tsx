@@ -16,14 +16,13 @@ import { EmptyState } from "../ui/EmptyState";
 import { addressOf, type Chosen, type PhaseRef, type Wanted } from "./address";
 import { BackLink, Head } from "./Head";
 import { jumpFrom } from "./happened";
+import { ReplayKeys, SPEEDS, useReplayKeys } from "./keys";
 import { LaneStage } from "./LaneStage";
 import classes from "./Replay.module.css";
-import { ReplayKeys } from "./ReplayKeys";
 import { Side } from "./Side";
 import { Tracks } from "./Tracks";
 import { Transport } from "./Transport";
 import { type Lane, useBeside, useLane } from "./useLane";
-import { SPEEDS, useReplayKeys } from "./useReplayKeys";
 
 interface PlayerProps {
   readonly session: SessionView;

@@ -7,9 +7,9 @@ import { type Seconds, seconds } from "@shared/units";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import { activeAt, isActive, jumpFrom, wallAt } from "./happened";
+import { SPEEDS } from "./keys";
 import classes from "./Replay.module.css";
 import type { Lane } from "./useLane";
-import { SPEEDS } from "./useReplayKeys";
 
 interface TransportProps {
   readonly lane: Lane;

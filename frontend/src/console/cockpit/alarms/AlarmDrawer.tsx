@@ -8,8 +8,8 @@ import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { alarmsQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
+import { RecordDrawer } from "../../ui/RecordDrawer";
 import classes from "../Panels.module.css";
-import { RecordDrawer } from "../record/RecordDrawer";
 import { amount, fromRecord, stateOf, titleKey } from "./alarms";
 import strip from "./SignalStrip.module.css";
 

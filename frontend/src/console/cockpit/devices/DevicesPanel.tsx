@@ -10,7 +10,7 @@ import { useTexts } from "../../i18n";
 import { Key } from "../../ui/Key";
 import cockpit from "../Cockpit.module.css";
 import classes from "../Panels.module.css";
-import { isBusy } from "../session/useKeys";
+import { isBusy } from "../session/keys";
 import { PairingDialog } from "./PairingDialog";
 
 const KINDS: readonly Device[] = ["tablet", "headset"];

@@ -7,8 +7,8 @@ import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { eventsQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
+import { RecordDrawer } from "../../ui/RecordDrawer";
 import classes from "../Panels.module.css";
-import { RecordDrawer } from "./RecordDrawer";
 
 interface EventDrawerProps {
   readonly session: SessionView;

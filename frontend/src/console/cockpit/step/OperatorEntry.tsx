@@ -3,6 +3,7 @@ import { Center, Loader, Modal } from "@mantine/core";
 import { sessions } from "@shared/api/endpoints";
 import type { Administration, SessionView, Step } from "@shared/api/types";
 import { EMPTY_DRAFT } from "@shared/forms/draft";
+import { formTexts } from "@shared/forms/texts";
 import { Notice } from "@shared/ui/Notice";
 import { uuid } from "@shared/uuid";
 import { useMutation, useQuery } from "@tanstack/react-query";
@@ -10,7 +11,6 @@ import { type JSX, lazy, Suspense, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { Loaded } from "../../ui/Loaded";
-import { useFormTexts } from "./formTexts";
 
 const FormView = lazy(async () => ({ default: (await import("@shared/forms/FormView")).FormView }));
 
@@ -75,7 +75,7 @@ interface EntryFormProps {
 
 function EntryForm({ session, administration, onClose }: EntryFormProps): JSX.Element {
   const { t } = useTexts();
-  const texts = useFormTexts();
+  const texts = formTexts(t);
   const [startedAt] = useState(() => new Date());
   const [draft, setDraft] = useState(EMPTY_DRAFT);
   // One key for one filling-in: sending it again after a lost answer stores it once.

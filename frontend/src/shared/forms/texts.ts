@@ -1,9 +1,30 @@
-import type { FormTexts } from "@shared/forms/FormView";
-import { useTexts } from "../../i18n";
+/** The words around a form; each family of pages has its own table, with the same keys. */
+import type { Translate } from "../i18n/i18n";
+import type { FormWords } from "./questions";
 
-/** The words around a form that the operator fills in. */
-export function useFormTexts(): FormTexts {
-  const { t } = useTexts();
+export interface FormTexts extends FormWords {
+  readonly back: string;
+  readonly next: string;
+  readonly submit: string;
+  readonly page: (number: number, total: number) => string;
+}
+
+type FormKey =
+  | "form.atLeast"
+  | "form.atMost"
+  | "form.back"
+  | "form.next"
+  | "form.no"
+  | "form.optional"
+  | "form.page"
+  | "form.range"
+  | "form.required"
+  | "form.submit"
+  | "form.whole"
+  | "form.yes"
+  | "unit.years";
+
+export function formTexts(t: Translate<FormKey>): FormTexts {
   // Symbols (cm, kg) are the same in every language; words are not.
   const units: Readonly<Record<string, string>> = { years: t("unit.years") };
   return {

@@ -1,5 +1,8 @@
 /** The cockpit's keys. They rest while a dialog is open or something is being typed. */
+import type { JSX } from "react";
 import { useEffect, useRef } from "react";
+import { useTexts } from "../../i18n";
+import { type KeyboardHelpProps, KeyList } from "../../ui/Key";
 
 export interface Keys {
   readonly primary: () => void;
@@ -67,3 +70,24 @@ export function isBusy(event: KeyboardEvent): boolean {
 const isControl = (target: EventTarget | null): boolean =>
   target instanceof HTMLElement &&
   target.closest("button, a, [role=button], [tabindex='0']") !== null;
+
+/** Every key of the cockpit. */
+export function KeyboardHelp(props: KeyboardHelpProps): JSX.Element {
+  const { t } = useTexts();
+  const keys = [
+    [[t("keys.enterOrSpace")], t("keys.primary")],
+    [["T"], t("device.pair.tablet")],
+    [["H"], t("device.pair.headset")],
+    [["P"], t("keys.pause")],
+    [["N"], t("keys.note")],
+    [["R"], t("keys.redo")],
+    [["S"], t("keys.skip")],
+    [["L"], t("keys.log")],
+    [["A"], t("alarm.open")],
+    [["C"], t("preflight.open")],
+    [["1 2 3"], t("live3d.keys")],
+    [["?"], t("keys.help")],
+    [["Esc"], t("keys.close")],
+  ] as const;
+  return <KeyList {...props} keys={keys} />;
+}

@@ -1,7 +1,7 @@
 /** A list from the session's record that slides in beside the cockpit; it is read when opened. */
 import { Drawer } from "@mantine/core";
 import type { JSX, ReactNode } from "react";
-import { useTexts } from "../../i18n";
+import { useTexts } from "../i18n";
 
 interface RecordDrawerProps {
   readonly title: string;

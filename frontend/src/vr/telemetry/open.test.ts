@@ -1,6 +1,6 @@
 import { uuid } from "@shared/uuid";
 import { expect, it } from "vitest";
-import { takeLock } from "../open";
+import { takeLock } from "./open";
 
 it("is held by one at a time, and passed on", async () => {
   const name = uuid();

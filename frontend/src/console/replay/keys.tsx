@@ -1,5 +1,9 @@
 /** The keys of a replay. They rest while a dialog is open or something is being typed or chosen. */
+import type { JSX } from "react";
 import { useEffect, useRef } from "react";
+import { useTexts } from "../i18n";
+import { type KeyboardHelpProps, KeyList } from "../ui/Key";
+import classes from "./Replay.module.css";
 
 export const SPEEDS = [0.25, 0.5, 1, 2, 4] as const;
 
@@ -74,4 +78,20 @@ function isBusy(event: KeyboardEvent): boolean {
   if (document.querySelector('[role="dialog"], [role="menu"]') !== null) return true;
   const target = event.target instanceof Element ? event.target : document.body;
   return target.closest(TAKES[event.key] ?? TAKES_LETTERS) !== null;
+}
+
+/** Every key of the replay. */
+export function ReplayKeys(props: KeyboardHelpProps): JSX.Element {
+  const { t } = useTexts();
+  const keys = [
+    [[t("replay.key.space"), "K"], t("replay.keys.play")],
+    [["←", "→"], t("replay.keys.second")],
+    [[",", "."], t("replay.keys.frame")],
+    [["J", "L", "[", "]"], t("replay.keys.event")],
+    [["Home", "End"], t("replay.keys.ends")],
+    [["−", "+"], t("replay.keys.speed")],
+    [["C"], t("replay.keys.camera")],
+    [["?"], t("keys.help")],
+  ] as const;
+  return <KeyList {...props} keys={keys} namesClass={classes.keyNames} />;
 }
