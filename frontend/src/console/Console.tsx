@@ -12,7 +12,7 @@ import { useHashLocation } from "wouter/use-hash-location";
 import { useAccount, useEnded, useSignInAgain } from "./account";
 import { Failure } from "./errors";
 import { Header } from "./Header";
-import { useTexts } from "./i18n/index";
+import { useTexts } from "./i18n";
 import { may } from "./may";
 import { JoinPage } from "./pages/join/JoinPage";
 import { Login } from "./pages/Login";

@@ -3,7 +3,7 @@ import type { PhaseSummary, SessionView, Step } from "@shared/api/types";
 import { latency } from "@shared/format";
 import type { IconName } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
-import { type Key, useTexts } from "./i18n/index";
+import { type Key, useTexts } from "./i18n";
 
 const STEP_ICONS: Readonly<Record<string, IconName>> = {
   consent: "check",

@@ -10,7 +10,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef } from "react";
 import callForHelpClasses from "./CallForHelp.module.css";
 import { useSweep } from "./drafts/useKept";
-import { useTexts } from "./i18n/index";
+import { useTexts } from "./i18n";
 import classes from "./Screens.module.css";
 import { Consent } from "./screens/Consent";
 import { FormScreen } from "./screens/FormScreen";

@@ -1,6 +1,6 @@
 import "./tablet.css";
 import { mountPage } from "@shared/ui/Page";
-import { translations } from "./i18n/index";
+import { translations } from "./i18n";
 import { Tablet } from "./Tablet";
 
 mountPage({ translations, children: <Tablet /> });

@@ -1,4 +1,4 @@
-/** Pairing codes: six letters or digits, written in two groups of three (`4FQ-7KP`). */
+/** Pairing codes, six letters or digits in two groups of three (`4FQ-7KP`), and that one was used. */
 export const CODE_LENGTH = 6;
 
 /** The letters and digits of whatever was typed, in capitals, at most a code long. */

@@ -2,7 +2,7 @@
 import { Button, FileButton } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
 import { type DragEvent, type JSX, useState } from "react";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import classes from "./Captures.module.css";
 
 const ACCEPTED = ".bvh,.csv,.amc,.asf,.c3d,.trc,.txt";

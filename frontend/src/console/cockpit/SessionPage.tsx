@@ -1,12 +1,11 @@
 /** The cockpit: everything one experimenter needs while a participant is in the headset. */
-
 import { Button } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { SessionView } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { AfterWithdrawal } from "../rights/AfterWithdrawal";
 import { Tour } from "../tour/Tour";

@@ -8,7 +8,7 @@ import { seconds } from "@shared/units";
 import { type UseQueryResult, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { exportsQuery } from "../queries";
 import classes from "./Downloads.module.css";
 import { isOpen, useDesk, useOrder, useRemoval } from "./useExports";

@@ -4,7 +4,7 @@ import type { DataKind, SessionView } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { EmptyState } from "../ui/EmptyState";
 import { DownloadList } from "./DownloadCard";

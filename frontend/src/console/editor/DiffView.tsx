@@ -4,7 +4,7 @@ import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import classes from "./DiffView.module.css";
 import type { Draft } from "./useDraft";

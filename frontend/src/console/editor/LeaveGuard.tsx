@@ -1,9 +1,10 @@
-/** Asks before unsaved changes are left behind: at links of the page, and at closing the tab. */
+/** Changes that are not saved yet: kept in the browser, and asked about before they are left behind. */
 import { Button, Group, Modal, Text } from "@mantine/core";
 import { type JSX, useEffect, useState } from "react";
 import { useLocation } from "wouter";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 
+/** Asks before unsaved changes are left behind: at links of the page, and at closing the tab. */
 export function LeaveGuard({ unsaved }: { readonly unsaved: boolean }): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();

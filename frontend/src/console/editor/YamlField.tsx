@@ -1,5 +1,4 @@
 /** The YAML of a file as a React component around the text field. */
-
 import { defaultKeymap, history, historyKeymap, isolateHistory } from "@codemirror/commands";
 import { yaml } from "@codemirror/lang-yaml";
 import {

@@ -1,8 +1,8 @@
 /** What every field of the form shares: the file's values, its problems, and a way to change it. */
 import type { ConfigProblem } from "@shared/api/types";
 import { createContext, useContext, useEffect, useRef, useState } from "react";
+import { type Key, useTexts } from "../i18n";
 import { fieldsEn } from "../i18n/fieldTexts";
-import { type Key, useTexts } from "../i18n/index";
 import { preregistrationEn } from "../i18n/preregistrationTexts";
 import { type Change, type JsonObject, type Path, pathText, valueAt } from "./paths";
 

@@ -7,7 +7,7 @@ import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
-import { type Key, useTexts } from "../i18n/index";
+import { type Key, useTexts } from "../i18n";
 import { checkQuery, instrumentQuery } from "../queries";
 import { CheckPanel } from "./CheckPanel";
 import { ColumnFields } from "./ColumnFields";

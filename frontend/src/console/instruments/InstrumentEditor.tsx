@@ -13,7 +13,7 @@ import layout from "../editor/Editor.module.css";
 import { dropDraft, keepDraft, keptDraft, LeaveGuard } from "../editor/LeaveGuard";
 import { showLine, YamlField, type YamlText } from "../editor/YamlField";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { Problems } from "../pages/Problems";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";

@@ -2,7 +2,7 @@
 import { Title } from "@mantine/core";
 import { Mark } from "@shared/ui/Mark";
 import type { JSX, ReactNode } from "react";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import classes from "./Login.module.css";
 
 interface FrontProps {

@@ -2,7 +2,7 @@
 import type { Problem } from "@shared/api/request";
 import { Notice } from "@shared/ui/Notice";
 import type { JSX } from "react";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import classes from "./ImportDialog.module.css";
 
 interface ProblemsProps {

@@ -7,7 +7,7 @@ import { Notice } from "@shared/ui/Notice";
 import { queryOptions, useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import page from "../pages/study/StudyPage.module.css";
 import { EmptyState } from "../ui/EmptyState";

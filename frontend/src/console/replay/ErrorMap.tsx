@@ -3,7 +3,7 @@ import type { JointErrors } from "@shared/api/replays";
 import type { Seconds } from "@shared/units";
 import type { JSX } from "react";
 import { BODY, placeOnBody } from "../captures/bodyJoints";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import classes from "./Replay.module.css";
 
 interface ErrorMapProps {

@@ -10,7 +10,7 @@ import { seconds } from "@shared/units";
 import { type JSX, type ReactNode, useMemo, useRef, useState } from "react";
 import { CameraBar } from "../captures/Viewer";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { usePhaseName } from "../steps";
 import { EmptyState } from "../ui/EmptyState";
 import { addressOf, type Chosen, type PhaseRef, type Wanted } from "./address";

@@ -1,5 +1,4 @@
 /** The scrubber, and under it what happened over the whole phase, on the same scale. */
-
 import { BLOCK_COLOURS, type BlockTone } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, type PointerEvent } from "react";

@@ -7,7 +7,7 @@ import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { Copyable } from "../pages/network/Copyable";
 import { storageQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";

@@ -3,7 +3,7 @@ import type { StorageRoom, StudyRoom } from "@shared/api/housekeeping";
 import { bytes, day, number } from "@shared/format";
 import type { JSX } from "react";
 import { Link } from "wouter";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { KindBadge } from "../ui/badges";
 import { roughly } from "./figures";
 import classes from "./Storage.module.css";

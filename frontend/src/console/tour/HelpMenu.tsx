@@ -8,7 +8,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useHashLocation } from "wouter/use-hash-location";
 import { useErrorTexts } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { studiesQuery, studyQuery } from "../queries";
 import classes from "./HelpMenu.module.css";
 import { spoken, useStartTryout } from "./TryIt";

@@ -6,7 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { tryoutQuery } from "../queries";
 import classes from "./Tour.module.css";

@@ -1,10 +1,9 @@
-/** What a session's data are: people's, a simulation's, a test's, or an expert's. Shape and word, not colour alone. */
-
+/** The kind of data, the state of a session, and a role: shape and word, not colour alone. */
 import type { Role } from "@shared/api/people";
 import type { Kind, SessionStatus } from "@shared/api/types";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import type { JSX } from "react";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import classes from "./ui.module.css";
 
 const KIND_ICONS: Readonly<Record<Kind, IconName>> = {
@@ -14,6 +13,7 @@ const KIND_ICONS: Readonly<Record<Kind, IconName>> = {
   expert: "talk",
 };
 
+/** What a session's data are: people's, a simulation's, a test's, or an expert's. Shape and word, not colour alone. */
 export function KindBadge({ kind }: { readonly kind: Kind }): JSX.Element {
   const { t } = useTexts();
   return (

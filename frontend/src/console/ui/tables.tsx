@@ -1,4 +1,4 @@
-/** A list as a table: the names of its columns, and a row for each thing. */
+/** Tables: lists of things, and the numbers behind a result. */
 import { Table } from "@mantine/core";
 import type { JSX, ReactNode } from "react";
 import classes from "./ListTable.module.css";
@@ -12,6 +12,7 @@ interface ListTableProps {
   readonly children: ReactNode;
 }
 
+/** A list as a table: the names of its columns, and a row for each thing. */
 export function ListTable({
   columns,
   withDoing,

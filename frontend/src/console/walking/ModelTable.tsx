@@ -6,7 +6,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { DeleteButton } from "./DeleteButton";
 import { modelsQuery } from "./queries";

@@ -18,7 +18,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { capturesQuery } from "../captures/queries";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { NameField, SceneField, WholeNumbers } from "./FormFields";
 import { populationsQuery, walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";

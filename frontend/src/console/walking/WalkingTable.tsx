@@ -4,7 +4,7 @@ import { dateTime } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";
 import { nameOf } from "../account";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { ListTable } from "../ui/tables";
 import classes from "./Walking.module.css";
 

@@ -1,4 +1,4 @@
-/** Requests about what came out of a study: its figures, their rows, and its tests. */
+/** Requests about what came out of a study, and what had been declared of it beforehand. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { DataKind } from "./types";

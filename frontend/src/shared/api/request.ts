@@ -1,4 +1,4 @@
-/** One way to the server: typed by its own description, every failure one of `errors.ts`. */
+/** One way to the server, typed by its own description; every failure is an ApiError or Unreachable. */
 import createClient from "openapi-fetch";
 import type { paths } from "./schema";
 
@@ -23,13 +23,12 @@ export async function answer<Body>(call: Promise<Outcome>): Promise<Body> {
   return data as Body;
 }
 
-/**
- * What can go wrong between this page and the server.
- *
- *     Failure
- *     |- ApiError        the server answered and said what is wrong and what to do
- *     `- Unreachable     no answer: the network, or the server is not running
- */
+// What can go wrong between this page and the server:
+//
+//     Failure
+//     |- ApiError        the server answered and said what is wrong and what to do
+//     `- Unreachable     no answer: the network, or the server is not running
+
 export interface Problem {
   readonly path?: string | null;
   readonly line?: number | null;

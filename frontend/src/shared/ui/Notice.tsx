@@ -1,5 +1,4 @@
 /** A short message on the page: what is the matter, and what to do about it. */
-
 import { Button } from "@mantine/core";
 import type { JSX, ReactNode } from "react";
 import { ApiError, Unreachable } from "../api/request";

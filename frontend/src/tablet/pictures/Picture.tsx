@@ -1,7 +1,7 @@
 /** A picture of the instructions by its name, with words for those who do not see it. */
 import { isPicture, type PictureName } from "@shared/pictures";
 import type { JSX } from "react";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { Person, reaching, standing, stepping, tPose } from "./Person";
 import classes from "./Picture.module.css";
 

@@ -1,11 +1,12 @@
-/** Nothing to do here at the moment: say so calmly, and what comes. */
+/** Screens without a task: waiting, held by a stop rule, and finished. */
 import type { TabletState } from "@shared/api/types";
 import { Mark } from "@shared/ui/Mark";
 import type { JSX } from "react";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { Prose } from "./Prose";
 import classes from "./screens.module.css";
 
+/** Nothing to do here at the moment: say so calmly, and what comes. */
 export function Waiting({ state }: { readonly state: TabletState }): JSX.Element {
   const { t } = useTexts();
   return (

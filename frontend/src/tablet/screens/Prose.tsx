@@ -2,7 +2,7 @@
 import { type Paragraph, paragraphs } from "@shared/text";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useRef, useState } from "react";
-import { useTexts } from "../i18n/index";
+import { useTexts } from "../i18n";
 import { Picture } from "../pictures/Picture";
 import classes from "./screens.module.css";
 

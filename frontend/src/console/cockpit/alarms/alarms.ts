@@ -3,7 +3,7 @@ import type { Alarm, LiveAlarm, SessionView, StorageNews } from "@shared/api/typ
 import { clockFace, number } from "@shared/format";
 import { type Milliseconds, milliseconds, seconds } from "@shared/units";
 import { useEffect, useState } from "react";
-import type { Key } from "../../i18n/index";
+import type { Key } from "../../i18n";
 import { type Quality, type TelemetryStore, useQuality } from "../session/telemetryStore";
 
 /** An alarm as it is shown, whether it was told live or read with the session. */

@@ -5,7 +5,7 @@ import type { PoseTouch } from "@shared/api/poses";
 import type { SessionView } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useRef } from "react";
-import { type Key, useTexts } from "../../i18n/index";
+import { type Key, useTexts } from "../../i18n";
 import cockpit from "../Cockpit.module.css";
 import { isBusy } from "../session/keys";
 import type { TelemetryStore } from "../session/telemetryStore";

@@ -4,7 +4,7 @@ import type { Check, SessionView } from "@shared/api/types";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { preflightQuery } from "../../queries";
 import { useShown } from "../../ui/page";
 import { ReasonField } from "../../ui/ReasonField";

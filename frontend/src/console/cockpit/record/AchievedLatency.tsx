@@ -4,7 +4,7 @@ import { latencyDifference, latencyMeasured, latencyWithin, number } from "@shar
 import { Icon } from "@shared/ui/Icon";
 import { type Milliseconds, milliseconds, type Seconds, seconds } from "@shared/units";
 import type { JSX, ReactNode } from "react";
-import { type Key, useTexts } from "../../i18n/index";
+import { type Key, useTexts } from "../../i18n";
 import classes from "./AchievedLatency.module.css";
 
 interface AchievedLatencyProps {

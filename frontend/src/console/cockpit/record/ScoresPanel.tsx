@@ -6,7 +6,7 @@ import { latency, number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { useMay } from "../../may";
 import { AnswersDrawer } from "../../rights/AnswersDrawer";
 import { stepName } from "../../steps";

@@ -3,7 +3,7 @@ import type { PhaseSummary, SessionView, Step } from "@shared/api/types";
 import { duration, latency } from "@shared/format";
 import { milliseconds, seconds } from "@shared/units";
 import { type JSX, useEffect, useRef } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";
 import { AchievedInBrief } from "./AchievedLatency";

@@ -1,7 +1,7 @@
-/** The one thing to do next, derived from the session; everything else is an exception. */
+/** What an operator does next, what wants a reason, and what can be done over: all from the session. */
 import type { Command, CommandType, SessionView, Step } from "@shared/api/types";
 import type { IconName } from "@shared/ui/Icon";
-import type { Key } from "../../i18n/index";
+import type { Key } from "../../i18n";
 import { isTimed } from "../../steps";
 
 interface PrimaryAction {

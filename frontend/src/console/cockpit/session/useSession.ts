@@ -6,7 +6,7 @@ import type { Command, SessionView, StorageNews, TelemetryNews } from "@shared/a
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
 import { lookAgain } from "../../account";
-import type { Key } from "../../i18n/index";
+import type { Key } from "../../i18n";
 import { sessionQuery } from "../../queries";
 import type { Storage } from "../alarms/alarms";
 import { TelemetryStore } from "./telemetryStore";

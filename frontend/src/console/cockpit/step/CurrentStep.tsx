@@ -5,7 +5,7 @@ import { latency } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { isForm, isTimed, stepIcon, stepName } from "../../steps";
 import { Key } from "../../ui/Key";
 import {

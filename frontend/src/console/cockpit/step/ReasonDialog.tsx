@@ -3,7 +3,7 @@ import { Button, Group, Modal, Select, Stack, Text } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { stepName } from "../../steps";
 import { useShown } from "../../ui/page";
 import { ReasonField } from "../../ui/ReasonField";

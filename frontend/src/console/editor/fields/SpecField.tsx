@@ -2,7 +2,7 @@
 import { ActionIcon, Button, Menu, TagsInput } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX, KeyboardEvent } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
 import { useForm, useLabels, useProblem, useValue } from "../formContext";
 import { isList, isObject, type Json, type Path } from "../paths";

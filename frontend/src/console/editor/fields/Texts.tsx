@@ -3,7 +3,7 @@ import { Button, Textarea, TextInput } from "@mantine/core";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { Icon } from "@shared/ui/Icon";
 import { type FormEvent, type JSX, useState } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
 import { useCommitted, useForm, useProblem, useValue } from "../formContext";
 import { isObject, type Path } from "../paths";

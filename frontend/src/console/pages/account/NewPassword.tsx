@@ -3,7 +3,7 @@ import { PasswordInput, Stack } from "@mantine/core";
 import { type ApiError, isApiError } from "@shared/api/request";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import classes from "./NewPassword.module.css";
 import {
   checkPassword,

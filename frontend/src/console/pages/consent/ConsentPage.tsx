@@ -8,7 +8,7 @@ import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
-import { type Key, useTexts } from "../../i18n/index";
+import { type Key, useTexts } from "../../i18n";
 import { consentQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";

@@ -5,7 +5,7 @@ import { day } from "@shared/format";
 import { Notice, type Tone } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { networkQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import { useTitle } from "../../ui/page";

@@ -17,7 +17,7 @@ import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { invitationsQuery, networkQuery } from "../../queries";
 import { RoleBadge } from "../../ui/badges";
 import { RoleChoice, StudiesChoice } from "./RoleAndStudies";

@@ -1,10 +1,10 @@
-/** The four roles side by side, so that nobody gives away more than they mean to. */
+/** What somebody may do, and which studies they may see. */
 import { Group, MultiSelect, Radio, Stack } from "@mantine/core";
 import type { Role, StudyKeys } from "@shared/api/people";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { studiesQuery } from "../../queries";
 import { ROLE_ICONS, ROLES } from "../../ui/badges";
 import classes from "./People.module.css";
@@ -14,6 +14,7 @@ interface RoleChoiceProps {
   readonly onChange: (role: Role) => void;
 }
 
+/** The four roles side by side, so that nobody gives away more than they mean to. */
 export function RoleChoice({ role, onChange }: RoleChoiceProps): JSX.Element {
   const { t } = useTexts();
   return (

@@ -16,7 +16,7 @@ import { Notice } from "@shared/ui/Notice";
 import { useIsFetching, useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect } from "react";
 import { useLocation, useSearch } from "wouter";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { dashboardQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter } from "../../ui/KindFilter";

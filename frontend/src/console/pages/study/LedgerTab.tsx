@@ -2,7 +2,7 @@
 import type { DataKind, Ledger, Slot, StudyDetail } from "@shared/api/types";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { ledgerQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { KindFilter } from "../../ui/KindFilter";

@@ -6,7 +6,7 @@ import { inLanguage } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
-import { type Key, useTexts } from "../../i18n/index";
+import { type Key, useTexts } from "../../i18n";
 import classes from "./Overview.module.css";
 import { Procedure } from "./Procedure";
 

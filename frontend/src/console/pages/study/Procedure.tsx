@@ -4,7 +4,7 @@ import { duration } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { type Seconds, seconds } from "@shared/units";
 import type { JSX } from "react";
-import { type Key, useTexts } from "../../i18n/index";
+import { type Key, useTexts } from "../../i18n";
 import { stepIcon, stepName, stepNameKey } from "../../steps";
 import classes from "./Procedure.module.css";
 

@@ -9,7 +9,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { Failure } from "../../errors";
-import { useTexts } from "../../i18n/index";
+import { useTexts } from "../../i18n";
 import { type Act, useMay } from "../../may";
 import { PreregistrationTab } from "../../preregistration/PreregistrationTab";
 import { studyQuery } from "../../queries";

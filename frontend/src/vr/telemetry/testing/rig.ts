@@ -1,5 +1,4 @@
 /** A client on a fake server and a fake disk; the disk outlives the client, as in a browser. */
-
 import { afterEach, beforeEach } from "vitest";
 import type { TelemetryClient } from "../client";
 import { DirectClient } from "../directClient";

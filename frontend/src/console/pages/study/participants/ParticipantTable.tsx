@@ -6,7 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { Link, useLocation } from "wouter";
 import { Failure } from "../../../errors";
-import { useTexts } from "../../../i18n/index";
+import { useTexts } from "../../../i18n";
 import { KindBadge, StatusBadge } from "../../../ui/badges";
 import frame from "../SessionsTab.module.css";
 import { useDownload } from "../useDownload";

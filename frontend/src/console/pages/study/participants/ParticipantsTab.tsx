@@ -5,7 +5,7 @@ import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { useTexts } from "../../../i18n/index";
+import { useTexts } from "../../../i18n";
 import { participantsQuery } from "../../../queries";
 import { AnswersDrawer } from "../../../rights/AnswersDrawer";
 import { EraseDialog } from "../../../rights/EraseDialog";
