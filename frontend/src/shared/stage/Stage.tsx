@@ -119,6 +119,9 @@ function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: Shown) 
   const newest = useRef(tones);
   newest.current = tones;
   const [step, setStep] = useState(1);
+  // First the moment: figures that come to a new floor are looked at as they stand then.
+  useEffect(() => stage?.setMode(mode), [stage, mode]);
+  useEffect(() => stage?.show(time), [stage, time]);
   // The appearance is asked for: another one has other colours.
   useEffect(() => {
     if (stage === null || root.current === null || scheme === undefined) return;
@@ -127,8 +130,6 @@ function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: Shown) 
     setStep(stage.step);
   }, [root, stage, figures, blocks, beside, scheme]);
   useEffect(() => stage?.light(tones), [stage, tones]);
-  useEffect(() => stage?.setMode(mode), [stage, mode]);
-  useEffect(() => stage?.show(time), [stage, time]);
   return { way, stage, step };
 }
 
