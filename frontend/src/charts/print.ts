@@ -1,19 +1,19 @@
 /** A figure as a picture for a paper: black on white, with its title, and its caption below. */
 import { dressed, heightOf, type Palette } from "./layout";
 
-export interface PictureWords {
+interface PictureWords {
   readonly title: string;
   readonly caption: string;
   readonly watermark: string | null;
 }
 
-export interface Printed {
+interface Printed {
   readonly layout: Readonly<Record<string, unknown>>;
   readonly width: number;
   readonly height: number;
 }
 
-export const PAPER: Palette = {
+const PAPER: Palette = {
   ink: "#111111",
   soft: "#333333",
   line: "#d0d0d0",
@@ -99,3 +99,20 @@ export function wrapped(text: string, most: number): readonly string[] {
 /** Plotly reads a little HTML in texts. */
 const escaped = (text: string): string =>
   text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
+
+const PNG_SCALE = 2;
+
+/** Saves a figure as a picture. */
+export async function savePicture(
+  figure: unknown,
+  words: PictureWords,
+  wide: boolean,
+  format: "png" | "svg",
+  filename: string,
+): Promise<void> {
+  const { default: plotly } = await import("plotly.js-cartesian-dist-min");
+  const { layout, width, height } = printed(figure, words, wide);
+  const { data = [] } = figure as { data?: unknown[] };
+  const scale = format === "png" ? PNG_SCALE : 1;
+  await plotly.downloadImage({ data, layout }, { format, width, height, scale, filename });
+}

@@ -5,13 +5,20 @@
  * person goes on with what they were writing, anybody else begins afresh.
  */
 import { Center, Loader } from "@mantine/core";
-import { Activity, type JSX, useEffect } from "react";
+import type { Account } from "@shared/api/types";
+import { Activity, type JSX, Suspense, useEffect } from "react";
+import { Router } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
-import { useAccount, useEnded } from "./account";
+import { useAccount, useEnded, useSignInAgain } from "./account";
 import { Failure } from "./errors";
+import { Header } from "./Header";
+import { useTexts } from "./i18n";
+import { may } from "./may";
 import { JoinPage } from "./pages/join/JoinPage";
 import { Login } from "./pages/Login";
-import { Shell } from "./Shell";
+import { Routes } from "./Routes";
+import classes from "./Shell.module.css";
+import { TryoutBar } from "./tour/TryoutBar";
 
 const INVITATION = /^\/join\/(.+)$/;
 
@@ -52,4 +59,35 @@ function useOpenDialogsHidden(hidden: boolean): void {
   useEffect(() => {
     document.body.toggleAttribute("data-signed-out", hidden);
   }, [hidden]);
+}
+
+/** The signed-in console: its head, the page of the address, and what goes on behind it. */
+function Shell({ account }: { readonly account: Account }): JSX.Element {
+  const { t } = useTexts();
+  useSignInAgain();
+  return (
+    <Router hook={useHashLocation}>
+      <button type="button" className={classes.skip} onClick={focusMain}>
+        {t("app.skip")}
+      </button>
+      <Header account={account} />
+      <main id="main" tabIndex={-1}>
+        <Suspense fallback={<Waiting />}>
+          <Routes account={account} />
+        </Suspense>
+      </main>
+      {may(account.role, "tryout") && <TryoutBar />}
+    </Router>
+  );
+}
+
+const Waiting = (): JSX.Element => (
+  <Center mih={320}>
+    <Loader />
+  </Center>
+);
+
+/** The address after `#` belongs to the router, so skipping moves the focus itself. */
+function focusMain(): void {
+  document.getElementById("main")?.focus();
 }

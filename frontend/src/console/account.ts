@@ -1,6 +1,6 @@
 /** Who is signed in. The cookie is the server's; this page only asks whom it belongs to. */
 import { accounts } from "@shared/api/endpoints";
-import { isUnauthorised } from "@shared/api/errors";
+import { isUnauthorised } from "@shared/api/request";
 import type { Account } from "@shared/api/types";
 import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect } from "react";
@@ -92,3 +92,6 @@ function end(queries: QueryClient): void {
   if (account != null) queries.setQueryData(ENDED, account);
   queries.setQueryData(KEY, null);
 }
+
+/** `account:admin` is admin. */
+export const nameOf = (actor: string): string => actor.replace("account:", "");

@@ -1,5 +1,5 @@
 /** The console's wording around errors, and a notice that uses it. */
-import { ErrorNotice, type ErrorTexts } from "@shared/ui/ErrorNotice";
+import { ErrorNotice, type ErrorTexts } from "@shared/ui/Notice";
 import type { JSX } from "react";
 import { useTexts } from "./i18n";
 

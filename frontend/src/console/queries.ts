@@ -3,6 +3,7 @@ import { type Asked, analysis, type FigureGroup } from "@shared/api/analysis";
 import { drafts, instruments, versions } from "@shared/api/drafts";
 import { network, sessions, studies } from "@shared/api/endpoints";
 import { exports, storageRoom, tryouts } from "@shared/api/housekeeping";
+import { type ImportMapping, imports } from "@shared/api/imports";
 import { type AuditFilter, audit, invitations, people } from "@shared/api/people";
 import { calibrations, consents, suggestions } from "@shared/api/records";
 import { rights } from "@shared/api/rights";
@@ -168,3 +169,23 @@ export const tryoutQuery = queryOptions({
   refetchInterval: ({ state }) =>
     state.data?.state === "starting" ? 400 : state.data?.state === "running" ? 1500 : false,
 });
+
+/** Reads of imported answers, each with the key under which it is kept. */
+export const importsQuery = (key: string) =>
+  queryOptions({ queryKey: ["studies", key, "imports"], queryFn: () => imports.list(key) });
+
+export const importQuery = (key: string, id: string) =>
+  queryOptions({
+    queryKey: ["studies", key, "imports", id],
+    queryFn: () => imports.get(key, id),
+  });
+
+/** `file` stands for the text, which is long. */
+export const checkQuery = (key: string, file: string, text: string, mapping: ImportMapping) =>
+  queryOptions({
+    queryKey: ["studies", key, "import-check", file, mapping],
+    queryFn: () => imports.check(key, text, mapping),
+    placeholderData: keepPreviousData,
+    retry: false,
+    gcTime: 60_000,
+  });

@@ -1,9 +1,11 @@
 /** Names and signs of the steps of a procedure. */
-import type { Step } from "@shared/api/types";
+import type { PhaseSummary, SessionView, Step } from "@shared/api/types";
+import { latency } from "@shared/format";
 import type { IconName } from "@shared/ui/Icon";
-import type { Key } from "./i18n";
+import { milliseconds } from "@shared/units";
+import { type Key, useTexts } from "./i18n";
 
-export const STEP_ICONS: Readonly<Record<string, IconName>> = {
+const STEP_ICONS: Readonly<Record<string, IconName>> = {
   consent: "check",
   form: "form",
   instructions: "talk",
@@ -51,3 +53,24 @@ export const isTimed = (step: Pick<Step, "kind">): boolean =>
 /** Steps that are answered at the tablet (or read out by the operator). */
 export const isForm = (step: Pick<Step, "kind">): boolean =>
   step.kind === "form" || step.kind === "questionnaire";
+
+/** How the phases of a session are named: block, task, and the latency where it may be known. */
+export const isOver = ({ status }: PhaseSummary): boolean =>
+  status === "done" || status === "voided";
+
+export function usePhaseName(): (session: SessionView, phase: PhaseSummary) => string {
+  const { t } = useTexts();
+  return (session, phase) => {
+    const block = session.steps[phase.step_index]?.block ?? null;
+    return [
+      block === null ? null : t("replay.phase.block", { number: block }),
+      t(stepName(phase)),
+      phase.latency_ms === null ? null : latency(milliseconds(phase.latency_ms)),
+      phase.attempt > 1 ? t("timeline.attempt", { number: phase.attempt }) : null,
+      phase.status === "voided" ? t("replay.phase.void") : null,
+      isOver(phase) ? null : t("replay.phase.running"),
+    ]
+      .filter((part) => part !== null)
+      .join(" · ");
+  };
+}

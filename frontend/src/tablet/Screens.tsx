@@ -8,16 +8,14 @@ import { Icon } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef } from "react";
-import { useSweep } from "./drafts/useSweep";
+import callForHelpClasses from "./CallForHelp.module.css";
+import { useSweep } from "./drafts/useKept";
 import { useTexts } from "./i18n";
 import classes from "./Screens.module.css";
-import { CallForHelp } from "./screens/CallForHelp";
 import { Consent } from "./screens/Consent";
-import { Finished } from "./screens/Finished";
 import { FormScreen } from "./screens/FormScreen";
-import { Held } from "./screens/Held";
+import { Finished, Held, Waiting } from "./screens/NothingToDo";
 import { Reading } from "./screens/Reading";
-import { Waiting } from "./screens/Waiting";
 import { useTextSize } from "./textSize";
 import { STATE_KEY } from "./useTabletState";
 
@@ -143,5 +141,40 @@ function LanguageChoice({ state }: { readonly state: TabletState }): JSX.Element
       onChange={(language) => choose.mutate(language)}
       data={state.languages.map((value) => ({ value, label: LANGUAGE_NAMES[value] ?? value }))}
     />
+  );
+}
+
+interface CallForHelpProps {
+  readonly state: TabletState;
+  readonly connected: boolean;
+}
+
+/** Always there: one press calls the experimenter, and the bar says that the call has arrived. */
+function CallForHelp({ state, connected }: CallForHelpProps): JSX.Element | null {
+  const { t } = useTexts();
+  const queries = useQueryClient();
+  const call = useMutation({
+    mutationFn: tablet.help,
+    onSuccess: (answer) => queries.setQueryData(STATE_KEY, answer),
+  });
+  if (state.screen === "finished") return null;
+  return (
+    <div className={callForHelpClasses.help}>
+      <span className={callForHelpClasses.said} role="status">
+        {state.help_asked ? t("help.called") : call.isError || !connected ? t("help.failed") : ""}
+      </span>
+      {connected && (
+        <Button
+          size="sm"
+          variant={state.help_asked ? "subtle" : "default"}
+          color="gray"
+          loading={call.isPending}
+          leftSection={<Icon name={state.help_asked ? "close" : "help"} size={18} />}
+          onClick={() => call.mutate(!state.help_asked)}
+        >
+          {t(state.help_asked ? "help.takeBack" : "help.call")}
+        </Button>
+      )}
+    </div>
   );
 }

@@ -1,13 +1,12 @@
 /** The participant's tablet: unpaired it asks for a code, paired it shows the session's screen. */
 import { Center, Loader } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
-import { ApiError, isUnauthorised } from "@shared/api/errors";
+import { ApiError, isUnauthorised } from "@shared/api/request";
 import { useMutation } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef } from "react";
-import { codeFromAddress } from "./code";
 import { Failure } from "./errors";
 import { useTexts } from "./i18n";
-import { pairedBefore, rememberPaired } from "./paired";
+import { codeFromAddress, pairedBefore, rememberPaired } from "./pairing";
 import { Screens } from "./Screens";
 import { Pairing } from "./screens/Pairing";
 import { useTabletState } from "./useTabletState";

@@ -1,5 +1,5 @@
 /** The tablet's wording around errors: said to a participant, not to an engineer. */
-import { ErrorNotice, type ErrorTexts } from "@shared/ui/ErrorNotice";
+import { ErrorNotice, type ErrorTexts } from "@shared/ui/Notice";
 import type { JSX } from "react";
 import { useTexts } from "./i18n";
 

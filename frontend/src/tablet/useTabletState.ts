@@ -1,11 +1,11 @@
 /** The screen the server wants, kept current by its live feed, and on the tablet for bad times. */
 import { tablet } from "@shared/api/endpoints";
-import { isUnauthorised } from "@shared/api/errors";
 import { type FeedState, openFeed } from "@shared/api/live";
+import { isUnauthorised } from "@shared/api/request";
 import type { TabletState } from "@shared/api/types";
 import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useState } from "react";
-import { drafts } from "./drafts/useKeptForm";
+import { drafts } from "./drafts/useKept";
 
 export const STATE_KEY = ["tablet", "state"] as const;
 

@@ -6,13 +6,13 @@ import { Icon } from "@shared/ui/Icon";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useLocation } from "wouter";
+import { nameOf } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import classes from "./Capture.module.css";
 import { DeleteCapture } from "./DeleteCapture";
-import { useFormatName } from "./Formats";
-import { nameOf } from "./nameOf";
+import { useFormatName } from "./DropZone";
 import { captureQuery, capturesQuery } from "./queries";
 
 export function CaptureHead({ capture }: { readonly capture: Capture }): JSX.Element {

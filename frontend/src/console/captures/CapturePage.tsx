@@ -8,13 +8,14 @@ import { Link, useLocation } from "wouter";
 import { LeaveGuard } from "../editor/LeaveGuard";
 import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import classes from "./Capture.module.css";
 import { CaptureHead } from "./CaptureHead";
 import { JointMapTab } from "./JointMapTab";
 import { MovementTab } from "./MovementTab";
+import type { TabProps } from "./NoAvatar";
 import { captureQuery } from "./queries";
-import { type JointMapDraft, useJointMap } from "./useJointMap";
+import { useJointMap } from "./useJointMap";
 import { VerificationTab } from "./VerificationTab";
 
 const TABS = ["movement", "joints", "verification"] as const;
@@ -25,11 +26,6 @@ const ICONS: Readonly<Record<Tab, IconName>> = {
   joints: "body",
   verification: "chart",
 };
-
-export interface TabProps {
-  readonly capture: Capture;
-  readonly map: JointMapDraft;
-}
 
 const CONTENT: Readonly<Record<Tab, (props: TabProps) => JSX.Element>> = {
   movement: MovementTab,

@@ -6,12 +6,12 @@ import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
+import { nameOf } from "../account";
 import { useTexts } from "../i18n";
-import { ListTable } from "../ui/ListTable";
 import { Loaded } from "../ui/Loaded";
+import { ListTable } from "../ui/tables";
 import classes from "./Captures.module.css";
-import { useFormatName } from "./Formats";
-import { nameOf } from "./nameOf";
+import { useFormatName } from "./DropZone";
 import { captureQuery } from "./queries";
 
 interface CaptureTableProps {

@@ -5,7 +5,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useShown } from "../ui/useShown";
+import { useShown } from "../ui/page";
 import { capturesQuery } from "./queries";
 
 interface DeleteCaptureProps {

@@ -1,23 +1,23 @@
 /** The joint map: 22 parts of the body, each with the joint of the skeleton that plays it. */
 import { Button, Center, Loader, Title } from "@mantine/core";
 import type { JointMapView } from "@shared/api/captures";
-import { ApiError } from "@shared/api/errors";
+import { ApiError } from "@shared/api/request";
 import { dateTime } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useEffect, useMemo, useState } from "react";
+import { nameOf } from "../account";
 import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
 import { useMay } from "../may";
 import { EmptyState } from "../ui/EmptyState";
 import { BODY, GROUPS, type Group } from "./bodyJoints";
-import type { TabProps } from "./CapturePage";
 import classes from "./JointMap.module.css";
 import { JointRow } from "./JointRow";
 import { type MapProblem, problemsOf, redo, replace, sameMap, undo } from "./jointMapEdit";
 import { LeftOver } from "./LeftOver";
 import { MapPreview } from "./MapPreview";
-import { nameOf } from "./nameOf";
+import type { TabProps } from "./NoAvatar";
 import type { JointMapDraft } from "./useJointMap";
 
 export function JointMapTab({ capture, map }: TabProps): JSX.Element {

@@ -1,15 +1,13 @@
 /** The movement in space, as recorded or on an avatar, beside how its file was read. */
-import { Button, Center, Checkbox, Loader, SegmentedControl } from "@mantine/core";
+import { Center, Checkbox, Loader, SegmentedControl } from "@mantine/core";
 import type { Capture } from "@shared/api/captures";
-import { Notice } from "@shared/ui/Notice";
-import { type JSX, type ReactNode, useState } from "react";
-import { Link } from "wouter";
+import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { AvatarChoice } from "./AvatarChoice";
 import classes from "./Capture.module.css";
-import type { TabProps } from "./CapturePage";
 import { ConventionsPanel } from "./ConventionsPanel";
+import { NoAvatar, type TabProps } from "./NoAvatar";
 import { useFigures, type Wish } from "./useFigures";
 import type { JointMapDraft } from "./useJointMap";
 import { Viewer } from "./Viewer";
@@ -86,35 +84,6 @@ function ShownBar({ capture, map, wish, busy, onWish }: ShownBarProps): JSX.Elem
         </>
       )}
       {busy && <Loader size="sm" role="status" aria-label={t("stage.loading")} />}
-    </div>
-  );
-}
-
-/** Why the movement cannot be put onto an avatar, and where that is mended. */
-export function NoAvatar({
-  capture,
-  map,
-}: {
-  readonly capture: Capture;
-  readonly map: JointMapDraft;
-}): JSX.Element | null {
-  const { t } = useTexts();
-  let why: ReactNode = null;
-  let mend: JSX.Element | undefined;
-  if (!capture.has_skeleton) {
-    why = t("capture.noAvatar.skeleton", { why: capture.summary.no_skeleton ?? "" });
-  } else if (map.view?.usable === false) {
-    why = `${t("capture.noAvatar.map")} ${map.view.missing.join("; ")}`;
-    mend = (
-      <Button component={Link} href={`/captures/${capture.id}/joints`} size="xs" variant="default">
-        {t("capture.noAvatar.openMap")}
-      </Button>
-    );
-  }
-  if (why === null) return null;
-  return (
-    <div style={{ marginTop: 12 }}>
-      <Notice tone="warn" title={t("capture.noAvatar")} remedy={why} actions={mend} />
     </div>
   );
 }

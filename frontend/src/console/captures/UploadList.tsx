@@ -1,6 +1,6 @@
 /** What was just brought in, or why not: beside the name of the file, until it is taken away. */
 import { ActionIcon, Button, FileButton, Progress } from "@mantine/core";
-import { ApiError } from "@shared/api/errors";
+import { ApiError } from "@shared/api/request";
 import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";
@@ -8,8 +8,7 @@ import { Link } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Captures.module.css";
-import { missingBeside } from "./filePairs";
-import type { Phase, Upload, Uploads } from "./useUploads";
+import { missingBeside, type Phase, type Upload, type Uploads } from "./useUploads";
 
 export function UploadList({ uploads }: { readonly uploads: Uploads }): JSX.Element | null {
   const { t } = useTexts();

@@ -7,9 +7,9 @@ import {
   type LookFrom,
   RIGHT_COLOUR,
 } from "@shared/stage/figure";
-import { hasGaps } from "@shared/stage/gaps";
 import legend from "@shared/stage/Legend.module.css";
 import { durationOf } from "@shared/stage/motion";
+import { hasGaps } from "@shared/stage/placing";
 import { Stage, type StageHandle } from "@shared/stage/Stage";
 import { Transport } from "@shared/stage/Transport";
 import { usePlayback } from "@shared/stage/usePlayback";

@@ -3,8 +3,8 @@ import { uploadUrl } from "@shared/api/captures";
 import { describe, expect, it } from "vitest";
 import { avatarOf, withAvatar } from "./avatars";
 import { BODY, GROUPS, placeOnBody, rolesFrom } from "./bodyJoints";
-import { missingBeside, pairFiles } from "./filePairs";
 import { assign, begin, problemsOf, redo, replace, sameMap, undo } from "./jointMapEdit";
+import { missingBeside, pairFiles } from "./useUploads";
 
 const named = (...names: string[]) => names.map((name) => ({ name }));
 const pairs = (...names: string[]) =>

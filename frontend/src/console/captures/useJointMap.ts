@@ -1,6 +1,6 @@
 /** The joint map of a capture's skeleton as it is on the server, and as somebody is changing it. */
 import { type Capture, captures, type JointMapView } from "@shared/api/captures";
-import { isApiError } from "@shared/api/errors";
+import { isApiError } from "@shared/api/request";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useState } from "react";
 import { type BodyMap, begin, type MapEdit, sameMap } from "./jointMapEdit";

@@ -7,10 +7,9 @@ import { type JSX, useEffect, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
-import { isOver } from "../replay/phaseNames";
-import { KindBadge } from "../ui/KindBadge";
+import { isOver } from "../steps";
+import { KindBadge, StatusBadge } from "../ui/badges";
 import { Order } from "../ui/Order";
-import { StatusBadge } from "../ui/StatusBadge";
 import classes from "./Cockpit.module.css";
 import { Reveal } from "./Reveal";
 

@@ -1,43 +1,41 @@
 /** The cockpit: everything one experimenter needs while a participant is in the headset. */
+import { Button } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { SessionView } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
+import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { AfterWithdrawal } from "../rights/AfterWithdrawal";
 import { Tour } from "../tour/Tour";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
-import { AlarmDrawer } from "./AlarmDrawer";
-import { currentStep, primaryAction } from "./action";
-import { titleKey } from "./alarms";
+import { useTitle } from "../ui/page";
+import { RecordDrawer } from "../ui/RecordDrawer";
+import { AlarmDrawer } from "./alarms/AlarmDrawer";
+import { titleKey, useAlarms } from "./alarms/alarms";
+import { SignalStrip } from "./alarms/SignalStrip";
+import { TelemetryCard } from "./alarms/TelemetryCard";
 import classes from "./Cockpit.module.css";
-import { CommandFailure } from "./CommandFailure";
-import { CurrentStep } from "./CurrentStep";
-import { DevicesPanel } from "./DevicesPanel";
-import { EventDrawer } from "./EventDrawer";
+import { DevicesPanel } from "./devices/DevicesPanel";
 import { Header } from "./Header";
-import { HeldCard } from "./HeldCard";
-import { KeyboardHelp } from "./KeyboardHelp";
 import { hasMovement, LiveCard } from "./live3d/LiveCard";
-import { NotesPanel } from "./NotesPanel";
-import { OperatorEntry } from "./OperatorEntry";
-import { PhaseTable } from "./PhaseTable";
+import { StartAnyway } from "./preflight/OverrideDialog";
 import { PreflightBody, PreflightCard } from "./preflight/PreflightCard";
-import { StartAnyway } from "./preflight/StartAnyway";
 import { usePreflight } from "./preflight/usePreflight";
-import { ReasonDialog } from "./ReasonDialog";
-import { RecordDrawer } from "./RecordDrawer";
-import type { Reasoned } from "./reasons";
-import { ScoresPanel } from "./ScoresPanel";
-import { SignalStrip } from "./SignalStrip";
-import { SuggestionsPanel } from "./SuggestionsPanel";
-import { TelemetryCard } from "./TelemetryCard";
-import { Timeline } from "./Timeline";
-import { useAlarms } from "./useAlarms";
-import { useKeys } from "./useKeys";
-import { type Send, useSession } from "./useSession";
+import { EventDrawer } from "./record/EventDrawer";
+import { NotesPanel } from "./record/NotesPanel";
+import { PhaseTable } from "./record/PhaseTable";
+import { ScoresPanel } from "./record/ScoresPanel";
+import { SuggestionsPanel } from "./record/SuggestionsPanel";
+import { Timeline } from "./record/Timeline";
+import { currentStep, primaryAction, type Reasoned } from "./session/action";
+import { KeyboardHelp, useKeys } from "./session/keys";
+import { type Send, useSession } from "./session/useSession";
+import { CurrentStep } from "./step/CurrentStep";
+import { HeldCard } from "./step/HeldCard";
+import { OperatorEntry } from "./step/OperatorEntry";
+import { ReasonDialog } from "./step/ReasonDialog";
 
 /** Only one of them is ever allowed. Pausing asks for no reason: it has to be quick. */
 const PAUSING = ["pause", "resume"] as const;
@@ -157,4 +155,31 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       />
     </div>
   );
+}
+
+/** Why the last command was not carried out: refused, or overtaken by another operator. */
+function CommandFailure({
+  live,
+}: {
+  readonly live: ReturnType<typeof useSession>;
+}): JSX.Element | null {
+  const { t } = useTexts();
+  if (live.overtaken !== null) {
+    const { command, changes } = live.overtaken;
+    return (
+      <Notice
+        tone="warn"
+        title={t("stale.title")}
+        remedy={t("stale.remedy", { command: t(`command.${command.type}`) })}
+        actions={
+          <Button size="xs" variant="default" onClick={live.dismiss}>
+            {t("action.understood")}
+          </Button>
+        }
+      >
+        {changes.map(({ key, values }) => t(key, values)).join(" ")}
+      </Notice>
+    );
+  }
+  return live.error === null ? null : <Failure error={live.error} />;
 }

@@ -1,10 +1,9 @@
 import type { Allowed, Current, SessionView } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { guidance, primaryAction } from "./action";
-import { changesBetween } from "./changes";
 import { at, session, steps } from "./example";
-import { groupSteps } from "./groupSteps";
-import { redoable, redoTarget } from "./redo";
+import { groupSteps } from "./record/Timeline";
+import { guidance, primaryAction, redoable, redoTarget } from "./session/action";
+import { changesBetween } from "./session/useSession";
 
 const view = (
   current: Current | null,

@@ -1,20 +1,19 @@
 /** One file: what it is, how far it is, and what can be done with it. */
 import { ActionIcon, Button, CopyButton, Progress } from "@mantine/core";
 import { type Export, exports } from "@shared/api/housekeeping";
-import { duration, number, timeOfDay } from "@shared/format";
+import { bytes, duration, number, timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { seconds } from "@shared/units";
-import { useQueryClient } from "@tanstack/react-query";
+import { type UseQueryResult, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { exportsQuery } from "../queries";
-import { bytes } from "../ui/bytes";
 import classes from "./Downloads.module.css";
-import { useOrder, useRemoval } from "./useExports";
+import { isOpen, useDesk, useOrder, useRemoval } from "./useExports";
 
-export function DownloadCard({ one }: { readonly one: Export }): JSX.Element {
+function DownloadCard({ one }: { readonly one: Export }): JSX.Element {
   const removal = useRemoval();
   return (
     <li className={classes.card} data-state={one.state}>
@@ -220,5 +219,44 @@ function Failed({ one, onRemove }: EndedProps): JSX.Element {
       </Notice>
       {order.isError && <Failure error={order.error} />}
     </>
+  );
+}
+
+interface DownloadListProps {
+  readonly query: UseQueryResult<readonly Export[]>;
+  readonly studyKey?: string;
+}
+
+/** The person's files, newest first; of one study where a page is about it. */
+export function DownloadList({ query, studyKey }: DownloadListProps): JSX.Element | null {
+  const { t } = useTexts();
+  const { gone } = useDesk();
+  const shown = (query.data ?? []).filter(
+    (one) => studyKey === undefined || one.study_key === studyKey,
+  );
+  const lost = query.isError && shown.some(isOpen);
+  if (shown.length === 0 && !gone) return null;
+  return (
+    <div>
+      {(lost || gone) && (
+        <div className={classes.notices}>
+          {lost && (
+            <Notice tone="warn" title={t("downloads.lost")}>
+              {t("downloads.lost.body")}
+            </Notice>
+          )}
+          {gone && (
+            <Notice tone="warn" title={t("downloads.gone")}>
+              {t("downloads.gone.body")}
+            </Notice>
+          )}
+        </div>
+      )}
+      <ul className={classes.list}>
+        {shown.map((one) => (
+          <DownloadCard key={one.id} one={one} />
+        ))}
+      </ul>
+    </div>
   );
 }

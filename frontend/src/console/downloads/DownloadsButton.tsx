@@ -1,14 +1,23 @@
 /** In the header: how many files are being made; a click shows them all. */
-import { ActionIcon, Drawer, Indicator } from "@mantine/core";
+import { ActionIcon, Button, Drawer, Indicator } from "@mantine/core";
+import type { DataKind, SessionView } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { useMay } from "../may";
 import { EmptyState } from "../ui/EmptyState";
-import { DownloadList } from "./DownloadList";
+import { DownloadList } from "./DownloadCard";
 import classes from "./Downloads.module.css";
-import { closeDownloads, openDownloads, useDesk } from "./desk";
-import { isOpen, useExports, useHandingOver } from "./useExports";
+import {
+  closeDownloads,
+  isOpen,
+  openDownloads,
+  useDesk,
+  useExports,
+  useHandingOver,
+  useOrder,
+} from "./useExports";
 
 export function DownloadsButton(): JSX.Element {
   const { t } = useTexts();
@@ -56,6 +65,41 @@ export function DownloadsButton(): JSX.Element {
           </p>
         )}
       </Drawer>
+    </>
+  );
+}
+
+/** On a session that is over: its own files, without the rest of the study. */
+export function SessionDownload({
+  session,
+}: {
+  readonly session: SessionView;
+}): JSX.Element | null {
+  const { t } = useTexts();
+  const may = useMay();
+  const order = useOrder();
+  // An expert's session is advice, and in no table.
+  if (!may("compare") || session.kind === "expert") return null;
+  const kind: DataKind = session.kind;
+  return (
+    <>
+      <Button
+        variant="subtle"
+        size="compact-sm"
+        data-tour="csv"
+        ml="auto"
+        loading={order.isPending}
+        leftSection={<Icon name="download" size={15} />}
+        onClick={() =>
+          order.mutate(
+            { studyKey: session.study_key, kind, sessionId: session.id },
+            { onSuccess: openDownloads },
+          )
+        }
+      >
+        {t("downloads.thisSession")}
+      </Button>
+      {order.isError && <Failure error={order.error} />}
     </>
   );
 }

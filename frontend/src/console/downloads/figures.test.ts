@@ -1,10 +1,9 @@
 /** Sizes, forecasts and shares as people read them. */
 import type { StorageRoom } from "@shared/api/housekeeping";
+import { bytes } from "@shared/format";
 import { describe, expect, it } from "vitest";
-import { diskShares } from "../storage/diskShares";
-import { roughly } from "../storage/roughly";
-import { choose } from "../tour/choose";
-import { bytes } from "../ui/bytes";
+import { diskShares, roughly } from "../storage/figures";
+import { choose } from "../tour/HelpMenu";
 
 describe("sizes", () => {
   it.each([

@@ -1,10 +1,13 @@
 /** Two versions of a study side by side: what it means, each place, and the text. */
-import type { Difference, StudyDiff } from "@shared/api/drafts";
+import { type Difference, drafts, type StudyDiff } from "@shared/api/drafts";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
+import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
+import { Loaded } from "../ui/Loaded";
 import classes from "./DiffView.module.css";
+import type { Draft } from "./useDraft";
 
 export function DiffView({ diff }: { readonly diff: StudyDiff }): JSX.Element {
   const { t } = useTexts();
@@ -98,4 +101,29 @@ function lineClass(line: string): string | undefined {
     return classes.where;
   if (line.startsWith("+")) return classes.plus;
   return line.startsWith("-") ? classes.minus : undefined;
+}
+
+interface ChangesProps {
+  readonly draft: Draft;
+  readonly studyKey: string;
+}
+
+/** What saving the draft would change, against the newest version. */
+export function Changes({ draft, studyKey }: ChangesProps): JSX.Element {
+  const { t } = useTexts();
+  const usable = draft.upToDate && draft.check?.ok === true;
+  const query = useQuery({
+    queryKey: ["draft-diff", studyKey, draft.text],
+    queryFn: () => drafts.diff(studyKey, draft.text),
+    enabled: usable,
+    gcTime: 0,
+  });
+  if (!usable && draft.problems.length > 0) {
+    return (
+      <Notice tone="warn" title={t("changes.broken")}>
+        {t("dryRun.broken.body")}
+      </Notice>
+    );
+  }
+  return <Loaded query={query}>{(diff) => <DiffView diff={diff} />}</Loaded>;
 }

@@ -3,6 +3,8 @@ import { ActionIcon, Button, Tabs, Tooltip } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { drafts } from "@shared/api/drafts";
 import { studies } from "@shared/api/endpoints";
+import type { components } from "@shared/api/schema";
+import { number } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
@@ -12,16 +14,13 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { Problems } from "../pages/Problems";
 import { instrumentsQuery } from "../queries";
-import { Changes } from "./Changes";
+import { Changes } from "./DiffView";
 import { DryRun } from "./DryRun";
 import classes from "./Editor.module.css";
-import { Figures } from "./Figures";
 import { Form } from "./Form";
 import { FormContext, type FormState } from "./formContext";
-import { dropDraft, keepDraft } from "./keptDrafts";
-import { LeaveGuard } from "./LeaveGuard";
-import type { JsonObject } from "./paths";
-import { isList } from "./paths";
+import { dropDraft, keepDraft, LeaveGuard } from "./LeaveGuard";
+import { isList, type JsonObject } from "./paths";
 import { specOfFile } from "./schema";
 import { type Draft, useDraft } from "./useDraft";
 import { YamlField } from "./YamlField";
@@ -237,5 +236,35 @@ function TextHalf({ draft, initial }: { readonly draft: Draft; readonly initial:
         </div>
       )}
     </section>
+  );
+}
+
+interface FiguresProps {
+  readonly figures: components["schemas"]["StudyFigures"] | null;
+}
+
+/** What a draft asks for, in a line: how large its design is and how long a visit. */
+function Figures({ figures }: FiguresProps): JSX.Element | null {
+  const { t, language } = useTexts();
+  if (figures === null) return null;
+  const { conditions, orders, slots, minutes } = figures;
+  return (
+    <dl className={`${classes.figures} numbers`}>
+      {(
+        [
+          ["figures.conditions", conditions],
+          ["figures.orders", orders],
+          ["figures.slots", slots],
+          ["figures.minutes", Math.round(minutes)],
+        ] as const
+      ).map(([key, value]) => (
+        <div key={key}>
+          <dd>
+            {key === "figures.minutes" ? `≈ ${number(value, language)}` : number(value, language)}
+          </dd>
+          <dt>{t(key)}</dt>
+        </div>
+      ))}
+    </dl>
   );
 }

@@ -11,9 +11,9 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { templatesQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import { Editor } from "./Editor";
-import { dropDraft, keptDraft } from "./keptDrafts";
+import { dropDraft, keptDraft } from "./LeaveGuard";
 
 export function EditStudyPage({ studyKey }: { readonly studyKey: string }): JSX.Element {
   const { t, language } = useTexts();

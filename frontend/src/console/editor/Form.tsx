@@ -3,11 +3,9 @@ import { Tabs } from "@mantine/core";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Editor.module.css";
-import { ListField } from "./fields/ListField";
-import { ObjectFields } from "./fields/SpecField";
-import { TextsSection } from "./fields/TextsSection";
-import { useForm } from "./formContext";
-import { useLabels } from "./labels";
+import { ListField, ObjectFields } from "./fields/SpecField";
+import { TextsSection } from "./fields/Texts";
+import { useForm, useLabels } from "./formContext";
 import type { ObjectSpec, Spec } from "./schema";
 import { fieldsOf, SECTIONS, type Section, sectionOf } from "./sections";
 

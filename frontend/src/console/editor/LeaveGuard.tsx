@@ -1,9 +1,10 @@
-/** Asks before unsaved changes are left behind: at links of the page, and at closing the tab. */
+/** Changes that are not saved yet: kept in the browser, and asked about before they are left behind. */
 import { Button, Group, Modal, Text } from "@mantine/core";
 import { type JSX, useEffect, useState } from "react";
 import { useLocation } from "wouter";
 import { useTexts } from "../i18n";
 
+/** Asks before unsaved changes are left behind: at links of the page, and at closing the tab. */
 export function LeaveGuard({ unsaved }: { readonly unsaved: boolean }): JSX.Element {
   const { t } = useTexts();
   const [, navigate] = useLocation();
@@ -49,4 +50,23 @@ export function LeaveGuard({ unsaved }: { readonly unsaved: boolean }): JSX.Elem
       </Group>
     </Modal>
   );
+}
+
+/** What was written and not saved yet, kept in this browser: closing a page loses nothing. */
+const PREFIX = "reembody.draft.";
+
+export function keptDraft(id: string): string | null {
+  return localStorage.getItem(PREFIX + id);
+}
+
+export function keepDraft(id: string, text: string): void {
+  try {
+    localStorage.setItem(PREFIX + id, text);
+  } catch {
+    // A full or forbidden storage must not stop the writing; the page still warns before it closes.
+  }
+}
+
+export function dropDraft(id: string): void {
+  localStorage.removeItem(PREFIX + id);
 }

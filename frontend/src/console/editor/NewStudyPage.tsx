@@ -9,8 +9,8 @@ import { Link, useLocation } from "wouter";
 import { useTexts } from "../i18n";
 import { studiesQuery, templatesQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
-import { keepDraft } from "./keptDrafts";
+import { useTitle } from "../ui/page";
+import { keepDraft } from "./LeaveGuard";
 import classes from "./NewStudy.module.css";
 
 export function NewStudyPage(): JSX.Element {

@@ -1,8 +1,26 @@
 /** The YAML of a file as a React component around the text field. */
+import { defaultKeymap, history, historyKeymap, isolateHistory } from "@codemirror/commands";
+import { yaml } from "@codemirror/lang-yaml";
+import {
+  bracketMatching,
+  HighlightStyle,
+  indentUnit,
+  syntaxHighlighting,
+} from "@codemirror/language";
+import { type Diagnostic, lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
+import { Compartment, EditorState, type Extension, Transaction } from "@codemirror/state";
+import {
+  drawSelection,
+  EditorView,
+  highlightActiveLine,
+  highlightActiveLineGutter,
+  keymap,
+  lineNumbers,
+} from "@codemirror/view";
+import { tags } from "@lezer/highlight";
 import type { ConfigProblem } from "@shared/api/types";
 import { type JSX, type RefObject, useEffect, useRef } from "react";
 import classes from "./Editor.module.css";
-import { createYamlText, markProblems, type YamlText } from "./yamlText";
 
 interface YamlFieldProps {
   /** The text at the beginning; from then on the field holds it. */
@@ -38,4 +56,146 @@ export function YamlField(props: YamlFieldProps): JSX.Element {
     if (field.current !== null) markProblems(field.current.view, problems);
   }, [problems, field]);
   return <div className={classes.yaml} ref={parent} />;
+}
+
+const colours = HighlightStyle.define([
+  { tag: [tags.propertyName, tags.definition(tags.propertyName)], color: "var(--accent)" },
+  { tag: [tags.lineComment, tags.comment], color: "var(--ink-soft)", fontStyle: "italic" },
+  { tag: [tags.number, tags.bool], color: "var(--sim)" },
+  {
+    tag: [tags.punctuation, tags.separator, tags.squareBracket, tags.brace],
+    color: "var(--ink-soft)",
+  },
+]);
+
+const look = EditorView.theme({
+  "&": { height: "100%", backgroundColor: "var(--surface)", color: "var(--ink)", fontSize: "13px" },
+  "&.cm-focused": { outline: "2px solid var(--accent)", outlineOffset: "-2px" },
+  ".cm-scroller": { fontFamily: "var(--mantine-font-family-monospace)", lineHeight: "1.55" },
+  ".cm-content": { caretColor: "var(--ink)", padding: "8px 0" },
+  ".cm-cursor": { borderLeftColor: "var(--ink)" },
+  ".cm-gutters": {
+    backgroundColor: "var(--sunken)",
+    color: "var(--ink-soft)",
+    borderRight: "1px solid var(--line)",
+  },
+  ".cm-activeLine": { backgroundColor: "color-mix(in srgb, var(--accent) 7%, transparent)" },
+  ".cm-activeLineGutter": { backgroundColor: "transparent", color: "var(--ink)" },
+  "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground":
+    { background: "color-mix(in srgb, var(--accent) 25%, transparent) !important" },
+  ".cm-lintRange-error": {
+    backgroundImage: "none",
+    textDecoration: "underline wavy var(--bad)",
+    textUnderlineOffset: "3px",
+  },
+  ".cm-tooltip": {
+    maxWidth: "60ch",
+    backgroundColor: "var(--surface)",
+    color: "var(--ink)",
+    border: "1px solid var(--line-strong)",
+    borderRadius: "6px",
+  },
+  ".cm-diagnostic-error": { borderLeftColor: "var(--bad)" },
+});
+
+export interface YamlText {
+  readonly view: EditorView;
+  readonly setReadable: (label: string, editable: boolean) => void;
+}
+
+/** The text field for YAML: line numbers, colours, problems at their lines, undo and redo. */
+function createYamlText(
+  parent: HTMLElement,
+  doc: string,
+  onChange: (text: string, byForm: boolean) => void,
+): YamlText {
+  const attributes = new Compartment();
+  const own = (label: string, editable: boolean): Extension => [
+    EditorView.contentAttributes.of({ "aria-label": label, spellcheck: "false", tabindex: "0" }),
+    EditorView.editable.of(editable),
+    EditorState.readOnly.of(!editable),
+  ];
+  const view = new EditorView({
+    parent,
+    state: EditorState.create({
+      doc,
+      extensions: [
+        lineNumbers(),
+        lintGutter(),
+        highlightActiveLine(),
+        highlightActiveLineGutter(),
+        drawSelection(),
+        history(),
+        yaml(),
+        indentUnit.of("  "),
+        bracketMatching(),
+        syntaxHighlighting(colours),
+        EditorView.lineWrapping,
+        // Tab stays the way out of the field, for everybody who has no mouse.
+        keymap.of([...defaultKeymap, ...historyKeymap, ...lintKeymap]),
+        look,
+        attributes.of(own("", true)),
+        EditorView.updateListener.of((update) => {
+          if (!update.docChanged) return;
+          const byForm = update.transactions.some((one) => one.isUserEvent("form"));
+          onChange(update.state.doc.toString(), byForm);
+        }),
+      ],
+    }),
+  });
+  return {
+    view,
+    setReadable: (label, editable) =>
+      view.dispatch({ effects: attributes.reconfigure(own(label, editable)) }),
+  };
+}
+
+/** Replace the text by one that differs in one stretch, as one step that can be undone. */
+export function replaceText(view: EditorView, next: string): void {
+  const before = view.state.doc.toString();
+  if (before === next) return;
+  const { from, to, insert } = stretch(before, next);
+  view.dispatch({
+    changes: { from, to, insert },
+    annotations: [Transaction.userEvent.of("form"), isolateHistory.of("full")],
+    effects: EditorView.scrollIntoView(from, { y: "nearest", yMargin: 60 }),
+  });
+}
+
+/** The one stretch in which two texts differ. */
+function stretch(before: string, after: string) {
+  const most = Math.min(before.length, after.length);
+  let from = 0;
+  while (from < most && before[from] === after[from]) from += 1;
+  let tail = 0;
+  while (tail < most - from && before.at(-1 - tail) === after.at(-1 - tail)) tail += 1;
+  return { from, to: before.length - tail, insert: after.slice(from, after.length - tail) };
+}
+
+/** Mark each problem from its place to the end of its line. */
+function markProblems(view: EditorView, problems: readonly ConfigProblem[]): void {
+  const { doc } = view.state;
+  const marks: Diagnostic[] = problems
+    .filter((problem) => problem.line >= 1)
+    .map((problem) => {
+      const line = doc.line(Math.min(problem.line, doc.lines));
+      const from = Math.min(line.from + Math.max(problem.column - 1, 0), line.to);
+      return {
+        from,
+        to: Math.max(line.to, from),
+        severity: "error",
+        message: `${problem.path === "" ? "" : `${problem.path}: `}${problem.message} ${problem.remedy ?? ""}`,
+      };
+    });
+  view.dispatch(setDiagnostics(view.state, marks));
+}
+
+/** Put the cursor into a line and show it; `focus` also takes the keyboard there. */
+export function showLine(view: EditorView, number: number, focus: boolean): void {
+  const line = view.state.doc.line(Math.min(Math.max(number, 1), view.state.doc.lines));
+  view.dispatch({
+    selection: { anchor: line.from },
+    effects: EditorView.scrollIntoView(line.from, { y: "center" }),
+  });
+  if (focus) view.focus();
 }

@@ -1,8 +1,10 @@
 /** What every field of the form shares: the file's values, its problems, and a way to change it. */
 import type { ConfigProblem } from "@shared/api/types";
-import { createContext, useContext } from "react";
-import type { Change, JsonObject, Path } from "./paths";
-import { pathText, valueAt } from "./paths";
+import { createContext, useContext, useEffect, useRef, useState } from "react";
+import { type Key, useTexts } from "../i18n";
+import { fieldsEn } from "../i18n/fieldTexts";
+import { preregistrationEn } from "../i18n/preregistrationTexts";
+import { type Change, type JsonObject, type Path, pathText, valueAt } from "./paths";
 
 export interface FormState {
   readonly tree: JsonObject;
@@ -33,3 +35,72 @@ export function useProblem(path: Path): string | null {
 }
 
 export const useValue = (path: Path) => valueAt(useForm().tree, path);
+
+/** What fields and their values are called: in the reader's language where we have a word for them. */
+const NAMED: Readonly<Record<string, string>> = { ...fieldsEn, ...preregistrationEn };
+const UNITS: Readonly<Record<string, string>> = { s: "s", ms: "ms", m: "m", cm: "cm", deg: "°" };
+
+/** `freeze_s` as `Freeze (s)`: for a setting that is newer than the tables of words. */
+function readable(name: string): string {
+  const parts = name.split("_");
+  const unit = parts.length > 1 ? UNITS[parts.at(-1) ?? ""] : undefined;
+  const words = (unit === undefined ? parts : parts.slice(0, -1)).join(" ");
+  const written = words.charAt(0).toUpperCase() + words.slice(1);
+  return unit === undefined ? written : `${written} (${unit})`;
+}
+
+interface Labels {
+  readonly field: (name: string) => string;
+  readonly hint: (name: string) => string | undefined;
+  readonly value: (value: string) => string;
+}
+
+export function useLabels(): Labels {
+  const { t } = useTexts();
+  const known = (key: string): string | undefined => (key in NAMED ? t(key as Key) : undefined);
+  return {
+    field: (name) => known(`field.${name}`) ?? readable(name),
+    hint: (name) => known(`hint.${name}`),
+    value: (value) => known(`value.${value}`) ?? value,
+  };
+}
+
+const PAUSE_MS = 700;
+
+/** A text field that tells of its content when the writer pauses or leaves it, not at every key. */
+export function useCommitted(value: string, commit: (value: string) => void) {
+  const [local, setLocal] = useState(value);
+  const pending = useRef<string | null>(null);
+  const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
+  const latest = useRef(commit);
+  useEffect(() => {
+    latest.current = commit;
+  });
+  // What is being written stays; anything else follows the file.
+  useEffect(() => {
+    if (pending.current === null || pending.current === value) {
+      pending.current = null;
+      setLocal(value);
+    }
+  }, [value]);
+  const flush = () => {
+    clearTimeout(timer.current);
+    if (pending.current !== null && pending.current !== value) latest.current(pending.current);
+    pending.current = null;
+  };
+  const flushLater = useRef(flush);
+  useEffect(() => {
+    flushLater.current = flush;
+  });
+  useEffect(() => () => clearTimeout(timer.current), []);
+  return {
+    value: local,
+    onChange: (text: string) => {
+      setLocal(text);
+      pending.current = text;
+      clearTimeout(timer.current);
+      timer.current = setTimeout(() => flushLater.current(), PAUSE_MS);
+    },
+    onBlur: flush,
+  };
+}

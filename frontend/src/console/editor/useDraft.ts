@@ -9,7 +9,7 @@ import type { CheckResult } from "@shared/api/types";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { type RefObject, useEffect, useRef, useState } from "react";
 import { type Change, type Path, pathText } from "./paths";
-import { replaceText, showLine, type YamlText } from "./yamlText";
+import { replaceText, showLine, type YamlText } from "./YamlField";
 
 const PAUSE_MS = 350;
 const NO_PROBLEMS: CheckResult["problems"] = [];

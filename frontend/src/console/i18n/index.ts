@@ -6,7 +6,6 @@ import {
   useTranslations,
 } from "@shared/i18n/i18n";
 import { analysisDe, analysisEn } from "./analysisTexts";
-import { answerHintsDe, answerHintsEn } from "./answerHintTexts";
 import { auditDe, auditEn } from "./auditTexts";
 import { capturesDe, capturesEn } from "./captureTexts";
 import { captureViewDe, captureViewEn } from "./captureViewTexts";
@@ -65,7 +64,6 @@ const allEn = {
   ...preflightEn,
   ...liveEn,
   ...replayEn,
-  ...answerHintsEn,
   ...downloadsEn,
   ...storageEn,
   ...tourEn,
@@ -99,7 +97,6 @@ const allDe = {
   ...preflightDe,
   ...liveDe,
   ...replayDe,
-  ...answerHintsDe,
   ...downloadsDe,
   ...storageDe,
   ...tourDe,
@@ -111,7 +108,8 @@ const allDe = {
 export type Key = KeyOf<typeof allEn>;
 
 const REMEMBERED = "reembody.console.language";
-const wanted = [localStorage.getItem(REMEMBERED) ?? [], navigator.languages].flat();
+// Tests of what stands beside words run where there is no storage.
+const wanted = [globalThis.localStorage?.getItem(REMEMBERED) ?? [], navigator.languages].flat();
 
 export const translations = createTranslations({ en: allEn, de: allDe }, preferredLanguage(wanted));
 translations.on("languageChanged", (language) => localStorage.setItem(REMEMBERED, language));

@@ -9,11 +9,11 @@ import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
+import { importQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
-import { useShown } from "../ui/useShown";
+import { useShown } from "../ui/page";
 import { ImportedScore } from "./ImportedScore";
 import classes from "./Imports.module.css";
-import { importQuery } from "./queries";
 
 interface DialogProps {
   readonly studyKey: string;

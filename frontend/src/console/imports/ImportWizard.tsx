@@ -10,7 +10,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Imports.module.css";
 import { MappingStep } from "./MappingStep";
-import { decoded } from "./readText";
+import { decoded, type OpenedFile } from "./readText";
 
 interface WizardProps {
   readonly study: StudyDetail;
@@ -35,11 +35,6 @@ export function ImportWizard({ study, opened, onClose, onOpen }: WizardProps): J
       <Wizard study={study} onOpen={onOpen} />
     </Modal>
   );
-}
-
-export interface OpenedFile {
-  readonly name: string;
-  readonly text: string;
 }
 
 function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.Element {

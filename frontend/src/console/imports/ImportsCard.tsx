@@ -8,11 +8,11 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
+import { importsQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
 import { ImportDetailDialog } from "./ImportDetailDialog";
 import classes from "./Imports.module.css";
 import { ImportWizard } from "./ImportWizard";
-import { importsQuery } from "./queries";
 
 export function ImportsCard({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();

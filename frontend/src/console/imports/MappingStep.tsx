@@ -7,15 +7,13 @@ import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
-import { useTexts } from "../i18n";
-import { instrumentQuery } from "../queries";
+import { type Key, useTexts } from "../i18n";
+import { checkQuery, instrumentQuery } from "../queries";
 import { CheckPanel } from "./CheckPanel";
 import { ColumnFields } from "./ColumnFields";
-import { FilePreview } from "./FilePreview";
 import classes from "./Imports.module.css";
-import type { OpenedFile } from "./ImportWizard";
 import { ItemColumns } from "./ItemColumns";
-import { checkQuery } from "./queries";
+import type { OpenedFile } from "./readText";
 import { WordFields } from "./WordFields";
 
 interface StepProps {
@@ -149,5 +147,48 @@ function conditionWords(
     .map(({ condition }) => condition);
   return [...new Set([...own, ...Object.keys(mapping.conditions), ...unknown])].filter(
     (word) => word !== "",
+  );
+}
+
+const SEPARATORS: Readonly<Record<string, Key>> = {
+  ",": "imports.separator.comma",
+  ";": "imports.separator.semicolon",
+  "\t": "imports.separator.tab",
+};
+
+/** The first rows of a file as they were read. */
+function FilePreview({ look }: { readonly look: ImportLook }): JSX.Element {
+  const { t } = useTexts();
+  const separator = t(SEPARATORS[look.separator] ?? "imports.separator.comma");
+  return (
+    <details open={look.columns.length <= 12}>
+      <summary className={classes.summary}>
+        {t("imports.read", { rows: look.rows, columns: look.columns.length, separator })}
+      </summary>
+      {/* biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached with the keyboard */}
+      <section className={classes.scroll} aria-label={t("imports.firstRows")} tabIndex={0}>
+        <table className={`${classes.grid} numbers`}>
+          <thead>
+            <tr>
+              {look.columns.map(({ name, label }) => (
+                <th key={name} scope="col" title={label}>
+                  {name}
+                </th>
+              ))}
+            </tr>
+          </thead>
+          <tbody>
+            {look.first_rows.map((row, line) => (
+              // biome-ignore lint/suspicious/noArrayIndexKey: rows of a file have no other name
+              <tr key={line}>
+                {row.map((cell, at) => (
+                  <td key={look.columns[at]?.name}>{cell}</td>
+                ))}
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </section>
+    </details>
   );
 }

@@ -1,3 +1,9 @@
+/** The file that answers are imported from, as text. */
+export interface OpenedFile {
+  readonly name: string;
+  readonly text: string;
+}
+
 /** The text of a file whose encoding nobody knows: UTF-8, else what its marks or Windows say. */
 export function decoded(bytes: ArrayBuffer): string {
   const [first, second] = new Uint8Array(bytes.slice(0, 2));

@@ -10,16 +10,13 @@ import { keepPreviousData, useMutation, useQuery, useQueryClient } from "@tansta
 import { type JSX, useEffect, useRef, useState } from "react";
 import { useLocation } from "wouter";
 import layout from "../editor/Editor.module.css";
-import { dropDraft, keepDraft, keptDraft } from "../editor/keptDrafts";
-import { LeaveGuard } from "../editor/LeaveGuard";
-import { YamlField } from "../editor/YamlField";
-import { showLine, type YamlText } from "../editor/yamlText";
+import { dropDraft, keepDraft, keptDraft, LeaveGuard } from "../editor/LeaveGuard";
+import { showLine, YamlField, type YamlText } from "../editor/YamlField";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { Problems } from "../pages/Problems";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
-import { EXAMPLE } from "./example";
+import { useTitle } from "../ui/page";
 import classes from "./Instruments.module.css";
 import { TryIt } from "./TryIt";
 
@@ -160,3 +157,48 @@ function InstrumentEditor({ id, title, stored, begin }: InstrumentEditorProps): 
     </div>
   );
 }
+
+/** What a new instrument begins with: small, complete, and ours. */
+const EXAMPLE = `# An instrument: items, what can be answered, and how answers become scores.
+key: my_instrument
+version: 1
+title:
+  en: My questionnaire
+  de: Mein Fragebogen
+languages: [en, de]
+
+provenance:
+  source: Where the wording comes from.
+  licence: Under which licence, as far as you know.
+  verified: What you compared with the source.
+
+stem:
+  en: How much do you agree?
+  de: Wie sehr stimmen Sie zu?
+
+scale:
+  minimum: 1
+  maximum: 5
+  labels:
+    - {en: not at all, de: gar nicht}
+    - {en: completely, de: völlig}
+
+items:
+  - key: calm
+    type: likert
+    text: {en: I felt calm., de: Ich war ruhig.}
+  - key: tense
+    type: likert
+    reverse_keyed: true
+    text: {en: I felt tense., de: Ich war angespannt.}
+
+# Before scoring every number x becomes this; leave it out to take answers as they are.
+recode: x - 3
+
+scores:
+  - key: ease
+    label: {en: Ease, de: Gelassenheit}
+    formula: (calm - tense) / 2
+    minimum: -2
+    maximum: 2
+`;

@@ -11,7 +11,7 @@ import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { instrumentQuery } from "../queries";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import classes from "./Instruments.module.css";
 import { Used } from "./InstrumentsPage";
 import { Items } from "./Items";

@@ -12,7 +12,7 @@ import { useMay } from "../may";
 import { instrumentsQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import classes from "./Instruments.module.css";
 
 export function InstrumentsPage(): JSX.Element {

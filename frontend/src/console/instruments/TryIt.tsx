@@ -6,12 +6,12 @@ import type { Administration, InstrumentPreview } from "@shared/api/types";
 import { number } from "@shared/format";
 import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
 import { answersOf } from "@shared/forms/questions";
+import { formTexts } from "@shared/forms/texts";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
 import { inLanguage } from "@shared/text";
 import { Notice } from "@shared/ui/Notice";
 import { keepPreviousData, useQuery } from "@tanstack/react-query";
 import { type JSX, lazy, Suspense, useMemo, useState } from "react";
-import { useFormTexts } from "../cockpit/formTexts";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Instruments.module.css";
@@ -71,7 +71,7 @@ interface PaperProps extends TryItProps {
 
 function Paper({ preview, yaml, language, draft, onDraft }: PaperProps): JSX.Element {
   const { t } = useTexts();
-  const texts = useFormTexts();
+  const texts = formTexts(t);
   const [done, setDone] = useState(false);
   const [startedAt] = useState(() => new Date());
   // A form that is drawn anew keeps its answers: an edit of the file does not empty the page.

@@ -1,7 +1,7 @@
 /** Bring a study (or its next version) into the server from a YAML file, with every problem shown. */
 import { Button, FileButton, Group, Modal, Stack, Text, Textarea } from "@mantine/core";
 import { studies } from "@shared/api/endpoints";
-import { ApiError, type Problem } from "@shared/api/errors";
+import { ApiError, type Problem } from "@shared/api/request";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
@@ -10,8 +10,7 @@ import { useLocation } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./ImportDialog.module.css";
-import { Problems } from "./Problems";
-import { offsetOfLine } from "./problemPlace";
+import { offsetOfLine, Problems } from "./Problems";
 
 interface ImportDialogProps {
   readonly opened: boolean;

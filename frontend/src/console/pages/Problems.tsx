@@ -1,10 +1,9 @@
 /** Problems of a configuration file: where, what, and what to write instead. */
-import type { Problem } from "@shared/api/errors";
+import type { Problem } from "@shared/api/request";
 import { Notice } from "@shared/ui/Notice";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
 import classes from "./ImportDialog.module.css";
-import { place } from "./problemPlace";
 
 interface ProblemsProps {
   readonly problems: readonly Problem[];
@@ -32,4 +31,18 @@ export function Problems({ problems, onPick }: ProblemsProps): JSX.Element {
       </ul>
     </Notice>
   );
+}
+
+/** `orders.replicates:12:15`: path, line and column as compilers write them. */
+export function place(problem: Problem): string {
+  return [problem.path, problem.line, problem.column]
+    .filter((part) => part !== null && part !== undefined && part !== "")
+    .join(":");
+}
+
+/** Where a line (counted from 1) starts and ends in a text. */
+export function offsetOfLine(text: string, line: number): readonly [number, number] {
+  const lines = text.split("\n");
+  const start = lines.slice(0, line - 1).reduce((sum, part) => sum + part.length + 1, 0);
+  return [start, start + (lines[line - 1]?.length ?? 0)];
 }

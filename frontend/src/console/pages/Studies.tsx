@@ -11,7 +11,7 @@ import { archivedQuery, studiesQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
 import { KINDS } from "../ui/KindFilter";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import classes from "./Studies.module.css";
 
 export function StudiesPage(): JSX.Element {

@@ -1,6 +1,6 @@
 /** What was declared, with the version and the hash that name it. */
 import { Paper, Title } from "@mantine/core";
-import type { Declaration } from "@shared/api/preregistration";
+import type { Declaration } from "@shared/api/analysis";
 import { dateTime } from "@shared/format";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";

@@ -1,10 +1,10 @@
 /** What was done: who is in the test, who is not and by which rule, and the test as declared. */
 import { Paper, Title } from "@mantine/core";
-import type { Preregistration, PrimaryResult } from "@shared/api/preregistration";
+import type { Preregistration, PrimaryResult } from "@shared/api/analysis";
 import { Notice } from "@shared/ui/Notice";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
-import { NumbersTable } from "../ui/NumbersTable";
+import { NumbersTable } from "../ui/tables";
 import classes from "./Preregistration.module.css";
 
 interface DoneProps {

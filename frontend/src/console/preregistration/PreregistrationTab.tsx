@@ -1,14 +1,10 @@
 /** What the study declared before it looked, what was done, and every way in which they differ. */
 import { Button, Group, Paper, Title } from "@mantine/core";
-import {
-  type Deviation,
-  type Preregistration,
-  preregistrations,
-} from "@shared/api/preregistration";
+import { type Deviation, type Preregistration, preregistrations } from "@shared/api/analysis";
 import type { DataKind, StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
-import { useQuery } from "@tanstack/react-query";
+import { queryOptions, useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
@@ -20,7 +16,6 @@ import { Loaded } from "../ui/Loaded";
 import { Declared } from "./Declared";
 import { Done } from "./Done";
 import classes from "./Preregistration.module.css";
-import { preregistrationQuery } from "./queries";
 
 export function PreregistrationTab({ study }: { readonly study: StudyDetail }): JSX.Element {
   const { t } = useTexts();
@@ -136,3 +131,10 @@ function Told({ told }: { readonly told: Deviation }): JSX.Element {
     </li>
   );
 }
+
+/** The read of a study's preregistration, with the key under which it is kept. */
+const preregistrationQuery = (key: string, kind: DataKind) =>
+  queryOptions({
+    queryKey: ["studies", key, "preregistration", kind],
+    queryFn: () => preregistrations.get(key, kind),
+  });

@@ -1,6 +1,6 @@
 /** Everything that happened, in order; it goes along with the time and leads to it. */
 import { number } from "@shared/format";
-import { BLOCK_COLOURS } from "@shared/stage/blocks";
+import { BLOCK_COLOURS } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, useEffect, useRef } from "react";
 import { type Key, useTexts } from "../i18n";

@@ -7,11 +7,21 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { sessionsQuery } from "../queries";
-import { KindBadge } from "../ui/KindBadge";
-import type { Wanted } from "./address";
-import type { Chosen } from "./Player";
-import { isOver, usePhaseName } from "./phaseNames";
+import { isOver, usePhaseName } from "../steps";
+import { KindBadge } from "../ui/badges";
+import type { Chosen, Wanted } from "./address";
 import classes from "./Replay.module.css";
+
+/** The way from the replay to its session. */
+export function BackLink({ id }: { readonly id: string }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Link href={`/sessions/${id}`} className={classes.back ?? ""}>
+      <Icon name="back" size={16} />
+      {t("replay.back")}
+    </Link>
+  );
+}
 
 interface HeadProps {
   readonly session: SessionView;

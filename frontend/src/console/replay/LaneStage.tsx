@@ -1,7 +1,6 @@
 /** One phase in space, with its boxes lighting up as they were touched. */
 import { Center, Loader } from "@mantine/core";
-import type { BlockTones } from "@shared/stage/blocks";
-import { type CameraMode, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
+import { type BlockTones, type CameraMode, LEFT_COLOUR, RIGHT_COLOUR } from "@shared/stage/figure";
 import legend from "@shared/stage/Legend.module.css";
 import { durationOf } from "@shared/stage/motion";
 import { Stage, type StageHandle } from "@shared/stage/Stage";

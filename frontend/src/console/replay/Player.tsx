@@ -1,36 +1,28 @@
 /** One phase, or two side by side, played on one clock. */
-import { Center, Loader } from "@mantine/core";
+import { Center, Checkbox, Loader } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
-import { isApiError } from "@shared/api/errors";
+import { isApiError } from "@shared/api/request";
 import type { SessionView } from "@shared/api/types";
 import type { CameraMode, LookFrom } from "@shared/stage/figure";
 import type { StageHandle } from "@shared/stage/Stage";
 import { usePlayback } from "@shared/stage/usePlayback";
 import { seconds } from "@shared/units";
-import { type JSX, useMemo, useRef, useState } from "react";
+import { type JSX, type ReactNode, useMemo, useRef, useState } from "react";
 import { CameraBar } from "../captures/Viewer";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { usePhaseName } from "../steps";
 import { EmptyState } from "../ui/EmptyState";
-import { addressOf, type PhaseRef, type Wanted } from "./address";
-import { Head } from "./Head";
+import { addressOf, type Chosen, type PhaseRef, type Wanted } from "./address";
+import { BackLink, Head } from "./Head";
 import { jumpFrom } from "./happened";
+import { ReplayKeys, SPEEDS, useReplayKeys } from "./keys";
 import { LaneStage } from "./LaneStage";
-import { Options } from "./Options";
-import { usePhaseName } from "./phaseNames";
 import classes from "./Replay.module.css";
-import { ReplayKeys } from "./ReplayKeys";
-import { BackLink } from "./ReplayPage";
 import { Side } from "./Side";
 import { Tracks } from "./Tracks";
 import { Transport } from "./Transport";
-import { useBeside } from "./useBeside";
-import { type Lane, useLane } from "./useLane";
-import { SPEEDS, useReplayKeys } from "./useReplayKeys";
-
-export interface Chosen extends Wanted {
-  readonly phase: number;
-}
+import { type Lane, useBeside, useLane } from "./useLane";
 
 interface PlayerProps {
   readonly session: SessionView;
@@ -185,4 +177,44 @@ function useStages() {
     },
   });
   return { refs, all };
+}
+
+interface OptionsProps {
+  readonly lanes: readonly Lane[];
+  readonly ghost: boolean;
+  readonly boxes: boolean;
+  readonly onGhost: (ghost: boolean) => void;
+  readonly onBoxes: (boxes: boolean) => void;
+  readonly camera: ReactNode;
+}
+
+/** What is shown on the stage, and from where. */
+function Options(props: OptionsProps): JSX.Element {
+  const { lanes, ghost, boxes, onGhost, onBoxes, camera } = props;
+  const { t } = useTexts();
+  const isFull = lanes.some(({ movement }) => movement?.avatar != null);
+  const hasBoxes = lanes.some(({ replay }) => replay.surfaces.length > 0);
+  return (
+    <div className={classes.options}>
+      {camera}
+      <div className={classes.shown}>
+        {isFull && (
+          <Checkbox
+            size="xs"
+            label={t("replay.ghost")}
+            checked={ghost}
+            onChange={(event) => onGhost(event.currentTarget.checked)}
+          />
+        )}
+        {hasBoxes && (
+          <Checkbox
+            size="xs"
+            label={t("replay.boxes")}
+            checked={boxes}
+            onChange={(event) => onBoxes(event.currentTarget.checked)}
+          />
+        )}
+      </div>
+    </div>
+  );
 }

@@ -1,17 +1,16 @@
 /** Any phase of a session in space, in step with everything that is known of it. */
 import type { SessionView } from "@shared/api/types";
-import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
-import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import { sessionQuery } from "../queries";
+import { isOver } from "../steps";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
+import { useTitle } from "../ui/page";
 import { addressOf, type Wanted, wantedFrom } from "./address";
+import { BackLink } from "./Head";
 import { Player } from "./Player";
-import { isOver } from "./phaseNames";
 import classes from "./Replay.module.css";
 
 export function ReplayPage({ id }: { readonly id: string }): JSX.Element {
@@ -43,16 +42,6 @@ function Found({ session }: { readonly session: SessionView }): JSX.Element {
       wanted={{ ...wanted, phase }}
       onWanted={setWanted}
     />
-  );
-}
-
-export function BackLink({ id }: { readonly id: string }): JSX.Element {
-  const { t } = useTexts();
-  return (
-    <Link href={`/sessions/${id}`} className={classes.back ?? ""}>
-      <Icon name="back" size={16} />
-      {t("replay.back")}
-    </Link>
   );
 }
 

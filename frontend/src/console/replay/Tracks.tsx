@@ -1,12 +1,10 @@
 /** The scrubber, and under it what happened over the whole phase, on the same scale. */
-
-import { BLOCK_COLOURS, type BlockTone } from "@shared/stage/blocks";
+import { BLOCK_COLOURS, type BlockTone } from "@shared/stage/figure";
 import { type Seconds, seconds } from "@shared/units";
 import { type CSSProperties, type JSX, memo, type PointerEvent } from "react";
 import { useTexts } from "../i18n";
-import { toneOf } from "./happened";
+import { isActive, toneOf } from "./happened";
 import classes from "./Replay.module.css";
-import { isActive } from "./times";
 import type { Lane } from "./useLane";
 
 interface TracksProps {

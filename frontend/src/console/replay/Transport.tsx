@@ -1,16 +1,15 @@
 /** Play, jump, speed, and the three times of the moment that is shown. */
 import { ActionIcon, CopyButton, SegmentedControl, Tooltip } from "@mantine/core";
-import { Press } from "@shared/stage/Press";
+import { Press } from "@shared/stage/Transport";
 import type { Playback } from "@shared/stage/usePlayback";
 import { Icon } from "@shared/ui/Icon";
 import { type Seconds, seconds } from "@shared/units";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
-import { jumpFrom } from "./happened";
+import { activeAt, isActive, jumpFrom, wallAt } from "./happened";
+import { SPEEDS } from "./keys";
 import classes from "./Replay.module.css";
-import { activeAt, isActive, wallAt } from "./times";
 import type { Lane } from "./useLane";
-import { SPEEDS } from "./useReplayKeys";
 
 interface TransportProps {
   readonly lane: Lane;

@@ -12,6 +12,11 @@ export interface Wanted {
   readonly beside: PhaseRef | null;
 }
 
+/** What is shown: of what the address may leave open, the phase is chosen. */
+export interface Chosen extends Wanted {
+  readonly phase: number;
+}
+
 /** `?phase=2&t=12.5&with=5`; `with=SESSION:5` for a phase of another session. */
 export function wantedFrom(address: string, session: string): Wanted {
   const query = new URLSearchParams(address.split("?")[1] ?? "");

@@ -1,6 +1,6 @@
 /** What happened in a phase, in order, and what the boxes mean at a moment. */
 import type { Replay, ReplayContact, ReplayMoment } from "@shared/api/replays";
-import type { BlockTone, BlockTones } from "@shared/stage/blocks";
+import type { BlockTone, BlockTones } from "@shared/stage/figure";
 
 interface At {
   readonly key: string;
@@ -17,19 +17,19 @@ export interface Touch extends At {
   readonly end: number;
 }
 
-export interface Done extends At {
+interface Done extends At {
   readonly kind: "done";
   readonly number: number;
   readonly duration: number;
 }
 
-export interface Clock extends At {
+interface Clock extends At {
   readonly kind: "clock";
   readonly what: ReplayMoment["what"];
   readonly cause: string | null;
 }
 
-export interface Note extends At {
+interface Note extends At {
   readonly kind: "note";
   readonly text: string;
   readonly by: string;
@@ -167,4 +167,33 @@ export function jumpFrom(all: readonly At[], time: number, way: -1 | 1): number 
       ? all.find((one) => one.time > time + apart)
       : all.findLast((one) => one.time < time - apart);
   return found?.time ?? null;
+}
+
+// The three times of a moment: the phase's, the active time, and the hour.
+
+/** What the active time shows at a time of the phase; it stands between its stretches. */
+export function activeAt({ active }: Pick<Replay, "active">, time: number): number {
+  let shown = 0;
+  for (const one of active) {
+    if (time < one.begin_s) break;
+    shown = one.begin_active_s + Math.min(time, one.end_s) - one.begin_s;
+  }
+  return shown;
+}
+
+export const isActive = ({ active }: Pick<Replay, "active">, time: number): boolean =>
+  active.some(({ begin_s, end_s }) => begin_s <= time && time < end_s);
+
+/** The moment by the server's clock; null where no run of the headset can be brought onto it. */
+export function wallAt(
+  { runs, time_scale }: Pick<Replay, "runs" | "time_scale">,
+  time: number,
+): Date | null {
+  let found: Date | null = null;
+  for (const run of runs) {
+    if (run.begin_utc === null || (found !== null && time < run.begin_s)) continue;
+    const since = ((time - run.begin_s) / time_scale) * 1000;
+    found = new Date(new Date(run.begin_utc).getTime() + since);
+  }
+  return found;
 }

@@ -1,9 +1,17 @@
 import { decodeMovement, type Replay } from "@shared/api/replays";
 import { describe, expect, it } from "vitest";
 import { addressOf, wantedFrom } from "./address";
-import { errorsAt, largest, overall } from "./errorsAt";
-import { happenings, jumpFrom, latestAt, tonesAt, touches } from "./happened";
-import { activeAt, isActive, wallAt } from "./times";
+import { errorsAt, largest, overall } from "./ErrorMap";
+import {
+  activeAt,
+  happenings,
+  isActive,
+  jumpFrom,
+  latestAt,
+  tonesAt,
+  touches,
+  wallAt,
+} from "./happened";
 
 const contact = (surface: string, begin_s: number, end_s: number, more: object = {}) => ({
   surface,

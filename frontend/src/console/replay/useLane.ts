@@ -1,14 +1,15 @@
 /** One phase on the stage: what happened in it, what moved, and how it is drawn. */
-import type { Replay, ReplayMovement } from "@shared/api/replays";
-import type { Block } from "@shared/stage/blocks";
-import type { Figure } from "@shared/stage/figure";
+import { type Replay, type ReplayMovement, replays } from "@shared/api/replays";
+import type { SessionView } from "@shared/api/types";
+import type { Block, Figure } from "@shared/stage/figure";
 import type { PointMotion } from "@shared/stage/motion";
-import { useQuery } from "@tanstack/react-query";
+import { queryOptions, useQuery } from "@tanstack/react-query";
 import { useMemo } from "react";
 import { AVATAR_MAP, rolesFrom } from "../captures/bodyJoints";
+import { sessionQuery } from "../queries";
+import { isOver, usePhaseName } from "../steps";
 import type { PhaseRef } from "./address";
 import { type Happening, happenings } from "./happened";
-import { movementQuery, replayQuery } from "./queries";
 
 export interface Lane {
   readonly ref: PhaseRef;
@@ -76,4 +77,40 @@ export function useBlocksOf({ replay }: Lane): readonly Block[] {
       })),
     [replay.surfaces],
   );
+}
+
+/** The reads of a replay. Both are of a phase that is over, so they hardly ever change. */
+const replayQuery = ({ session, phase }: PhaseRef) =>
+  queryOptions({
+    queryKey: ["sessions", session, "replay", phase],
+    queryFn: () => replays.get(session, phase),
+    staleTime: 60_000,
+    retry: false,
+  });
+
+const movementQuery = ({ session, phase }: PhaseRef, view: string) =>
+  queryOptions({
+    queryKey: ["sessions", session, "replay", phase, "movement", view],
+    queryFn: () => replays.movement(session, phase),
+    staleTime: Number.POSITIVE_INFINITY,
+    // Some megabytes each: the browser keeps them, too, and asks whether they are the same.
+    gcTime: 60_000,
+    retry: false,
+  });
+
+/** The phase that stands beside, of this session or of another one of the study. */
+export function useBeside(session: SessionView, wanted: PhaseRef | null) {
+  const nameOf = usePhaseName();
+  const isOther = wanted !== null && wanted.session !== session.id;
+  const other = useQuery({ ...sessionQuery(wanted?.session ?? ""), enabled: isOther });
+  const source = isOther ? (other.data ?? null) : session;
+  const phase = source?.phases.find(({ phase_id }) => phase_id === wanted?.phase);
+  const there = phase !== undefined && isOver(phase);
+  const ref = there ? wanted : null;
+  const name = source === null || phase === undefined ? "" : nameOf(source, phase);
+  return {
+    ref,
+    session: source ?? session,
+    label: isOther && source !== null ? `${source.participant_code} · ${name}` : name,
+  };
 }

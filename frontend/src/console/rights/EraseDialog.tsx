@@ -6,7 +6,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useShown } from "../ui/useShown";
+import { useShown } from "../ui/page";
 import { CopyList } from "./CopyList";
 import classes from "./Rights.module.css";
 import { Tombstone } from "./Tombstone";

@@ -1,7 +1,7 @@
 /** What takes how much room, and for how many more sessions there is some. */
 import { Button, Paper, Text, Title } from "@mantine/core";
-import { type StorageRoom, storageRoom } from "@shared/api/housekeeping";
-import { timeOfDay } from "@shared/format";
+import { type StoragePart, type StorageRoom, storageRoom } from "@shared/api/housekeeping";
+import { bytes, timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
@@ -10,14 +10,11 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { Copyable } from "../pages/network/Copyable";
 import { storageQuery } from "../queries";
-import { bytes } from "../ui/bytes";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
-import { DiskBar } from "./DiskBar";
-import { LargestSessions } from "./LargestSessions";
-import { Parts } from "./Parts";
+import { useTitle } from "../ui/page";
+import { diskShares } from "./figures";
 import classes from "./Storage.module.css";
-import { StudyRooms } from "./StudyRooms";
+import { LargestSessions, StudyRooms } from "./StudyRooms";
 
 export function StoragePage(): JSX.Element {
   const { t, language } = useTexts();
@@ -116,5 +113,68 @@ function Room({ room }: { readonly room: StorageRoom }): JSX.Element {
         </Paper>
       </div>
     </div>
+  );
+}
+
+/** The disk as one bar, with a mark where the warning begins. */
+function DiskBar({ room }: { readonly room: StorageRoom }): JSX.Element {
+  const { t, language } = useTexts();
+  const shares = diskShares(room);
+  const size = (value: number): string => bytes(value, language);
+  const percent = (value: number): string => `${(100 * value) / Math.max(1, shares.total)}%`;
+  const limit = room.disk.warn_below_bytes;
+  const told = { own: size(shares.own), other: size(shares.other), free: size(shares.free) };
+  return (
+    <>
+      <p className={`${classes.free} numbers`}>
+        {t("storage.disk.free", { free: told.free, total: size(shares.total) })}
+      </p>
+      <div className={classes.bar} role="img" aria-label={t("storage.disk.bar", told)}>
+        <span className={classes.own} style={{ width: percent(shares.own) }} />
+        <span className={classes.other} style={{ width: percent(shares.other) }} />
+        <span className={classes.mark} style={{ insetInlineEnd: percent(limit) }} />
+      </div>
+      <ul className={`${classes.legend} numbers`}>
+        <li>
+          <span className={classes.own} />
+          {t("storage.disk.own")} {told.own}
+        </li>
+        <li>
+          <span className={classes.other} />
+          {t("storage.disk.other")} {told.other}
+        </li>
+        <li>
+          <span className={classes.markKey} />
+          {t("storage.disk.kept", { limit: size(limit) })}
+        </li>
+      </ul>
+    </>
+  );
+}
+
+/** Each part with its size, longest first, as bars of one scale. */
+function Parts({ parts }: { readonly parts: readonly StoragePart[] }): JSX.Element {
+  const { t, language } = useTexts();
+  const most = Math.max(1, ...parts.map((part) => part.bytes));
+  return (
+    <ul className={classes.parts}>
+      {parts.map((part) => (
+        <li key={part.place}>
+          <div className={classes.partName}>
+            {t(`storage.part.${part.place}`)}
+            <span className={classes.about}>{t(`storage.part.${part.place}.about`)}</span>
+          </div>
+          <div className={`${classes.partSize} numbers`}>
+            {bytes(part.bytes, language)}
+            {typeof part.files === "number" && (
+              <span className={classes.about}>{t("storage.files", { count: part.files })}</span>
+            )}
+          </div>
+          <div className={classes.track} aria-hidden="true">
+            <span className={classes.fill} style={{ width: `${(100 * part.bytes) / most}%` }} />
+          </div>
+        </li>
+      ))}
+    </ul>
   );
 }

@@ -1,11 +1,11 @@
 /** Each study with its size, one session's mean, and how many more fit. */
-import type { StudyRoom } from "@shared/api/housekeeping";
-import { number } from "@shared/format";
+import type { StorageRoom, StudyRoom } from "@shared/api/housekeeping";
+import { bytes, day, number } from "@shared/format";
 import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
-import { bytes } from "../ui/bytes";
-import { roughly } from "./roughly";
+import { KindBadge } from "../ui/badges";
+import { roughly } from "./figures";
 import classes from "./Storage.module.css";
 
 export function StudyRooms({ studies }: { readonly studies: readonly StudyRoom[] }): JSX.Element {
@@ -63,5 +63,42 @@ function StudyRow({ study }: { readonly study: StudyRoom }): JSX.Element {
           : t("storage.study.room.of", { number: number(roughly(room), language, 0) })}
       </td>
     </tr>
+  );
+}
+
+/** The sessions that take the most room. */
+export function LargestSessions({
+  sessions,
+}: {
+  readonly sessions: StorageRoom["sessions"];
+}): JSX.Element {
+  const { t, language } = useTexts();
+  if (sessions.length === 0) return <p className={classes.soft}>{t("storage.sessions.none")}</p>;
+  return (
+    <table className={`${classes.table} numbers`}>
+      <thead>
+        <tr>
+          <th scope="col">{t("storage.session.participant")}</th>
+          <th scope="col">{t("storage.session.kind")}</th>
+          <th scope="col">{t("storage.session.made")}</th>
+          <th scope="col">{t("storage.study.size")}</th>
+        </tr>
+      </thead>
+      <tbody>
+        {sessions.map((session) => (
+          <tr key={session.id}>
+            <td>
+              <Link href={`/sessions/${session.id}`}>{session.participant_code}</Link>
+              <span className={classes.about}>{session.study_key}</span>
+            </td>
+            <td>
+              <KindBadge kind={session.kind} />
+            </td>
+            <td>{day(session.created_at, language)}</td>
+            <td>{bytes(session.bytes, language)}</td>
+          </tr>
+        ))}
+      </tbody>
+    </table>
   );
 }

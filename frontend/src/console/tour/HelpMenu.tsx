@@ -2,19 +2,17 @@
 import { ActionIcon, Menu } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { studies } from "@shared/api/endpoints";
-import { describe } from "@shared/ui/ErrorNotice";
 import { Icon } from "@shared/ui/Icon";
+import { describe } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useHashLocation } from "wouter/use-hash-location";
 import { useErrorTexts } from "../errors";
 import { useTexts } from "../i18n";
 import { studiesQuery, studyQuery } from "../queries";
-import { choose } from "./choose";
 import classes from "./HelpMenu.module.css";
-import { spoken } from "./TryIt";
+import { spoken, useStartTryout } from "./TryIt";
 import { startTour } from "./tourStore";
-import { useStartTryout } from "./useTryout";
 
 export function HelpMenu(): JSX.Element {
   const { t, language } = useTexts();
@@ -80,3 +78,12 @@ export function HelpMenu(): JSX.Element {
 }
 
 const isSession = (address: string): boolean => /^\/sessions\/[^/]+$/.test(address);
+
+/** The study that everybody has, and that needs no preparation. */
+const SHIPPED = "reembodiment-latency";
+
+/** The study whose page is open, else the one that everybody has, else the first. */
+export function choose(address: string, keys: readonly string[]): string | null {
+  const here = /^\/studies\/([^/?]+)/.exec(address)?.[1];
+  return keys.find((key) => key === here) ?? keys.find((key) => key === SHIPPED) ?? keys[0] ?? null;
+}

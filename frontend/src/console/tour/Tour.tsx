@@ -9,8 +9,7 @@ import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useRef } from "react";
 import { useTexts } from "../i18n";
 import classes from "./Tour.module.css";
-import { TOUR_STEPS, type TourStep } from "./tourSteps";
-import { endTour, turnTour, useTourStep } from "./tourStore";
+import { endTour, TOUR_STEPS, type TourStep, turnTour, useTourStep } from "./tourStore";
 import { useAnchor } from "./useAnchor";
 
 export function Tour(): JSX.Element | null {

@@ -1,13 +1,15 @@
 /** One click: a scripted participant goes through the study while one watches. */
 import { Button } from "@mantine/core";
+import { tryouts } from "@shared/api/housekeeping";
 import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
+import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
+import { tryoutQuery } from "../queries";
 import classes from "./Tour.module.css";
-import { useStartTryout } from "./useTryout";
 
 interface TryItProps {
   readonly study: Pick<StudyDetail, "key" | "languages" | "archived_at">;
@@ -40,3 +42,32 @@ export function TryIt({ study }: TryItProps): JSX.Element | null {
 /** The page's language where the study has it. */
 export const spoken = (languages: readonly string[], wanted: string): string =>
   languages.includes(wanted) ? wanted : (languages[0] ?? "en");
+
+// The scripted participant: whether one is here, beginning and stopping it.
+
+/** `enabled`: nobody who may not start one is asked for it. */
+export function useTryout(enabled: boolean) {
+  const query = useQuery({ ...tryoutQuery, enabled });
+  return query.data ?? null;
+}
+
+interface Wish {
+  readonly studyKey: string;
+  readonly language: string;
+}
+
+export function useStartTryout() {
+  const queries = useQueryClient();
+  return useMutation({
+    mutationFn: ({ studyKey, language }: Wish) => tryouts.start(studyKey, language),
+    onSuccess: (started) => queries.setQueryData(tryoutQuery.queryKey, started),
+  });
+}
+
+export function useStopTryout() {
+  const queries = useQueryClient();
+  return useMutation({
+    mutationFn: tryouts.stop,
+    onSuccess: (stopped) => queries.setQueryData(tryoutQuery.queryKey, stopped),
+  });
+}

@@ -13,9 +13,8 @@ import { useHashLocation } from "wouter/use-hash-location";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Tour.module.css";
-import { spoken } from "./TryIt";
+import { spoken, useStartTryout, useStopTryout, useTryout } from "./TryIt";
 import { startTour, useTourStep, wasSeen } from "./tourStore";
-import { useStartTryout, useStopTryout, useTryout } from "./useTryout";
 
 const isOn = ({ state }: Tryout): boolean => state === "starting" || state === "running";
 

@@ -1,6 +1,6 @@
 /** Where something on the page is, followed while the page scrolls, grows and changes under it. */
 import { useEffect, useState } from "react";
-import { anchorOf, type TourStep } from "./tourSteps";
+import { anchorOf, type TourStep } from "./tourStore";
 
 export interface Place {
   readonly top: number;

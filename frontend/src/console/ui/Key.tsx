@@ -1,7 +1,46 @@
+import { Modal } from "@mantine/core";
 import type { JSX } from "react";
+import { useTexts } from "../i18n";
 import classes from "./ui.module.css";
 
 /** A key of the keyboard, as printed on it. */
 export function Key({ name }: { readonly name: string }): JSX.Element {
   return <kbd className={classes.key}>{name}</kbd>;
+}
+
+export interface KeyboardHelpProps {
+  readonly opened: boolean;
+  readonly onClose: () => void;
+}
+
+interface KeyListProps extends KeyboardHelpProps {
+  /** What is done by which keys. */
+  readonly keys: readonly (readonly [names: readonly string[], meaning: string])[];
+  readonly namesClass?: string | undefined;
+}
+
+/** Every key of a page. */
+export function KeyList({ opened, onClose, keys, namesClass }: KeyListProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Modal
+      opened={opened}
+      onClose={onClose}
+      title={t("keys.title")}
+      closeButtonProps={{ "aria-label": t("action.close") }}
+    >
+      <dl className={classes.keys}>
+        {keys.map(([names, meaning]) => (
+          <div key={names.join(" ")} style={{ display: "contents" }}>
+            <dt className={namesClass}>
+              {names.map((name) => (
+                <Key key={name} name={name} />
+              ))}
+            </dt>
+            <dd>{meaning}</dd>
+          </div>
+        ))}
+      </dl>
+    </Modal>
+  );
 }

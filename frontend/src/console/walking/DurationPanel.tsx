@@ -7,8 +7,8 @@ import { Notice } from "@shared/ui/Notice";
 import { type JSX, useMemo, useState } from "react";
 import { useTexts } from "../i18n";
 import { useDependency } from "./dependencyNames";
-import { Synthetic } from "./Synthetic";
 import classes from "./Walking.module.css";
+import { Synthetic } from "./WalkingTable";
 import { type DurationWords, durationFigure } from "./walkingFigures";
 
 interface DurationPanelProps {

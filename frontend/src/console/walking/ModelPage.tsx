@@ -7,17 +7,16 @@ import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useMemo } from "react";
 import { Link, useLocation } from "wouter";
-import { nameOf } from "../captures/nameOf";
+import { nameOf } from "../account";
 import { type Key, useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
-import { useTitle } from "../ui/useTitle";
-import { censusFigure } from "./censusFigure";
+import { useTitle } from "../ui/page";
 import { useParameter } from "./dependencyNames";
-import { FitProgress } from "./FitProgress";
-import { Doing } from "./ModelTable";
+import { Doing, FitProgress } from "./ModelTable";
 import { modelQuery } from "./queries";
-import { Synthetic } from "./Synthetic";
 import classes from "./Walking.module.css";
+import { Synthetic } from "./WalkingTable";
+import { censusFigure } from "./walkingFigures";
 
 export function ModelPage({ id }: { readonly id: string }): JSX.Element {
   const { t } = useTexts();

@@ -1,5 +1,5 @@
 /** The list of models: state, progress, and what can be done with each. */
-import { Button, Table } from "@mantine/core";
+import { Button, Progress, Table } from "@mantine/core";
 import { type ModelListed, walking } from "@shared/api/walking";
 import { number } from "@shared/format";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
@@ -9,11 +9,9 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { DeleteButton } from "./DeleteButton";
-import { FitProgress } from "./FitProgress";
 import { modelsQuery } from "./queries";
-import { Synthetic } from "./Synthetic";
 import classes from "./Walking.module.css";
-import { Made, WalkingTable } from "./WalkingTable";
+import { Made, Synthetic, WalkingTable } from "./WalkingTable";
 
 const COLUMNS = ["title", "state", "on", "by"] as const;
 
@@ -100,5 +98,44 @@ export function Doing({ model, onDeleted = NOTHING }: DoingProps): JSX.Element |
       />
       {act.isError && <Failure error={act.error} />}
     </>
+  );
+}
+
+interface FitProgressProps {
+  readonly model: ModelListed;
+  readonly named?: boolean;
+}
+
+/** How far a fit is. */
+export function FitProgress({ model, named }: FitProgressProps): JSX.Element | null {
+  const { t } = useTexts();
+  if (model.state === "ready" || model.state === "failed") return null;
+  const {
+    stage,
+    maps,
+    maps_total: total,
+  } = model.progress ?? {
+    stage: "waiting" as const,
+    maps: 0,
+    maps_total: 0,
+  };
+  const told =
+    total > 0 && stage !== "blending"
+      ? t("walking.stage.maps", { maps, total })
+      : t(`walking.stage.${stage}`);
+  return (
+    <div role="status">
+      {named === true && <strong>{t("walking.fitting", { title: model.title })}</strong>}
+      <Progress
+        value={total > 0 ? (100 * maps) / total : 0}
+        animated={model.state === "fitting"}
+        color={model.state === "fitting" ? "petrol" : "gray"}
+        aria-label={t("walking.progress", { title: model.title })}
+        my={4}
+      />
+      <span className={classes.sub}>
+        {model.state === "stopped" ? t("walking.state.stopped.at", { maps, total }) : told}
+      </span>
+    </div>
   );
 }

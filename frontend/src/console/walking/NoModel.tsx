@@ -8,7 +8,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { EmptyState } from "../ui/EmptyState";
-import { FitProgress } from "./FitProgress";
+import { FitProgress } from "./ModelTable";
 import { modelsQuery, walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";
 

@@ -7,8 +7,8 @@ import type { Dispatch, JSX } from "react";
 import { useTexts } from "../i18n";
 import type { DrawnPath, PathChange } from "./drawnPath";
 import { SceneDrawing } from "./SceneDrawing";
-import { Synthetic } from "./Synthetic";
 import classes from "./Walking.module.css";
+import { Synthetic } from "./WalkingTable";
 
 interface PathPanelProps {
   readonly scene: Scene;

@@ -9,8 +9,8 @@ import { useTexts } from "../i18n";
 import { Loaded } from "../ui/Loaded";
 import { useParameter } from "./dependencyNames";
 import { sliceQuery } from "./queries";
-import { Synthetic } from "./Synthetic";
 import classes from "./Walking.module.css";
+import { Synthetic } from "./WalkingTable";
 import { sliceFigure } from "./walkingFigures";
 
 interface SlicePanelProps {

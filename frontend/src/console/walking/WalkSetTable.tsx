@@ -7,9 +7,8 @@ import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { DeleteButton } from "./DeleteButton";
 import { walkSetsQuery } from "./queries";
-import { Synthetic } from "./Synthetic";
 import classes from "./Walking.module.css";
-import { Made, WalkingTable } from "./WalkingTable";
+import { Made, Synthetic, WalkingTable } from "./WalkingTable";
 
 const COLUMNS = ["walks", "origin", "lengths", "durations", "by"] as const;
 

@@ -1,10 +1,11 @@
 /** A list of what walking has, in a table; and the cell that tells who made a thing, and when. */
 import { Table } from "@mantine/core";
 import { dateTime } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";
-import { nameOf } from "../captures/nameOf";
+import { nameOf } from "../account";
 import { useTexts } from "../i18n";
-import { ListTable } from "../ui/ListTable";
+import { ListTable } from "../ui/tables";
 import classes from "./Walking.module.css";
 
 type Column = "title" | "state" | "on" | "walks" | "origin" | "lengths" | "durations" | "by";
@@ -39,5 +40,16 @@ export function Made({ at, by }: MadeProps): JSX.Element {
       {dateTime(at, language)}
       <span className={classes.sub}>{nameOf(by)}</span>
     </Table.Td>
+  );
+}
+
+/** Says of walks, models and figures that no person walked them. */
+export function Synthetic(): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <span className={classes.synthetic}>
+      <Icon name="body" size={14} />
+      {t("walking.synthetic")}
+    </span>
   );
 }

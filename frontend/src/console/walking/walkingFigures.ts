@@ -1,6 +1,6 @@
 /** Predicted durations and slices of maps as figures, with a unit on every axis. */
 import { COLORWAY } from "@charts/layout";
-import type { Prediction, Slice } from "@shared/api/walking";
+import type { Prediction, Slice, WalkCensus } from "@shared/api/walking";
 
 interface Figure {
   readonly data: readonly Readonly<Record<string, unknown>>[];
@@ -125,7 +125,7 @@ export function binned(sorted: readonly number[]): {
   return { edges: Array.from({ length: count + 1 }, (_, edge) => low + edge * width), counts };
 }
 
-export interface SliceWords {
+interface SliceWords {
   readonly parameter: (name: string, unit: string) => string;
   readonly suitability: string;
   readonly drawn: string;
@@ -183,3 +183,34 @@ export function sliceFigure(slice: Slice, prediction: Prediction, words: SliceWo
 }
 
 const OUTLINE = { color: "#1a2424", width: 1.2 };
+
+interface CensusWords {
+  readonly length: string;
+  readonly count: string;
+}
+
+/** How many paths are how long. */
+export function censusFigure(census: WalkCensus, words: CensusWords) {
+  const { edges_m: edges, counts } = census;
+  const width = (edges[1] ?? 0.5) - (edges[0] ?? 0);
+  return {
+    data: [
+      {
+        type: "bar",
+        x: counts.map((_, at) => (edges[at] ?? 0) + width / 2),
+        y: counts,
+        width,
+        marker: { color: COLORWAY[0], opacity: 0.75 },
+        hovertemplate: "%{x:.2f} m: %{y}<extra></extra>",
+      },
+    ],
+    layout: {
+      height: 296,
+      margin: { b: 62 },
+      bargap: 0.06,
+      showlegend: false,
+      xaxis: { title: { text: words.length, standoff: 6 } },
+      yaxis: { title: { text: words.count } },
+    },
+  };
+}

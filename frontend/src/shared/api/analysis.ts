@@ -1,4 +1,4 @@
-/** Requests about what came out of a study: its figures, their rows, and its tests. */
+/** Requests about what came out of a study, and what had been declared of it beforehand. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { DataKind } from "./types";
@@ -7,7 +7,6 @@ type Schemas = components["schemas"];
 export type Dashboard = Schemas["DashboardView"];
 export type FigureEntry = Schemas["FigureView"];
 export type FigureGroup = FigureEntry["group"];
-export type FigureFilter = Schemas["FigureFilter"];
 export type FilterChoices = Schemas["FilterChoices"];
 export type Statistics = Schemas["StatisticsView"];
 export type Glance = Schemas["GlanceView"];
@@ -72,4 +71,21 @@ export const analysis = {
     answer<Statistics>(
       server.GET("/api/studies/{key}/statistics", { params: { path: { key }, query: { kind } } }),
     ),
+};
+
+export type Preregistration = Schemas["PreregistrationView"];
+export type Declaration = Schemas["DeclarationView"];
+export type PrimaryResult = Schemas["PrimaryResult"];
+export type Deviation = Schemas["DeviationView"];
+
+/** Requests about what a study declared beforehand. */
+export const preregistrations = {
+  get: (key: string, kind: DataKind) =>
+    answer<Preregistration>(
+      server.GET("/api/studies/{key}/preregistration", {
+        params: { path: { key }, query: { kind } },
+      }),
+    ),
+  reportUrl: (key: string, kind: DataKind, form: "markdown" | "json") =>
+    `/api/studies/${encodeURIComponent(key)}/preregistration/report?kind=${kind}&form=${form}`,
 };

@@ -1,7 +1,6 @@
 /** Requests about captures of movement, and about what becomes of them on avatars. */
 import { decodeMotion, type PointMotion } from "../stage/motion";
-import { errorFromBody, Unreachable } from "./errors";
-import { answer, server } from "./request";
+import { answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];

@@ -1,8 +1,6 @@
 /** Requests about phases that are looked at again: what happened in them, and the movement. */
-import type { PointMotion } from "../stage/motion";
-import { MotionError } from "../stage/motion";
-import { errorFromBody, Unreachable } from "./errors";
-import { answer, server } from "./request";
+import { MotionError, type PointMotion } from "../stage/motion";
+import { answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];

@@ -1,6 +1,5 @@
-/** One way to the server: typed by its own description, every failure one of `errors.ts`. */
+/** One way to the server, typed by its own description; every failure is an ApiError or Unreachable. */
 import createClient from "openapi-fetch";
-import { errorFromBody, Unreachable } from "./errors";
 import type { paths } from "./schema";
 
 export const server = createClient<paths>({ credentials: "same-origin" });
@@ -23,3 +22,72 @@ export async function answer<Body>(call: Promise<Outcome>): Promise<Body> {
   if (!response.ok) throw errorFromBody(response.status, error);
   return data as Body;
 }
+
+// What can go wrong between this page and the server:
+//
+//     Failure
+//     |- ApiError        the server answered and said what is wrong and what to do
+//     `- Unreachable     no answer: the network, or the server is not running
+
+export interface Problem {
+  readonly path?: string | null;
+  readonly line?: number | null;
+  readonly column?: number | null;
+  readonly message: string;
+  readonly value?: unknown;
+  readonly valid?: unknown;
+  readonly remedy?: string | null;
+}
+
+interface ErrorBody {
+  readonly code: string;
+  readonly message: string;
+  readonly value?: unknown;
+  readonly valid?: unknown;
+  readonly remedy?: string | null;
+  readonly details?: readonly Problem[] | null;
+}
+
+export class ApiError extends Error {
+  override readonly name = "ApiError";
+  readonly code: string;
+  readonly remedy: string | null;
+  readonly value: unknown;
+  readonly valid: unknown;
+  readonly details: readonly Problem[];
+
+  constructor(
+    readonly status: number,
+    body: ErrorBody,
+  ) {
+    super(body.message);
+    this.code = body.code;
+    this.remedy = body.remedy ?? null;
+    this.value = body.value;
+    this.valid = body.valid;
+    this.details = body.details ?? [];
+  }
+}
+
+export class Unreachable extends Error {
+  override readonly name = "Unreachable";
+}
+
+/** The error in a response body, or a plain one when a proxy or a crash answered instead. */
+export function errorFromBody(status: number, body: unknown): ApiError {
+  const error = (body as { error?: Partial<ErrorBody> } | null)?.error;
+  if (typeof error?.code === "string" && typeof error.message === "string") {
+    return new ApiError(status, error as ErrorBody);
+  }
+  return new ApiError(status, {
+    code: `http_${status}`,
+    message: `The server answered with status ${status}.`,
+    remedy: "Try again; if it stays, look at the server's log.",
+  });
+}
+
+export const isApiError = (error: unknown, code?: string): error is ApiError =>
+  error instanceof ApiError && (code === undefined || error.code === code);
+
+export const isUnauthorised = (error: unknown): boolean =>
+  error instanceof ApiError && error.status === 401;

@@ -1,6 +1,5 @@
 /** Requests about how people walk: scenes, sets of walks, models and what they answer. */
-import { errorFromBody, Unreachable } from "./errors";
-import { answer, server } from "./request";
+import { answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];

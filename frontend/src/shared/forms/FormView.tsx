@@ -10,15 +10,8 @@ import { Icon } from "../ui/Icon";
 import type { FormDraft } from "./draft";
 import classes from "./FormView.module.css";
 import { QuestionField } from "./QuestionField";
-import type { FormWords } from "./questions";
+import type { FormTexts } from "./texts";
 import { type FilledForm, useFilledForm } from "./useFilledForm";
-
-export interface FormTexts extends FormWords {
-  readonly back: string;
-  readonly next: string;
-  readonly submit: string;
-  readonly page: (number: number, total: number) => string;
-}
 
 interface FormViewProps {
   readonly administration: Administration;

@@ -1,5 +1,3 @@
-import type { ItemTraces } from "./traces";
-
 /** What has been filled in so far: enough to go on after a reload, on the same page. */
 export interface FormDraft {
   /** What was chosen or typed, by item; nothing for what is not answered. */
@@ -12,3 +10,65 @@ export interface FormDraft {
 }
 
 export const EMPTY_DRAFT: FormDraft = { data: {}, page: 0, timings: {}, traces: {} };
+
+/**
+ * How each item was answered: how long it took, and how often the answer was changed afterwards.
+ *
+ * Several items are on a page at once, so nobody can know when an item is read. The usual stand-in:
+ * an item's *turn* begins when its page is shown or when another item of the page is answered,
+ * and its response time ends with its first answer. A typed answer is one answer until another item
+ * is answered or the page is left: its time ends with the last key of the first writing, and each
+ * return to it counts as one change.
+ */
+interface ItemTrace {
+  readonly response_s: number;
+  readonly changes: number;
+}
+
+export type ItemTraces = Readonly<Record<string, ItemTrace>>;
+
+interface Turn {
+  /** The item being answered; null before the first answer on a page. */
+  readonly item: string | null;
+  /** When its turn began, and when it was changed last, on one steadily running clock. */
+  readonly sinceMs: number;
+  readonly lastMs: number;
+  /** Whether it is being answered for the first time. */
+  readonly first: boolean;
+}
+
+interface Answered {
+  readonly item: string;
+  /** Written letter by letter, as opposed to chosen. */
+  readonly typed: boolean;
+}
+
+export const pageShown = (nowMs: number): Turn => ({
+  item: null,
+  sinceMs: nowMs,
+  lastMs: nowMs,
+  first: false,
+});
+
+/** The traces and the turn after the answer to an item has changed. */
+export function answered(
+  traces: ItemTraces,
+  turn: Turn,
+  { item, typed }: Answered,
+  nowMs: number,
+): { readonly traces: ItemTraces; readonly turn: Turn } {
+  const known = traces[item];
+  const same = turn.item === item;
+  const sinceMs = same ? turn.sinceMs : turn.lastMs;
+  const writesOn = same && typed && known !== undefined;
+  const first = writesOn ? turn.first : known === undefined;
+  const response_s = first || known === undefined ? seconds(nowMs - sinceMs) : known.response_s;
+  const before = known?.changes ?? 0;
+  const changes = known === undefined || writesOn ? before : before + 1;
+  return {
+    traces: { ...traces, [item]: { response_s, changes } },
+    turn: { item, sinceMs, lastMs: nowMs, first },
+  };
+}
+
+const seconds = (ms: number): number => Math.max(0, Math.round(ms)) / 1000;

@@ -1,8 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Instrument } from "../api/types";
 import { administration, instrument, words } from "./example";
-import { firstProblem, problemOf } from "./problems";
-import { answersOf, type Question, questionPages } from "./questions";
+import { answersOf, firstProblem, problemOf, type Question, questionPages } from "./questions";
 
 const options = { language: "en", words, mayOmit: false };
 const questions = (changed = {}, of = administration): readonly Question[] =>

@@ -17,7 +17,7 @@ export interface FormWords {
   readonly atMost: (high: number, unit: string) => string;
 }
 
-export interface FormOptions {
+interface FormOptions {
   readonly language: string;
   readonly words: FormWords;
   /** The operator may leave out what the participant did not answer. */
@@ -142,7 +142,7 @@ function numberField(item: Item, words: FormWords): Omit<NumberField, keyof Aske
 const YES = "yes";
 const NO = "no";
 
-export type Data = Readonly<Record<string, unknown>>;
+type Data = Readonly<Record<string, unknown>>;
 
 /** Every item's answer by its key; what was left out is null, which is not the same as zero. */
 export function answersOf(instrument: Instrument, data: Data): Readonly<Record<string, Answer>> {
@@ -157,4 +157,33 @@ function answerOf(item: Item, value: unknown): Answer {
   if (item.type === "text" || item.type === "choice") return String(value);
   const parsed = typeof value === "number" ? value : Number(value);
   return Number.isFinite(parsed) ? parsed : null;
+}
+
+// What is wrong with an answer, in the participant's words; the server looks again at all of them.
+
+/** Why the form cannot go on with this value; null where it can. */
+export function problemOf(question: Question, value: unknown, words: FormWords): string | null {
+  const missing = value === undefined || value === null || String(value).trim() === "";
+  if (missing) return question.required ? words.required : null;
+  return question.kind === "number" ? numberProblem(question, Number(value), words) : null;
+}
+
+function numberProblem(
+  { whole, low, high, unit }: NumberField,
+  value: number,
+  words: FormWords,
+): string | null {
+  if (Number.isNaN(value)) return words.required;
+  if (low !== null && value < low) return words.atLeast(low, unit);
+  if (high !== null && value > high) return words.atMost(high, unit);
+  return whole && !Number.isInteger(value) ? words.whole : null;
+}
+
+/** The first question of those that cannot go on. */
+export function firstProblem(
+  questions: readonly Question[],
+  data: Data,
+  words: FormWords,
+): Question | undefined {
+  return questions.find((question) => problemOf(question, data[question.key], words) !== null);
 }

@@ -1,10 +1,15 @@
 /** A form while it is filled in: its pages, its answers with their times, what is still missing. */
 import { useMemo, useRef, useState } from "react";
 import type { Administration, Answer } from "../api/types";
-import type { FormDraft } from "./draft";
-import { firstProblem, problemOf } from "./problems";
-import { answersOf, type FormWords, type Question, questionPages } from "./questions";
-import { answered, pageShown } from "./traces";
+import { answered, type FormDraft, pageShown } from "./draft";
+import {
+  answersOf,
+  type FormWords,
+  firstProblem,
+  problemOf,
+  type Question,
+  questionPages,
+} from "./questions";
 
 export interface FilledFormOptions {
   readonly administration: Administration;

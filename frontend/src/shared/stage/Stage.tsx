@@ -8,13 +8,18 @@ import { Center, Loader, useComputedColorScheme } from "@mantine/core";
 import { type JSX, type Ref, useEffect, useImperativeHandle, useRef, useState } from "react";
 import { Notice } from "../ui/Notice";
 import type { Seconds } from "../units";
-import type { Block, BlockTones } from "./blocks";
-import { type CameraMode, type Figure, type LookFrom, paletteOf } from "./figure";
-import { type Mounted, mount } from "./mount";
-import type { Pointed } from "./pointed";
+import {
+  type Block,
+  type BlockTones,
+  type CameraMode,
+  type Figure,
+  type LookFrom,
+  paletteOf,
+} from "./figure";
 import { SideView } from "./SideView";
 import classes from "./Stage.module.css";
-import type { Stage3d } from "./scene";
+import type { Pointed } from "./scene";
+import { useDrawing } from "./useDrawing";
 
 export interface StageTexts {
   readonly loading: string;
@@ -48,8 +53,6 @@ const NO_BLOCKS: readonly Block[] = [];
 const NOBODY: readonly Figure[] = [];
 const ALL_PLAIN: BlockTones = new Map();
 
-type Way = "loading" | "space" | "flat";
-
 export function Stage(props: StageProps): JSX.Element {
   const { figures, time, mode, label, texts, handle } = props;
   const { blocks = NO_BLOCKS, beside = NOBODY, tones = ALL_PLAIN } = props;
@@ -57,8 +60,8 @@ export function Stage(props: StageProps): JSX.Element {
   const { way, stage, step } = useStage3d(root, { figures, time, mode, blocks, beside, tones });
   const [pointed, setPointed] = useState<Pointed | null>(null);
   useImperativeHandle(handle, () => ({
-    look: (from) => stage.current?.look(from),
-    zoom: (factor) => stage.current?.zoom(factor),
+    look: (from) => stage?.look(from),
+    zoom: (factor) => stage?.zoom(factor),
   }));
   if (way === "flat") {
     return (
@@ -80,7 +83,7 @@ export function Stage(props: StageProps): JSX.Element {
         aria-label={label}
         onPointerMove={(event) => {
           const { left, top } = event.currentTarget.getBoundingClientRect();
-          const near = stage.current?.nearest(event.clientX - left, event.clientY - top) ?? null;
+          const near = stage?.nearest(event.clientX - left, event.clientY - top) ?? null;
           setPointed((before) => (before?.name === near?.name && near === null ? before : near));
         }}
         onPointerLeave={() => setPointed(null)}
@@ -111,60 +114,26 @@ interface Shown {
 
 function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: Shown) {
   const scheme = useComputedColorScheme("light");
-  const stage = useRef<Stage3d | null>(null);
-  const { figures, blocks, beside } = shown;
-  const newest = useRef(shown);
-  newest.current = shown;
-  const [way, setWay] = useState<Way>("loading");
+  const { way, drawing: stage } = useDrawing(root, loadStage);
+  const { figures, blocks, beside, tones, mode, time } = shown;
+  const newest = useRef(tones);
+  newest.current = tones;
   const [step, setStep] = useState(1);
-  useEffect(() => {
-    const element = root.current;
-    if (element === null) return;
-    let gone = false;
-    let tidy = () => {};
-    void begin(element, () => gone).then((begun) => {
-      if (gone) return begun?.tidy();
-      if (begun === null) return setWay("flat");
-      tidy = begun.tidy;
-      stage.current = begun.drawing;
-      const now = newest.current;
-      begun.drawing.setFigures(now.figures, paletteOf(element), now);
-      begun.drawing.light(now.tones);
-      setStep(begun.drawing.step);
-      begun.drawing.setMode(newest.current.mode);
-      begun.drawing.show(newest.current.time);
-      setWay("space");
-    });
-    return () => {
-      gone = true;
-      stage.current = null;
-      tidy();
-      setWay("loading");
-    };
-  }, [root]);
+  // First the moment: figures that come to a new floor are looked at as they stand then.
+  useEffect(() => stage?.setMode(mode), [stage, mode]);
+  useEffect(() => stage?.show(time), [stage, time]);
   // The appearance is asked for: another one has other colours.
   useEffect(() => {
-    if (stage.current === null || root.current === null || scheme === undefined) return;
-    stage.current.setFigures(figures, paletteOf(root.current), { blocks, beside });
-    stage.current.light(newest.current.tones);
-    setStep(stage.current.step);
-  }, [root, figures, blocks, beside, scheme]);
-  useEffect(() => stage.current?.light(shown.tones), [shown.tones]);
-  useEffect(() => stage.current?.show(shown.time), [shown.time]);
-  useEffect(() => stage.current?.setMode(shown.mode), [shown.mode]);
+    if (stage === null || root.current === null || scheme === undefined) return;
+    stage.setFigures(figures, paletteOf(root.current), { blocks, beside });
+    stage.light(newest.current);
+    setStep(stage.step);
+  }, [root, stage, figures, blocks, beside, scheme]);
+  useEffect(() => stage?.light(tones), [stage, tones]);
   return { way, stage, step };
 }
 
-/** A stage on a canvas of its own; null where the browser has no WebGL. */
-async function begin(
-  element: HTMLElement,
-  isGone: () => boolean,
-): Promise<Mounted<Stage3d> | null> {
+async function loadStage() {
   const { Stage3d } = await import("./scene");
-  if (isGone()) return null;
-  return mount(element, (canvas) => {
-    return new Stage3d(canvas, (frame) => {
-      canvas.dataset.frame = String(frame);
-    });
-  });
+  return (canvas: HTMLCanvasElement) => new Stage3d(canvas);
 }

@@ -1,9 +1,9 @@
 /** The controls of a movement: play, step, speed, loop, and a scrubber with its gaps beneath. */
-import { SegmentedControl, Switch } from "@mantine/core";
+import { ActionIcon, SegmentedControl, Switch, Tooltip } from "@mantine/core";
 import { type JSX, useEffect, useMemo } from "react";
-import { gapStretches, unseenNames } from "./gaps";
+import { Icon } from "../ui/Icon";
 import { durationOf, frameAt, type PointMotion, recordedFrame, timeOf } from "./motion";
-import { Press } from "./Press";
+import { gapStretches, unseenNames } from "./placing";
 import classes from "./Transport.module.css";
 import { type Playback, SPEEDS } from "./usePlayback";
 
@@ -169,3 +169,26 @@ function useTransportKeys({ toggle, step }: Keys): void {
 const TYPED = 'textarea, select, [contenteditable="true"], [role="dialog"], [role="combobox"]';
 const TAKES_SPACE = `input:not([type="range"]), button, a, summary, [role="option"], ${TYPED}`;
 const TAKES_ARROWS = `input, [role="tab"], [role="radio"], [role="option"], ${TYPED}`;
+
+interface PressProps {
+  readonly icon: "back" | "forward" | "play" | "pause";
+  readonly name: string;
+  readonly filled?: boolean;
+  readonly onClick: () => void;
+}
+
+/** A button of a transport: an icon with its name beside it. */
+export function Press({ icon, name, filled = false, onClick }: PressProps): JSX.Element {
+  return (
+    <Tooltip label={name}>
+      <ActionIcon
+        size="lg"
+        variant={filled ? "filled" : "default"}
+        aria-label={name}
+        onClick={onClick}
+      >
+        <Icon name={icon} size={18} />
+      </ActionIcon>
+    </Tooltip>
+  );
+}

@@ -8,8 +8,13 @@ import {
   Mesh,
   MeshLambertMaterial,
 } from "three";
-import { BLOCK_COLOURS, type Block, type BlockTone, type BlockTones } from "./blocks";
-import type { StagePalette } from "./figure";
+import {
+  BLOCK_COLOURS,
+  type Block,
+  type BlockTone,
+  type BlockTones,
+  type StagePalette,
+} from "./figure";
 
 /** How much is seen of a block through another. */
 const OPACITY = { wall: 0.1, solid: 0.5, glowing: 0.82 } as const;

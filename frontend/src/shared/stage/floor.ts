@@ -1,6 +1,5 @@
 /** How far the floor goes and how it is divided, so that lengths can be read off it. */
-import type { Block } from "./blocks";
-import type { Figure } from "./figure";
+import type { Block, Figure } from "./figure";
 import { type Box, boxOf } from "./motion";
 
 export interface FloorPlan {

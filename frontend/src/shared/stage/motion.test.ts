@@ -1,7 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { seconds } from "../units";
 import { floorPlan, stepFor } from "./floor";
-import { gapStretches, hasGaps, seenFrames, unseenNames } from "./gaps";
 import {
   boxOf,
   decodeMotion,
@@ -12,7 +11,7 @@ import {
   recordedFrame,
   timeOf,
 } from "./motion";
-import { placing } from "./placing";
+import { gapStretches, hasGaps, placing, seenFrames, unseenNames } from "./placing";
 import { advanced } from "./usePlayback";
 
 const HEADER = {

@@ -1,6 +1,6 @@
 /** From where a stage is looked at, and how far away that must be. */
 import { type PerspectiveCamera, Vector3 } from "three";
-import type { LookFrom } from "./figure";
+import { type Figure, facingOf, type LookFrom } from "./figure";
 import type { FloorPlan } from "./floor";
 
 /** The direction from the middle to the camera, of length 1; `facing` is where the body faces. */
@@ -60,4 +60,28 @@ function cornersOf({ box, step }: FloorPlan): Vector3[] {
       zs.map((z) => new Vector3(x, y, z)),
     ),
   );
+}
+
+/** How far ahead eyes look at least, of how far they look down. */
+const LEAST_AHEAD = 0.55;
+
+/** Look out of the eyes of a figure at a place, or ahead where there is none; nothing happens where the body is not known. */
+export function lookOut(
+  camera: PerspectiveCamera,
+  figure: Figure,
+  placed: Float32Array,
+  place: readonly [x: number, y: number, z: number] | null,
+): void {
+  const head = figure.roles?.head ?? null;
+  const facing = facingOf(figure, placed);
+  if (head === null || facing === null) return;
+  const [x = 0, y = 0, z = 0] = placed.subarray(3 * head, 3 * head + 3);
+  const [fx, fz] = facing;
+  camera.position.set(x + 0.12 * fx, y + 0.08, z + 0.12 * fz);
+  // A little downwards, as one looks when walking.
+  const [px, py, pz] = place ?? [x + fx, y - 0.4, z + fz];
+  // Never straight down: what is ahead stays at the top of the picture, and the own feet in it.
+  const ahead = (px - x) * fx + (pz - z) * fz;
+  const more = Math.max(0, LEAST_AHEAD * (y - py) - ahead);
+  camera.lookAt(px + more * fx, py, pz + more * fz);
 }

@@ -6,7 +6,7 @@ import type { i18n } from "i18next";
 import { type JSX, type ReactNode, StrictMode, useEffect } from "react";
 import { createRoot } from "react-dom/client";
 import { I18nextProvider } from "react-i18next";
-import { ApiError } from "../api/errors";
+import { ApiError } from "../api/request";
 import { theme } from "../theme/theme";
 import "@mantine/core/styles.css";
 import "@mantine/notifications/styles.css";

@@ -8,7 +8,7 @@
  *     superseded   the experimenter has recorded this form already: the tablet forgets it
  *     refused      the answers do not fit: given back to be mended
  */
-import { ApiError } from "@shared/api/errors";
+import { ApiError } from "@shared/api/request";
 import type { Receipt, Submission } from "@shared/api/types";
 import type { DraftStore } from "./store";
 

@@ -1,5 +1,5 @@
 import "fake-indexeddb/auto";
-import { ApiError, Unreachable } from "@shared/api/errors";
+import { ApiError, Unreachable } from "@shared/api/request";
 import type { Receipt, Submission, TabletState } from "@shared/api/types";
 import { uuid } from "@shared/uuid";
 import { openDB } from "idb";

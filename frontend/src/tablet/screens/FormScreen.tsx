@@ -2,12 +2,12 @@
 import { Button, Center, Loader } from "@mantine/core";
 import type { Administration, TabletState } from "@shared/api/types";
 import { FormView } from "@shared/forms/FormView";
+import { formTexts } from "@shared/forms/texts";
 import { Notice } from "@shared/ui/Notice";
 import type { JSX } from "react";
-import { type FormPhase, useKeptForm } from "../drafts/useKeptForm";
+import { type FormPhase, useKeptForm } from "../drafts/useKept";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useFormTexts } from "./formTexts";
 import classes from "./screens.module.css";
 
 interface FormScreenProps {
@@ -17,7 +17,8 @@ interface FormScreenProps {
 }
 
 export function FormScreen({ state, administration, refresh }: FormScreenProps): JSX.Element {
-  const texts = useFormTexts();
+  const { t } = useTexts();
+  const texts = formTexts(t);
   const form = useKeptForm(state.session_id, administration, state.language, refresh);
   const { phase } = form;
   if (phase.name !== "filling") return <Between phase={phase} again={form.again} />;

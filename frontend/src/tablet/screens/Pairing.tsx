@@ -1,13 +1,13 @@
 /** The first screen: a code, by keys large enough for a thumb, by keyboard, or by the QR link. */
 import { Button, Loader, Text, Title } from "@mantine/core";
-import { Unreachable } from "@shared/api/errors";
+import { Unreachable } from "@shared/api/request";
 import { Icon } from "@shared/ui/Icon";
 import { Mark } from "@shared/ui/Mark";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
-import { CODE_LENGTH, codeCharacters, writtenCode } from "../code";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { CODE_LENGTH, codeCharacters, writtenCode } from "../pairing";
 import classes from "./Pairing.module.css";
 
 const ROWS = ["1234567890", "QWERTYUIOP", "ASDFGHJKL", "ZXCVBNM"] as const;

@@ -9,8 +9,7 @@ import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { STATE_KEY } from "../useTabletState";
-import { Prose } from "./Prose";
-import { ScrollHint } from "./ScrollHint";
+import { Prose, ScrollHint } from "./Prose";
 import classes from "./screens.module.css";
 
 interface ReadingProps {

@@ -1,8 +1,7 @@
 import { describe, expect, it } from "vitest";
-import { testBed } from "./testing/bed";
 import { standing } from "./testing/frames";
-import { MemoryBlocks } from "./testing/memoryBlocks";
-import { eventually, produce, seqs } from "./testing/rig";
+import { MemoryBlocks } from "./testing/journals";
+import { eventually, produce, seqs, testBed } from "./testing/rig";
 import { batchBytes } from "./wire/batch";
 
 const bed = testBed();

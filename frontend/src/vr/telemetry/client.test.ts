@@ -1,9 +1,8 @@
 import { describe, expect, it } from "vitest";
 import type { Level, Status } from "./client";
-import { testBed } from "./testing/bed";
 import { FakeServer, stateOf } from "./testing/fakeServer";
 import { standing } from "./testing/frames";
-import { MemoryBlocks } from "./testing/memoryBlocks";
+import { MemoryBlocks } from "./testing/journals";
 import {
   eventually,
   MATERIALISED,
@@ -11,6 +10,7 @@ import {
   produce,
   seqs,
   startedClient,
+  testBed,
 } from "./testing/rig";
 import { batchBytes } from "./wire/batch";
 

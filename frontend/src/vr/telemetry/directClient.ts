@@ -14,14 +14,13 @@ import { CLOSED, type Failure, TelemetryError } from "./failure";
 import type { Entry } from "./journal/entries";
 import type { Journal } from "./journal/journal";
 import type { Limits } from "./limits";
-import { Waiters } from "./waiters";
 import { PROTOCOL_VERSION, REPORT_STREAM } from "./wire/basis";
 import { encodeBatch, type Frames, MalformedBatch, type StreamName } from "./wire/batch";
 import { type ReportBody, textOf } from "./wire/fromClient";
 import type { HeadsetState, Welcome } from "./wire/fromServer";
 
 /** What the client stands on; tests put their own in. */
-export interface Ground {
+interface Ground {
   readonly journal: Journal;
   readonly limits: Limits;
   /** The client's monotonic clock, s. */
@@ -247,3 +246,32 @@ const foreignJournal = (held: string, wanted: string): Failure => ({
   message: `the journal holds what session ${held} has not delivered, and cannot take session ${wanted}`,
   remedy: "Pair this headset with that session once more, or use another storageKey for this one.",
 });
+
+interface Waiter {
+  readonly isDone: () => boolean;
+  readonly resolve: () => void;
+  readonly reject: (error: TelemetryError) => void;
+}
+
+/** Those who wait until something holds. */
+class Waiters {
+  #waiting: readonly Waiter[] = [];
+
+  async until(isDone: () => boolean): Promise<void> {
+    if (isDone()) return;
+    await new Promise<void>((resolve, reject) => {
+      this.#waiting = [...this.#waiting, { isDone, resolve, reject }];
+    });
+  }
+
+  /** Something has changed. With a failure nothing will come of the waiting any more. */
+  look(failure: Failure | null): void {
+    const over = this.#waiting.filter((one) => failure !== null || one.isDone());
+    if (over.length === 0) return;
+    this.#waiting = this.#waiting.filter((one) => !over.includes(one));
+    for (const one of over) {
+      if (one.isDone() || failure === null) one.resolve();
+      else one.reject(new TelemetryError(failure));
+    }
+  }
+}

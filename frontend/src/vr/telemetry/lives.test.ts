@@ -1,8 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { DirectClient } from "./directClient";
-import { testBed } from "./testing/bed";
-import { MemoryBlocks } from "./testing/memoryBlocks";
-import { eventually, openedClient, produce, seqs, startedClient } from "./testing/rig";
+import { MemoryBlocks } from "./testing/journals";
+import { eventually, openedClient, produce, seqs, startedClient, testBed } from "./testing/rig";
 
 const bed = testBed();
 

@@ -4,8 +4,6 @@ import { DirectClient } from "./directClient";
 import { TelemetryError } from "./failure";
 import { deleteJournal, IndexedDbBlocks } from "./journal/indexedDb";
 import { Journal } from "./journal/journal";
-import { takeLock } from "./journal/lock";
-import { storageRoom } from "./journal/room";
 import { DEFAULT_LIMITS } from "./limits";
 
 /** What cannot be sent to a worker. */
@@ -74,3 +72,32 @@ const inUse = (storageKey: string): TelemetryError =>
     message: `another page has the journal ${storageKey} open`,
     remedy: "Close the other page; two headsets in one browser need two storageKeys.",
   });
+
+// One page at a time may use a journal; the browser takes the lock from a page that dies.
+
+/** Wait for the lock `name`, at most `timeoutS`; returns what lets go of it, null if it was in vain. */
+export async function takeLock(
+  name: string,
+  timeoutS: number,
+  locks: LockManager | undefined = globalThis.navigator?.locks,
+): Promise<(() => void) | null> {
+  // Browsers hide locks from pages without https; there two pages have to be kept apart by hand.
+  if (locks === undefined) return () => undefined;
+  return new Promise((resolve, reject) => {
+    const held = () => new Promise<void>((release) => resolve(release));
+    locks.request(name, { signal: AbortSignal.timeout(timeoutS * 1000) }, held).catch((error) => {
+      if (error instanceof DOMException && /^(Timeout|Abort)Error$/.test(error.name)) resolve(null);
+      else reject(error);
+    });
+  });
+}
+
+/** Bytes that the browser would still store for this site; Infinity where it does not tell. */
+async function storageRoom(storage = globalThis.navigator?.storage): Promise<number> {
+  try {
+    const { quota, usage } = await storage.estimate();
+    return quota === undefined ? Number.POSITIVE_INFINITY : quota - (usage ?? 0);
+  } catch {
+    return Number.POSITIVE_INFINITY;
+  }
+}

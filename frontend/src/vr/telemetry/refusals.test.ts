@@ -1,7 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { testBed } from "./testing/bed";
 import { standing } from "./testing/frames";
-import { eventually, produce, startedClient } from "./testing/rig";
+import { eventually, produce, startedClient, testBed } from "./testing/rig";
 
 const bed = testBed();
 

@@ -4,7 +4,7 @@ import type { FromWorker, Port, ToWorker } from "./port";
 import { serveTelemetry } from "./service";
 import { FakeServer, stateOf } from "./testing/fakeServer";
 import { standing } from "./testing/frames";
-import { MemoryBlocks } from "./testing/memoryBlocks";
+import { MemoryBlocks } from "./testing/journals";
 import { eventually, startedClient } from "./testing/rig";
 import { WorkerClient } from "./workerClient";
 

@@ -1,15 +1,15 @@
 /** The movement, live: avatar and participant among the boxes, which light up when touched. */
 import { Button, Loader, SegmentedControl } from "@mantine/core";
 import { useLocalStorage } from "@mantine/hooks";
+import type { PoseTouch } from "@shared/api/poses";
 import type { SessionView } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useRef } from "react";
-import { useTexts } from "../../i18n";
+import { type Key, useTexts } from "../../i18n";
 import cockpit from "../Cockpit.module.css";
-import type { TelemetryStore } from "../telemetryStore";
-import { isBusy } from "../useKeys";
+import { isBusy } from "../session/keys";
+import type { TelemetryStore } from "../session/telemetryStore";
 import { FULL_SCALE_DEG, LEGEND } from "./heat";
-import { LastTouch } from "./LastTouch";
 import classes from "./Live3d.module.css";
 import { type Live, useLiveScene } from "./useLiveScene";
 import { VIEW_KEYS, VIEWS, type View } from "./views";
@@ -176,3 +176,32 @@ function useViewKeys(isOn: boolean, setView: (view: View) => void): void {
     return () => document.removeEventListener("keydown", onKey);
   }, [isOn]);
 }
+
+/** What the boxes say in colours, in words: the last touch and what it was judged to be. */
+function LastTouch({ touch }: { readonly touch: PoseTouch | null }): JSX.Element {
+  const { t } = useTexts();
+  if (touch === null) return <span className={classes.last}>{t("live3d.last.none")}</span>;
+  if (touch.kind === "completion") {
+    return <span className={classes.last}>{t("live3d.completed")}</span>;
+  }
+  const box = touch.surface?.split("/")[1] ?? "";
+  const told = t("live3d.touch", {
+    part: (touch.part ?? "").replace(/([a-z])([A-Z])/g, "$1 $2"),
+    surface: t(`live3d.surface.${touch.kind}`, { box }),
+    effect: t(EFFECTS[touch.effect] ?? "live3d.effect.none"),
+  });
+  return (
+    <span className={classes.last}>
+      {t("live3d.last")} <b>{told}</b>
+    </span>
+  );
+}
+
+const EFFECTS: Readonly<Record<string, Key>> = {
+  green: "live3d.effect.green",
+  target: "live3d.effect.target",
+  side: "live3d.effect.side",
+  out_of_order: "live3d.effect.out_of_order",
+  wrong_part: "live3d.effect.wrong_part",
+  early: "live3d.effect.early",
+};

@@ -1,6 +1,6 @@
 /** Which boxes are lit, from the touches that came: green stays until the task is done. */
 import type { PoseTouch } from "@shared/api/poses";
-import type { BlockTone, BlockTones } from "@shared/stage/blocks";
+import type { BlockTone, BlockTones } from "@shared/stage/figure";
 
 /** How long a touch that does not stay is seen. */
 export const FLASH_MS = 900;

@@ -1,25 +1,15 @@
 /**
- * The live scene: the newest poses among the boxes of the task. Drawn once an animation frame at
- * most, and only after something has changed. This module brings three.js with it: import it lazily.
+ * The live scene: the newest poses among the boxes of the task. This module brings three.js with
+ * it: import it lazily.
  */
 import type { PoseSetup, PoseStream } from "@shared/api/poses";
-import type { BlockTones } from "@shared/stage/blocks";
-import { Blocks3d } from "@shared/stage/blocks3d";
 import { Body3d } from "@shared/stage/body3d";
-import type { Figure, StagePalette } from "@shared/stage/figure";
-import { disposeFloor, makeFloor } from "@shared/stage/floor3d";
+import type { BodyRoles, Figure, StagePalette } from "@shared/stage/figure";
+import { Space3d } from "@shared/stage/space3d";
 import { seconds } from "@shared/units";
-import {
-  AmbientLight,
-  DirectionalLight,
-  type Group,
-  PerspectiveCamera,
-  Scene,
-  WebGLRenderer,
-} from "three";
+import { PerspectiveCamera } from "three";
 import { heatColour } from "./heat";
 import { makePlaced, type Placed, place, restValues } from "./kinematics";
-import { rolesOf } from "./roles";
 import { aim, type View } from "./views";
 
 const STREAMS: readonly PoseStream[] = ["actual", "target"];
@@ -33,53 +23,36 @@ interface Player {
   came: boolean;
 }
 
-export class LiveScene {
-  readonly #renderer: WebGLRenderer;
-  readonly #scene = new Scene();
-  readonly #camera = new PerspectiveCamera(45, 1, 0.08, 60);
-  #players = new Map<PoseStream, Player>();
-  #blocks: Blocks3d | null = null;
-  #floor: Group | null = null;
+export class LiveScene extends Space3d {
+  /** Called after every picture. */
+  onDrawn = (): void => {};
+  #players: ReadonlyMap<PoseStream, Player> = new Map();
   #setup: PoseSetup | null = null;
   #view: View = "third";
-  #asked = 0;
 
-  /** Throws where the browser has no WebGL. `onDrawn` is called after every picture. */
-  constructor(
-    canvas: HTMLCanvasElement,
-    private readonly onDrawn: () => void,
-  ) {
-    this.#renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
-    const sun = new DirectionalLight("#ffffff", 2.1);
-    sun.position.set(2, 6, 3);
-    this.#scene.add(new AmbientLight("#ffffff", 1.5), sun);
+  /** Throws where the browser has no WebGL. */
+  constructor(canvas: HTMLCanvasElement) {
+    super(new PerspectiveCamera(45, 1, 0.08, 60), { canvas, alpha: true });
   }
 
   /** Make bodies and boxes anew; poses that were shown stay where they are. */
   prepare(setup: PoseSetup, palette: StagePalette): void {
-    const before = this.#players;
-    this.#clear();
     this.#setup = setup;
-    for (const stream of STREAMS) {
-      if (setup.blinded && stream === "actual") continue;
-      const known = before.get(stream);
-      const player = makePlayer(setup, stream, palette, known);
-      this.#players.set(stream, player);
-      this.#scene.add(player.body.group);
-    }
-    this.#blocks = new Blocks3d(
-      setup.surfaces.map(({ key, kind, center_m, half_size_m }) => ({
-        key,
-        wall: kind === "side",
-        center: center_m,
-        halfSize: half_size_m,
-      })),
-      palette,
+    this.#players = new Map(
+      STREAMS.filter((stream) => !(setup.blinded && stream === "actual")).map((stream) => [
+        stream,
+        makePlayer(setup, stream, palette, this.#players.get(stream)),
+      ]),
     );
-    const plan = { ...FLOOR, box: { min: [-2, 0, -3], max: [2, 2, 1] } } as const;
-    this.#floor = makeFloor(plan, palette);
-    this.#scene.add(this.#blocks.group, this.#floor);
+    this.standBodies([...this.#players.values()].map(({ body }) => body));
+    const blocks = setup.surfaces.map(({ key, kind, center_m, half_size_m }) => ({
+      key,
+      wall: kind === "side",
+      center: center_m,
+      halfSize: half_size_m,
+    }));
+    this.standBlocks(blocks, palette);
+    this.layFloor({ ...FLOOR, box: { min: [-2, 0, -3], max: [2, 2, 1] } }, palette);
     this.#moved();
   }
 
@@ -87,7 +60,7 @@ export class LiveScene {
     const player = this.#players.get(stream);
     // Asked for all the same: whoever sent it waits to hear that it was drawn.
     if (player === undefined || this.#setup === null) {
-      this.#ask();
+      this.ask();
       return;
     }
     player.came = true;
@@ -96,18 +69,13 @@ export class LiveScene {
     this.#moved();
   }
 
-  light(tones: BlockTones): void {
-    this.#blocks?.light(tones);
-    this.#ask();
-  }
-
   /** Colour the avatar by how far its joints are off, degrees. */
   heat(errors: Readonly<Record<string, number | null>>): void {
     const { body } = this.#players.get("actual") ?? {};
     const joints = this.#setup?.joints;
     if (body === undefined || joints === undefined) return;
     body.paint((point) => heatColour(errors[joints[point] ?? ""]));
-    this.#ask();
+    this.ask();
   }
 
   look(view: View): void {
@@ -115,38 +83,12 @@ export class LiveScene {
     this.#moved();
   }
 
-  resize(width: number, height: number): void {
-    if (width === 0 || height === 0) return;
-    this.#renderer.setSize(width, height, false);
-    this.#camera.aspect = width / height;
+  protected override resized(): void {
     this.#moved();
-    // At once: a canvas is empty after its size has changed.
-    this.#draw();
   }
 
-  dispose(): void {
-    cancelAnimationFrame(this.#asked);
-    this.#clear();
-    this.#renderer.dispose();
-    this.#renderer.forceContextLoss();
-  }
-
-  #clear(): void {
-    for (const { body } of this.#players.values()) {
-      this.#scene.remove(body.group);
-      body.dispose();
-    }
-    this.#players = new Map();
-    if (this.#blocks !== null) {
-      this.#scene.remove(this.#blocks.group);
-      this.#blocks.dispose();
-      this.#blocks = null;
-    }
-    if (this.#floor !== null) {
-      this.#scene.remove(this.#floor);
-      disposeFloor(this.#floor);
-      this.#floor = null;
-    }
+  protected override drawn(): void {
+    this.onDrawn();
   }
 
   /** Something stands elsewhere: the camera goes along. */
@@ -159,24 +101,12 @@ export class LiveScene {
     // The display shows what the participant's head sees, whatever the avatar does.
     const eyes = this.#players.get(came.includes("target") ? "target" : "actual");
     const followed = this.#players.get(came[0] ?? "actual") ?? eyes;
-    aim(this.#camera, this.#view, {
+    aim(this.camera, this.#view, {
       setup: this.#setup,
       eyes: eyes?.came ? eyes.placed : null,
       followed: followed?.came ? followed.placed : null,
     });
-    this.#ask();
-  }
-
-  #ask(): void {
-    if (this.#asked !== 0) return;
-    this.#asked = requestAnimationFrame(() => this.#draw());
-  }
-
-  #draw(): void {
-    cancelAnimationFrame(this.#asked);
-    this.#asked = 0;
-    this.#renderer.render(this.#scene, this.#camera);
-    this.onDrawn();
+    this.ask();
   }
 }
 
@@ -210,4 +140,21 @@ function makePlayer(
   }
   body.show(NOW);
   return { body, placed, came: known?.came ?? false };
+}
+
+/** Which joints of the product's body are which part of it, by their HumanBodyBones names. */
+function rolesOf(joints: readonly string[]): BodyRoles {
+  const of = (name: string): number | null => {
+    const at = joints.indexOf(name);
+    return at < 0 ? null : at;
+  };
+  const side = (name: "Left" | "Right"): ReadonlySet<number> =>
+    new Set(joints.flatMap((joint, at) => (joint.startsWith(name) ? [at] : [])));
+  return {
+    head: of("Head"),
+    leftHip: of("LeftUpperLeg"),
+    rightHip: of("RightUpperLeg"),
+    left: side("Left"),
+    right: side("Right"),
+  };
 }

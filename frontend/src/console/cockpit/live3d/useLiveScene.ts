@@ -8,17 +8,14 @@ import { sessions } from "@shared/api/endpoints";
 import type { FeedState } from "@shared/api/live";
 import { openPoses, type PoseSetup, type PoseTouch } from "@shared/api/poses";
 import { paletteOf } from "@shared/stage/figure";
-import { type Mounted, mount } from "@shared/stage/mount";
+import { useDrawing, type Way } from "@shared/stage/useDrawing";
 import { type RefObject, useEffect, useRef, useState } from "react";
-import type { TelemetryStore } from "../telemetryStore";
+import type { TelemetryStore } from "../session/telemetryStore";
 import { DARK, type Lights, nextChange, tonesAt, withTouches } from "./lights";
-import type { LiveScene } from "./scene";
 import type { View } from "./views";
 
 /** Frames come at least ten times a second: after so long there are none. */
 const STILL_AFTER_MS = 1500;
-
-export type Way = "loading" | "space" | "flat";
 
 export interface Live {
   readonly way: Way;
@@ -36,34 +33,13 @@ export function useLiveScene(
 ): Live {
   const scheme = useComputedColorScheme("light");
   const isSeen = useDocumentVisibility() === "visible";
-  const [scene, setScene] = useState<LiveScene | null>(null);
-  const [way, setWay] = useState<Way>("loading");
+  const { way, drawing: scene } = useDrawing(root, loadScene);
   const [feed, setFeed] = useState<FeedState>("connecting");
   const [setup, setSetup] = useState<PoseSetup | null>(null);
   const [isMoving, setMoving] = useState(false);
   const [last, setLast] = useState<PoseTouch | null>(null);
   const lights = useRef<Lights>(DARK);
-  const drawn = useRef<() => void>(() => {});
   const relight = useRef<() => void>(() => {});
-
-  useEffect(() => {
-    const element = root.current;
-    if (element === null) return;
-    let gone = false;
-    let tidy = () => {};
-    void begin(element, () => drawn.current()).then((begun) => {
-      if (gone) return begun?.tidy();
-      if (begun === null) return setWay("flat");
-      tidy = begun.tidy;
-      setScene(begun.drawing);
-      setWay("space");
-    });
-    return () => {
-      gone = true;
-      setScene(null);
-      tidy();
-    };
-  }, [root]);
 
   // The appearance is asked for: another one has other colours.
   useEffect(() => {
@@ -116,7 +92,7 @@ export function useLiveScene(
       },
     });
     let pictures = 0;
-    drawn.current = () => {
+    scene.onDrawn = () => {
       if (undrawn === 0) return;
       poses.drawn(undrawn);
       undrawn = 0;
@@ -131,7 +107,7 @@ export function useLiveScene(
       clearInterval(watch);
       clearTimeout(timer);
       poses.close();
-      drawn.current = () => {};
+      scene.onDrawn = () => {};
       relight.current = () => {};
     };
   }, [root, scene, isSeen, id]);
@@ -139,11 +115,7 @@ export function useLiveScene(
   return { way, feed, setup, isMoving, last };
 }
 
-/** A scene on a canvas of its own; null where the browser has no WebGL. */
-async function begin(
-  element: HTMLElement,
-  onDrawn: () => void,
-): Promise<Mounted<LiveScene> | null> {
+async function loadScene() {
   const { LiveScene } = await import("./scene");
-  return mount(element, (canvas) => new LiveScene(canvas, onDrawn));
+  return (canvas: HTMLCanvasElement) => new LiveScene(canvas);
 }

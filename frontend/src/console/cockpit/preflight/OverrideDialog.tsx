@@ -6,10 +6,12 @@ import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { preflightQuery } from "../../queries";
+import { useShown } from "../../ui/page";
 import { ReasonField } from "../../ui/ReasonField";
-import { useShown } from "../../ui/useShown";
+import type { useSession } from "../session/useSession";
 import { CheckList } from "./CheckList";
-import { overrideAll } from "./usePreflight";
+import { type Flight, overrideAll } from "./usePreflight";
+import { failing } from "./words";
 
 interface OverrideDialogProps {
   readonly session: SessionView;
@@ -85,5 +87,25 @@ function OverrideForm({ session, checks, onClose, then }: OverrideFormProps): JS
         </Group>
       </Stack>
     </form>
+  );
+}
+
+interface StartAnywayProps {
+  readonly session: SessionView;
+  readonly live: Pick<ReturnType<typeof useSession>, "sendAnew">;
+  readonly flight: Flight;
+}
+
+/** Asked when somebody starts although a check has failed. */
+export function StartAnyway({ session, live, flight }: StartAnywayProps): JSX.Element {
+  const failed = failing(flight.query.data?.checks ?? []);
+  const { asking, stopAsking } = flight;
+  return (
+    <OverrideDialog
+      session={session}
+      checks={asking ? failed : null}
+      onClose={stopAsking}
+      then={() => live.sendAnew(session, { type: "start" })}
+    />
   );
 }

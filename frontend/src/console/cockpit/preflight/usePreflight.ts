@@ -4,7 +4,7 @@ import type { SessionView } from "@shared/api/types";
 import { useQuery, useQueryClient } from "@tanstack/react-query";
 import { useState } from "react";
 import { preflightQuery } from "../../queries";
-import type { useSession } from "../useSession";
+import type { useSession } from "../session/useSession";
 import { againAfter } from "./words";
 
 /** After the list could not be made. */

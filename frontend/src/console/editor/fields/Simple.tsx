@@ -9,12 +9,9 @@ import {
   TextInput,
 } from "@mantine/core";
 import type { JSX } from "react";
-import { useForm, useProblem, useValue } from "../formContext";
-import { useLabels } from "../labels";
-import type { Json, Path } from "../paths";
-import { isList, isObject } from "../paths";
+import { useCommitted, useForm, useLabels, useProblem, useValue } from "../formContext";
+import { isList, isObject, type Json, type Path } from "../paths";
 import type { NumberSpec } from "../schema";
-import { useCommitted } from "../useCommitted";
 
 interface FieldProps {
   readonly path: Path;

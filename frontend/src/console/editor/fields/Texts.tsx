@@ -1,12 +1,13 @@
 /** A wording in every language of the study, side by side. */
-import { Textarea } from "@mantine/core";
+import { Button, Textarea, TextInput } from "@mantine/core";
 import { LANGUAGE_NAMES } from "@shared/i18n/i18n";
-import type { JSX } from "react";
+import { Icon } from "@shared/ui/Icon";
+import { type FormEvent, type JSX, useState } from "react";
+import { useTexts } from "../../i18n";
 import classes from "../Editor.module.css";
-import { useForm, useProblem, useValue } from "../formContext";
-import type { Path } from "../paths";
-import { isObject } from "../paths";
-import { useCommitted } from "../useCommitted";
+import { useCommitted, useForm, useProblem, useValue } from "../formContext";
+import { isObject, type Path } from "../paths";
+import { blank } from "../schema";
 
 export function TextsField({
   path,
@@ -61,5 +62,48 @@ function Wording({ path, language, label }: WordingProps): JSX.Element {
       onBlur={field.onBlur}
       onFocus={() => reveal(path)}
     />
+  );
+}
+
+/** Every text of the study by its key, all languages side by side; and new ones. */
+export function TextsSection(): JSX.Element {
+  const { t } = useTexts();
+  const { change, languages } = useForm();
+  const texts = useValue(["texts"]);
+  const [key, setKey] = useState("");
+  const keys = isObject(texts) ? Object.keys(texts) : [];
+  const add = (event: FormEvent) => {
+    event.preventDefault();
+    const name = key.trim();
+    if (name === "" || keys.includes(name)) return;
+    const value = blank({ kind: "texts" }, languages);
+    change([{ path: ["texts", name], action: "set", value }]);
+    setKey("");
+  };
+  return (
+    <>
+      {keys.map((name) => (
+        <div key={name} className={classes.entry}>
+          <TextsField path={["texts", name]} label={name} />
+          <button
+            type="button"
+            className={classes.drop}
+            onClick={() => change([{ path: ["texts", name], action: "remove" }])}
+          >
+            {t("editor.leaveOut", { name })}
+          </button>
+        </div>
+      ))}
+      <form className={classes.inline} onSubmit={add}>
+        <TextInput
+          label={t("editor.newText")}
+          value={key}
+          onChange={(event) => setKey(event.currentTarget.value)}
+        />
+        <Button type="submit" variant="default" leftSection={<Icon name="add" size={16} />}>
+          {t("editor.add")}
+        </Button>
+      </form>
+    </>
   );
 }

@@ -7,7 +7,7 @@ import { useQueryClient } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { signOut } from "../../account";
 import { useTexts } from "../../i18n";
-import { RoleBadge } from "../../ui/RoleBadge";
+import { RoleBadge } from "../../ui/badges";
 import classes from "./AccountMenu.module.css";
 import { ChangePassword } from "./ChangePassword";
 

@@ -7,8 +7,7 @@ import { useMutation } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { fieldErrors } from "./fieldErrors";
-import { NewPassword, NOTHING_TYPED } from "./NewPassword";
+import { fieldErrors, NewPassword, NOTHING_TYPED } from "./NewPassword";
 import { checkPassword, isGood } from "./passwordRule";
 
 interface ChangePasswordProps {

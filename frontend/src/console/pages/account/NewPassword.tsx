@@ -1,5 +1,6 @@
 /** A new password twice, with the rule as a list that fills while somebody types. */
 import { PasswordInput, Stack } from "@mantine/core";
+import { type ApiError, isApiError } from "@shared/api/request";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";
 import { useTexts } from "../../i18n";
@@ -12,7 +13,7 @@ import {
   type PasswordChecks,
 } from "./passwordRule";
 
-export interface Typed {
+interface Typed {
   readonly password: string;
   readonly again: string;
 }
@@ -85,3 +86,32 @@ function Ring(): JSX.Element {
     </svg>
   );
 }
+
+/** At which field of a form about an account the server's refusal belongs. */
+interface FieldErrors {
+  readonly username: string | null;
+  readonly password: string | null;
+  /** What belongs to no field. */
+  readonly other: unknown;
+}
+
+const NONE: FieldErrors = { username: null, password: null, other: null };
+
+/** The server repeats a name that it refuses, and never a password. */
+export function fieldErrors(error: unknown): FieldErrors {
+  if (error === null) return NONE;
+  if (!isApiError(error, "invalid_input")) return { ...NONE, other: error };
+  const said = sentence(error);
+  return typeof error.value === "string"
+    ? { ...NONE, username: said }
+    : { ...NONE, password: said };
+}
+
+const sentence = ({ message, valid, remedy }: ApiError): string => {
+  const parts = [message, typeof valid === "string" ? `valid: ${valid}` : "", remedy ?? ""];
+  return parts
+    .filter((part) => part !== "")
+    .map((part) => part.charAt(0).toUpperCase() + part.slice(1).replace(/\.$/, ""))
+    .join(". ")
+    .concat(".");
+};

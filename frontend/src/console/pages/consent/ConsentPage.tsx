@@ -8,14 +8,12 @@ import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
-import { useTexts } from "../../i18n";
+import { type Key, useTexts } from "../../i18n";
 import { consentQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
-import { useTitle } from "../../ui/useTitle";
+import { useTitle } from "../../ui/page";
 import classes from "./ConsentPage.module.css";
-import { Facts } from "./Facts";
-import { Signature } from "./Signature";
 
 export function ConsentPage({ id }: { readonly id: string }): JSX.Element {
   const { t } = useTexts();
@@ -132,4 +130,84 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
         </ul>
       );
   }
+}
+
+/** The small print of a record: what makes it possible to check it against the study later. */
+function Facts({ record }: { readonly record: ConsentRecord }): JSX.Element {
+  const { t, language } = useTexts();
+  const facts: readonly (readonly [Key, string])[] = [
+    ["consent.at", `${dateTime(record.at, language)} (${record.at})`],
+    [
+      "consent.by",
+      record.mode === "tablet" ? t("consent.tablet") : record.by.replace("account:", ""),
+    ],
+    ["consent.participant", record.participant_code],
+    ["consent.session", record.session_id],
+    ["consent.study", record.study_key],
+    ["consent.version", String(record.study_version)],
+    ["consent.hash", record.content_hash],
+    ["consent.textHash", record.text_hash],
+    ["consent.language", record.language],
+  ];
+  return (
+    <footer className={classes.facts}>
+      <dl>
+        {facts
+          .filter(([, value]) => value !== "")
+          .map(([key, value]) => (
+            <div key={key}>
+              <dt>{t(key)}</dt>
+              <dd>{value}</dd>
+            </div>
+          ))}
+      </dl>
+      {record.records > 1 && <p>{t("consent.earlier", { count: record.records - 1 })}</p>}
+    </footer>
+  );
+}
+
+/** Who signed, and how. */
+function Signature({ record }: { readonly record: ConsentRecord }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <section className={classes.signature}>
+      <h2>{t("consent.signature")}</h2>
+      {record.signature !== null && (
+        <svg
+          className={classes.drawn}
+          viewBox="0 0 600 200"
+          role="img"
+          aria-label={t("consent.drawn")}
+        >
+          <path d={record.signature} />
+        </svg>
+      )}
+      {record.name !== null && (
+        <p className={classes.name}>
+          <span>{t("consent.name")}</span>
+          {record.name}
+        </p>
+      )}
+      {record.paper !== null && <Paper paper={record.paper} />}
+      {record.mode === "operator" && <p>{t("consent.spoken")}</p>}
+      {record.mode === "tablet" && record.signature_wanted === "none" && (
+        <p>{t("consent.unsigned")}</p>
+      )}
+    </section>
+  );
+}
+
+function Paper({ paper }: { readonly paper: NonNullable<ConsentRecord["paper"]> }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <>
+      <p className={classes.name}>{t("consent.paper")}</p>
+      <p>
+        {t("consent.paper.place")}: {paper.place}
+      </p>
+      <p>
+        {t("consent.paper.reason")}: {paper.reason}
+      </p>
+    </>
+  );
 }

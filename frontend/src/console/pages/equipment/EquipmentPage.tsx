@@ -10,7 +10,7 @@ import { useMay } from "../../may";
 import { calibrationsQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
 import { Loaded } from "../../ui/Loaded";
-import { useTitle } from "../../ui/useTitle";
+import { useTitle } from "../../ui/page";
 import { AddForm } from "./AddForm";
 import classes from "./EquipmentPage.module.css";
 import { History } from "./History";

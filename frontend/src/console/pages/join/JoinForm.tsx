@@ -1,7 +1,7 @@
 /** The role that waits, and the name and password that somebody chooses for it. */
 import { Button, Stack, Text, TextInput } from "@mantine/core";
-import { isApiError } from "@shared/api/errors";
 import { type InvitationLook, invitations } from "@shared/api/people";
+import { isApiError } from "@shared/api/request";
 import { dateTime } from "@shared/format";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
@@ -9,10 +9,9 @@ import { navigate } from "wouter/use-hash-location";
 import { begin } from "../../account";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { fieldErrors } from "../account/fieldErrors";
-import { NewPassword, NOTHING_TYPED } from "../account/NewPassword";
+import { fieldErrors, NewPassword, NOTHING_TYPED } from "../account/NewPassword";
 import { checkPassword, isGood } from "../account/passwordRule";
-import { RoleFacts } from "../people/RoleFacts";
+import { RoleFacts } from "../people/RoleAndStudies";
 import classes from "./Join.module.css";
 
 interface JoinFormProps {

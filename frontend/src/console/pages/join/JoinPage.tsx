@@ -1,7 +1,7 @@
 /** Behind an invitation's link: what it is for, and the account it makes. */
 import { Button, Group, Loader } from "@mantine/core";
-import { type ApiError, isApiError } from "@shared/api/errors";
 import { invitations } from "@shared/api/people";
+import { type ApiError, isApiError } from "@shared/api/request";
 import type { Account } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery, useQueryClient } from "@tanstack/react-query";
@@ -10,7 +10,7 @@ import { navigate } from "wouter/use-hash-location";
 import { signOut } from "../../account";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { useTitle } from "../../ui/useTitle";
+import { useTitle } from "../../ui/page";
 import { Front } from "../Front";
 import classes from "./Join.module.css";
 import { JoinForm } from "./JoinForm";

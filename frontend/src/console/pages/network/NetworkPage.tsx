@@ -1,17 +1,15 @@
 /** How tablets and headsets reach the server: addresses, certificate, help page, USB cable. */
-import { Text, Title } from "@mantine/core";
+import { Paper, Text, Title } from "@mantine/core";
 import type { Network } from "@shared/api/types";
+import { day } from "@shared/format";
 import { Notice, type Tone } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { networkQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
-import { useTitle } from "../../ui/useTitle";
-import { Addresses } from "./Addresses";
-import { Cable } from "./Cable";
-import { Certificate } from "./Certificate";
-import { FirstTime } from "./FirstTime";
+import { useTitle } from "../../ui/page";
+import { Copyable } from "./Copyable";
 import classes from "./Network.module.css";
 
 const TONES: Readonly<Record<Network["mode"], Tone>> = {
@@ -53,4 +51,162 @@ function Parts({ network }: { readonly network: Network }): JSX.Element {
       </div>
     </>
   );
+}
+
+/** Every address, the best one with the QR code of the tablet's page. */
+function Addresses({ network }: { readonly network: Network }): JSX.Element {
+  const { t } = useTexts();
+  const [best] = network.addresses;
+  return (
+    <Paper>
+      <Title order={2} mb="md">
+        {t("network.addresses")}
+      </Title>
+      <div className={classes.beside}>
+        <dl className={classes.list}>
+          {network.addresses.map(({ url }) => (
+            <div key={url}>
+              <dt>{url === best?.url && t("network.addresses.devices")}</dt>
+              <dd>
+                <Copyable text={url} />
+              </dd>
+            </div>
+          ))}
+          <div>
+            <dt>{t("network.local")}</dt>
+            <dd>
+              <Copyable text={network.local_url} />
+            </dd>
+          </div>
+        </dl>
+        {best !== undefined && (
+          <QrCode
+            svg={best.tablet_qr_svg}
+            alt={t("network.addresses.tablet", { url: best.tablet_url })}
+            caption={t("network.addresses.scan")}
+          />
+        )}
+      </div>
+      {best === undefined && network.mode !== "loopback" && (
+        <Notice tone="warn" title={t("network.none")}>
+          {t("network.none.body")}
+        </Notice>
+      )}
+    </Paper>
+  );
+}
+
+/** The way that needs no network: the headset's own localhost leads here. */
+function Cable({ cable }: { readonly cable: Network["cable"] }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Paper>
+      <Title order={2} mb="md">
+        {t("network.cable")}
+      </Title>
+      <p className={classes.text}>{t("network.cable.body")}</p>
+      <Copyable text={cable.command} />
+      <p className={classes.text}>{t("network.cable.then")}</p>
+      <Copyable text={cable.url} />
+    </Paper>
+  );
+}
+
+type Shown = NonNullable<Network["certificate"]>;
+
+/** What a person compares with a device's screen before trusting it, and how long it lasts. */
+function Certificate({ certificate }: { readonly certificate: Shown }): JSX.Element {
+  const { t } = useTexts();
+  const own = certificate.source === "files";
+  return (
+    <Paper>
+      <Title order={2} mb="md">
+        {t("network.certificate")}
+      </Title>
+      <h3 className={classes.label}>{t("network.fingerprint")}</h3>
+      <p className={classes.fingerprint}>
+        {inGroups(certificate.fingerprint).map((group) => (
+          <span key={group.at}>{group.text}</span>
+        ))}
+      </p>
+      <p className={classes.soft}>
+        {t(own ? "network.fingerprint.own" : "network.fingerprint.compare")}
+      </p>
+      <h3 className={classes.label}>{t("network.expires")}</h3>
+      <Expiry certificate={certificate} />
+      {certificate.uncovered.length > 0 && (
+        <Notice tone="warn" title={t("network.uncovered")}>
+          {t(own ? "network.uncovered.own" : "network.uncovered.body", {
+            addresses: certificate.uncovered.join(", "),
+          })}
+        </Notice>
+      )}
+    </Paper>
+  );
+}
+
+function Expiry({ certificate }: { readonly certificate: Shown }): JSX.Element {
+  const { t, language } = useTexts();
+  const date = day(certificate.expires_at, language);
+  return (
+    <p className={classes.text}>
+      {certificate.authority_expires_at === null
+        ? t("network.expires.own", { date })
+        : t("network.expires.authority", {
+            date,
+            authority: day(certificate.authority_expires_at, language),
+          })}
+    </p>
+  );
+}
+
+/** The page, over plain http, on which a device gets the lab's certificate. */
+function FirstTime({ help }: { readonly help: NonNullable<Network["help"]> }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Paper>
+      <Title order={2} mb="md">
+        {t("network.first")}
+      </Title>
+      <div className={classes.beside}>
+        <div>
+          <p className={classes.text}>{t("network.first.body")}</p>
+          <Copyable text={help.url} />
+        </div>
+        <QrCode svg={help.qr_svg} alt={t("network.first.qr")} />
+      </div>
+    </Paper>
+  );
+}
+
+interface QrCodeProps {
+  readonly svg: string;
+  readonly alt: string;
+  readonly caption?: string;
+}
+
+/** A QR code that the server drew, on white in either appearance: cameras need the contrast. */
+function QrCode({ svg, alt, caption }: QrCodeProps): JSX.Element {
+  return (
+    <figure className={classes.figure}>
+      <img
+        className={classes.qr}
+        alt={alt}
+        src={`data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`}
+      />
+      {caption !== undefined && <figcaption>{caption}</figcaption>}
+    </figure>
+  );
+}
+
+const PAIRS_IN_A_GROUP = 4;
+
+/** A fingerprint in groups of four pairs: as much as an eye compares at once. */
+export function inGroups(fingerprint: string): readonly { at: number; text: string }[] {
+  const pairs = fingerprint.split(":");
+  const groups = Array.from({ length: Math.ceil(pairs.length / PAIRS_IN_A_GROUP) }, (_, at) => at);
+  return groups.map((at) => ({
+    at,
+    text: pairs.slice(at * PAIRS_IN_A_GROUP, (at + 1) * PAIRS_IN_A_GROUP).join(":"),
+  }));
 }

@@ -1,16 +1,26 @@
 /** Inviting: role, studies, how long; then the link, once. */
-import { Button, Group, Input, Modal, SegmentedControl, Stack, TextInput } from "@mantine/core";
+import {
+  Button,
+  CopyButton,
+  Group,
+  Input,
+  Modal,
+  SegmentedControl,
+  Stack,
+  TextInput,
+} from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import { type Invited, invitations, type Role, type StudyKeys } from "@shared/api/people";
+import { dateTime } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
-import { useMutation, useQueryClient } from "@tanstack/react-query";
+import { Notice } from "@shared/ui/Notice";
+import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { invitationsQuery } from "../../queries";
-import { InviteLink } from "./InviteLink";
-import { RoleChoice } from "./RoleChoice";
-import { StudiesChoice } from "./StudiesChoice";
+import { invitationsQuery, networkQuery } from "../../queries";
+import { RoleBadge } from "../../ui/badges";
+import { RoleChoice, StudiesChoice } from "./RoleAndStudies";
 
 export function InviteButton(): JSX.Element {
   const { t } = useTexts();
@@ -94,5 +104,54 @@ function InviteForm({ onMade }: { readonly onMade: (made: Invited) => void }): J
         </Group>
       </Stack>
     </form>
+  );
+}
+
+interface InviteLinkProps {
+  readonly made: Invited;
+  readonly onDone: () => void;
+}
+
+/** The link of a fresh invitation: nobody, not even the server, can show it again. */
+function InviteLink({ made, onDone }: InviteLinkProps): JSX.Element {
+  const { t, language } = useTexts();
+  const loopback = useQuery(networkQuery).data?.mode === "loopback";
+  return (
+    <Stack>
+      <Group gap="sm">
+        <RoleBadge role={made.role} />
+        <span>{made.note}</span>
+      </Group>
+      <Group align="end" wrap="nowrap">
+        <TextInput
+          label={t("invite.link")}
+          readOnly
+          data-autofocus
+          value={made.url}
+          onFocus={(event) => event.currentTarget.select()}
+          style={{ flex: 1 }}
+        />
+        <CopyButton value={made.url}>
+          {({ copied, copy }) => (
+            <Button
+              variant={copied ? "light" : "filled"}
+              leftSection={<Icon name={copied ? "check" : "link"} size={17} />}
+              onClick={copy}
+            >
+              {t(copied ? "action.copied" : "action.copy")}
+            </Button>
+          )}
+        </CopyButton>
+      </Group>
+      <Notice tone="warn" icon="key">
+        {t("invite.once", { date: dateTime(made.expires_at, language) })}
+      </Notice>
+      {loopback && <Notice tone="info">{t("invite.loopback")}</Notice>}
+      <Group justify="flex-end">
+        <Button variant="default" onClick={onDone}>
+          {t("invite.done")}
+        </Button>
+      </Group>
+    </Stack>
   );
 }

@@ -5,7 +5,7 @@ import { Icon, type IconName } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useLocation } from "wouter";
 import { useTexts } from "../../i18n";
-import { useTitle } from "../../ui/useTitle";
+import { useTitle } from "../../ui/page";
 import { AuditTab } from "./AuditTab";
 import { InvitationsTab } from "./InvitationsTab";
 import { InviteButton } from "./InviteDialog";

@@ -8,8 +8,8 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useTexts } from "../../i18n";
 import { peopleQuery } from "../../queries";
+import { RoleBadge } from "../../ui/badges";
 import { Loaded } from "../../ui/Loaded";
-import { RoleBadge } from "../../ui/RoleBadge";
 import classes from "./People.module.css";
 import { PersonDrawer } from "./PersonDrawer";
 

@@ -8,8 +8,7 @@ import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { peopleQuery } from "../../queries";
 import { Access } from "./Access";
-import { RoleChoice } from "./RoleChoice";
-import { StudiesChoice } from "./StudiesChoice";
+import { RoleChoice, StudiesChoice } from "./RoleAndStudies";
 
 interface PersonDrawerProps {
   readonly person: Person | null;

@@ -3,13 +3,19 @@
  *
  * One group is asked for after the other, from the top: the first is there long before all are.
  */
-
 import { Title } from "@mantine/core";
-import { type Asked, askedOf, type Dashboard, type FigureGroup } from "@shared/api/analysis";
+import {
+  type Asked,
+  askedOf,
+  type Dashboard,
+  type FigureGroup,
+  searchOf,
+} from "@shared/api/analysis";
 import type { StudyDetail } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { useIsFetching, useQuery } from "@tanstack/react-query";
-import type { JSX } from "react";
+import { type JSX, useEffect } from "react";
+import { useLocation, useSearch } from "wouter";
 import { useTexts } from "../../i18n";
 import { dashboardQuery } from "../../queries";
 import { EmptyState } from "../../ui/EmptyState";
@@ -19,7 +25,6 @@ import classes from "./DashboardTab.module.css";
 import { FigureCard } from "./FigureCard";
 import { FilterBar } from "./FilterBar";
 import page from "./StudyPage.module.css";
-import { useAsked } from "./useAsked";
 
 const FIRST = "progress";
 const AFTERWARDS = ["embodiment", "answers", "tasks", "movement", "quality"] as const;
@@ -137,4 +142,24 @@ function Figures({ studyKey, dashboard }: FiguresProps): JSX.Element {
       ))}
     </div>
   );
+}
+
+/**
+ * What is drawn, kept in the page's address: whoever is sent it sees the same.
+ *
+ * It stands before the `#` of the page's place, and is taken out when the page is left.
+ */
+function useAsked(): readonly [Asked, (next: Asked) => void] {
+  const [place, navigate] = useLocation();
+  const search = useSearch();
+  useEffect(() => {
+    const own = window.location.hash;
+    return () => {
+      const { hash, pathname, search: left } = window.location;
+      if (hash !== own && left !== "") history.replaceState(null, "", pathname + hash);
+    };
+  }, []);
+  // In place: going back leaves the page, not the last choice of a filter.
+  const ask = (next: Asked): void => navigate(`${place}?${searchOf(next)}`, { replace: true });
+  return [askedOf(new URLSearchParams(search)), ask];
 }

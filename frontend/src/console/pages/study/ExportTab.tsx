@@ -5,7 +5,7 @@ import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
-import { DownloadList } from "../../downloads/DownloadList";
+import { DownloadList } from "../../downloads/DownloadCard";
 import { useExports, useOrder } from "../../downloads/useExports";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";

@@ -1,6 +1,6 @@
 /** One figure with its words, and the buttons that save it and its rows. */
 import { Figure } from "@charts/Figure";
-import { savePicture } from "@charts/pictures";
+import { savePicture } from "@charts/print";
 import { Button, Title } from "@mantine/core";
 import { type Asked, analysis, type FigureEntry } from "@shared/api/analysis";
 import { Icon } from "@shared/ui/Icon";

@@ -10,7 +10,6 @@ import { Loaded } from "../../ui/Loaded";
 import { Order } from "../../ui/Order";
 import { SlotMark } from "../../ui/SlotMark";
 import classes from "./LedgerTab.module.css";
-import { arrange, type LedgerGrid, nextFree } from "./ledgerGrid";
 import { SlotCell } from "./SlotCell";
 import page from "./StudyPage.module.css";
 
@@ -138,3 +137,35 @@ function Balance({ slots }: { readonly slots: readonly (Slot | undefined)[] }): 
 
 const RANK = { completed: 0, open: 1, free: 2 } as const;
 const CELLS = { completed: classes.cellDone, open: classes.cellOpen, free: "" } as const;
+
+/** The ledger as a grid: a row for every order, a column for every replicate. */
+interface LedgerRow {
+  readonly sequence: readonly number[];
+  /** One slot for each column; undefined where a replicate has no such order (yet). */
+  readonly slots: readonly (Slot | undefined)[];
+}
+
+interface LedgerGrid {
+  readonly rows: readonly LedgerRow[];
+  readonly columns: readonly number[];
+}
+
+/** The grid; null where the orders are hidden or no slot exists yet. */
+export function arrange(ledger: Ledger): LedgerGrid | null {
+  const { sequences } = ledger;
+  if (sequences === null || ledger.slots.length === 0) return null;
+  const columns = [...new Set(ledger.slots.map((slot) => slot.replicate))].sort((a, b) => a - b);
+  const place = (slot: Slot): string => `${slot.sequence?.join("-")}/${slot.replicate}`;
+  const slots = new Map(ledger.slots.map((slot) => [place(slot), slot]));
+  const rows = sequences.map(({ sequence }) => ({
+    sequence,
+    slots: columns.map((column) => slots.get(`${sequence.join("-")}/${column}`)),
+  }));
+  return { rows, columns };
+}
+
+/** The index of the slot the next participant gets; null when every slot is taken. */
+export function nextFree(slots: readonly Slot[]): number | null {
+  const free = slots.filter((slot) => slot.state === "free").map((slot) => slot.index);
+  return free.length === 0 ? null : Math.min(...free);
+}

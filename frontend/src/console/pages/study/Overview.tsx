@@ -8,7 +8,6 @@ import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
 import classes from "./Overview.module.css";
-import { orderCount } from "./orderCount";
 import { Procedure } from "./Procedure";
 
 export function Overview({ study }: { readonly study: StudyDetail }): JSX.Element {
@@ -140,3 +139,12 @@ const DESIGNS: Readonly<Record<string, Key>> = {
   williams: "design.williams",
   explicit: "design.explicit",
 };
+
+/** How many orders a study's design has: as many rows as one block of its ledger. */
+export function orderCount({ design, sequences }: StudyProtocol["orders"], n: number): number {
+  if (design === "explicit") return sequences?.length ?? 0;
+  if (design === "williams") return n % 2 === 0 || n === 1 ? n : 2 * n;
+  return factorial(n);
+}
+
+const factorial = (n: number): number => (n <= 1 ? 1 : n * factorial(n - 1));

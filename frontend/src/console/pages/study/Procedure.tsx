@@ -2,11 +2,10 @@
 import type { SetupStep, StepKind, StudyProtocol, TaskPhase } from "@shared/api/types";
 import { duration } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
-import { seconds } from "@shared/units";
+import { type Seconds, seconds } from "@shared/units";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
 import { stepIcon, stepName, stepNameKey } from "../../steps";
-import { ownTime } from "./ownTime";
 import classes from "./Procedure.module.css";
 
 export function Procedure({ protocol }: { readonly protocol: StudyProtocol }): JSX.Element {
@@ -120,4 +119,14 @@ function Phase({ phase }: { readonly phase: TaskPhase }): JSX.Element {
       {phase.questionnaire !== null && <SmallStep icon="form" name="step.questionnaire" />}
     </>
   );
+}
+
+/** The time of one visit that the protocol fixes: free roam and phases, not forms or breaks. */
+export function ownTime({ procedure, conditions }: StudyProtocol): Seconds {
+  const around = [...procedure.before, ...procedure.after].map((step) => step.duration_s ?? 0);
+  const phases = procedure.block.phases.map(
+    (phase) => phase.preparation_s + phase.duration_s + phase.freeze_s,
+  );
+  const sum = (times: readonly number[]): number => times.reduce((total, time) => total + time, 0);
+  return seconds(sum(around) + conditions.length * sum(phases));
 }

@@ -5,7 +5,7 @@ import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
 import { useTexts } from "../../i18n";
-import { NumbersTable } from "../../ui/NumbersTable";
+import { NumbersTable } from "../../ui/tables";
 import classes from "./StatisticsTab.module.css";
 
 export function ResultCard({ result }: { readonly result: Result }): JSX.Element {

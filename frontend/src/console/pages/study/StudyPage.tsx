@@ -1,19 +1,21 @@
 /** One study: its design, its ledger, its sessions, what they show, and its files. */
 import { Button, Tabs, Title } from "@mantine/core";
+import { versions } from "@shared/api/drafts";
 import type { StudyDetail } from "@shared/api/types";
 import { inLanguage } from "@shared/text";
 import { Icon, type IconName } from "@shared/ui/Icon";
-import { useQuery } from "@tanstack/react-query";
+import { Notice } from "@shared/ui/Notice";
+import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
+import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { type Act, useMay } from "../../may";
 import { PreregistrationTab } from "../../preregistration/PreregistrationTab";
 import { studyQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
-import { useTitle } from "../../ui/useTitle";
+import { useTitle } from "../../ui/page";
 import { NotForRole } from "../NotForRole";
-import { Archived } from "./Archived";
 import { DashboardTab } from "./DashboardTab";
 import { ExportTab } from "./ExportTab";
 import { LedgerTab } from "./LedgerTab";
@@ -166,6 +168,41 @@ function Head({ study }: { readonly study: StudyDetail }): JSX.Element {
         </Button>
       )}
       <NewSession study={study} opened={joining} onClose={() => setJoining(false)} />
+    </div>
+  );
+}
+
+/** Says that a study was put away, and takes it out again. */
+function Archived({ studyKey }: { readonly studyKey: string }): JSX.Element {
+  const { t } = useTexts();
+  const may = useMay();
+  const queries = useQueryClient();
+  const restore = useMutation({
+    mutationFn: () => versions.restore(studyKey),
+    onSuccess: () => queries.invalidateQueries({ queryKey: ["studies"] }),
+  });
+  return (
+    <div style={{ marginBottom: 16 }}>
+      {restore.isError && <Failure error={restore.error} />}
+      <Notice
+        tone="warn"
+        icon="lock"
+        title={t("versions.archived")}
+        actions={
+          may("design") && (
+            <Button
+              size="xs"
+              variant="default"
+              loading={restore.isPending}
+              onClick={() => restore.mutate()}
+            >
+              {t("versions.restore")}
+            </Button>
+          )
+        }
+      >
+        {t("versions.archived.body")}
+      </Notice>
     </div>
   );
 }

@@ -1,9 +1,9 @@
 import type { Ledger, Slot, StudyProtocol } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { offsetOfLine, place } from "../problemPlace";
-import { arrange, nextFree } from "./ledgerGrid";
-import { orderCount } from "./orderCount";
-import { ownTime } from "./ownTime";
+import { offsetOfLine, place } from "../Problems";
+import { arrange, nextFree } from "./LedgerTab";
+import { orderCount } from "./Overview";
+import { ownTime } from "./Procedure";
 
 const ORDERS = [
   [0, 125],

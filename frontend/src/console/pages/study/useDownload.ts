@@ -1,5 +1,5 @@
 /** A download that shows how far it is and can be stopped. */
-import { errorFromBody, Unreachable } from "@shared/api/errors";
+import { errorFromBody, Unreachable } from "@shared/api/request";
 import { useRef, useState } from "react";
 
 export type DownloadState =

@@ -3,7 +3,6 @@
  *
  * Runs of an earlier life of the page are told where something of them may be missing on the server.
  */
-
 import { keyOf, type Run } from "../journal/entries";
 import type { Journal } from "../journal/journal";
 import type { Limits } from "../limits";

@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { DEFAULT_LIMITS } from "../limits";
-import { FakeSocket } from "../testing/fakeSocket";
+import { FakeSocket } from "../testing/fakeServer";
 import { Channel, type Ending } from "./channel";
 
 const ADDRESS = { url: "ws://test", token: "TOKEN" };

@@ -1,6 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { ack, entry, filled, opened, toSend } from "../testing/journals";
-import { MemoryBlocks } from "../testing/memoryBlocks";
+import { ack, entry, filled, MemoryBlocks, opened, toSend } from "../testing/journals";
 
 describe("the disk of a journal", () => {
   it("takes many messages in one write, and those that were acknowledged before not at all", async () => {

@@ -1,7 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { seeded } from "../testing/frames";
-import { ack, entry, filled, opened, SESSION, toSend } from "../testing/journals";
-import { MemoryBlocks } from "../testing/memoryBlocks";
+import { ack, entry, filled, MemoryBlocks, opened, SESSION, toSend } from "../testing/journals";
 import type { Entry } from "./entries";
 
 describe("a journal", () => {

@@ -1,11 +1,12 @@
 /** A client on a fake server and a fake disk; the disk outlives the client, as in a browser. */
+import { afterEach, beforeEach } from "vitest";
 import type { TelemetryClient } from "../client";
 import { DirectClient } from "../directClient";
 import { Journal } from "../journal/journal";
 import { DEFAULT_LIMITS, type Limits } from "../limits";
-import type { FakeServer } from "./fakeServer";
+import { FakeServer } from "./fakeServer";
 import { standing } from "./frames";
-import { MemoryBlocks } from "./memoryBlocks";
+import { MemoryBlocks } from "./journals";
 
 /** Everything that is waited for in seconds, in milliseconds. */
 const QUICK: Partial<Limits> = {
@@ -65,4 +66,30 @@ export const seqs = (stream: string, epoch: number, count: number): readonly str
 /** Until it holds; a test that waits in vain runs into its own time limit. */
 export async function eventually(holds: () => boolean): Promise<void> {
   while (!holds()) await new Promise((resolve) => setTimeout(resolve, 1));
+}
+
+interface Bed {
+  server: FakeServer;
+  client: DirectClient | null;
+  opened(...more: [disk?: MemoryBlocks, limits?: Partial<Limits>]): Promise<DirectClient>;
+}
+
+/** A fake server and a client of it for each test of a file; the client is closed behind it. */
+export function testBed(): Bed {
+  const bed: Bed = {
+    server: new FakeServer(),
+    client: null,
+    async opened(...more) {
+      bed.client = await openedClient(bed.server, ...more);
+      return bed.client;
+    },
+  };
+  beforeEach(() => {
+    bed.server = new FakeServer();
+    bed.client = null;
+  });
+  afterEach(async () => {
+    await bed.client?.close();
+  });
+  return bed;
 }

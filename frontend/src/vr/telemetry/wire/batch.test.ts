@@ -1,7 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { seeded, standing } from "../testing/frames";
-import { type Batch, decodeBatch, encodeBatch, VALUES_PER_FRAME } from "./batch";
-import { crc32 } from "./crc32";
+import { type Batch, crc32, decodeBatch, encodeBatch, VALUES_PER_FRAME } from "./batch";
 
 const batchOf = (count: number, changed: Partial<Batch> = {}): Batch => ({
   ...standing(count),

@@ -6,12 +6,11 @@
  * Samples pass through as bits: a NaN keeps its payload. (Typed arrays have the order of the machine;
  * every machine that runs a browser is little-endian.)
  */
-import { crc32 } from "./crc32";
 
-export const HEADER_BYTES = 64;
-export const BODY_JOINTS = 22;
+const HEADER_BYTES = 64;
+const BODY_JOINTS = 22;
 export const VALUES_PER_FRAME = 3 + 4 * BODY_JOINTS;
-export const MAX_FRAMES = 1024;
+const MAX_FRAMES = 1024;
 /** Frame flag: the phase's clock ran when this frame was shown. */
 export const ACTIVE = 1;
 
@@ -82,7 +81,7 @@ export function encodeBatch(batch: Batch): Uint8Array<ArrayBuffer> {
 }
 
 /** What must hold before a batch is made: once journaled, a bad one would be refused for ever. */
-export function requireUsable(batch: Batch): void {
+function requireUsable(batch: Batch): void {
   const { timesS, flags, values } = batch;
   const count = timesS.length;
   if (flags.length !== count || values.length !== count * VALUES_PER_FRAME) {
@@ -164,3 +163,20 @@ const valuesAt = (count: number): number => HEADER_BYTES + 8 * count + 8 * Math.
 
 const bytesOf = (array: Float64Array | Float32Array): Uint8Array =>
   new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+
+/** CRC-32 as in zlib and PNG (polynomial 0xEDB88320, reflected): of `bytes`, as an unsigned number. */
+export function crc32(bytes: Uint8Array): number {
+  let crc = 0xffffffff;
+  for (const byte of bytes) crc = (TABLE[(crc ^ byte) & 0xff] ?? 0) ^ (crc >>> 8);
+  return (crc ^ 0xffffffff) >>> 0;
+}
+
+const POLYNOMIAL = 0xedb88320;
+
+const TABLE = Uint32Array.from({ length: 256 }, (_, byte) => {
+  let remainder = byte;
+  for (let bit = 0; bit < 8; bit++) {
+    remainder = remainder & 1 ? (remainder >>> 1) ^ POLYNOMIAL : remainder >>> 1;
+  }
+  return remainder;
+});

@@ -1,5 +1,5 @@
 /** Who took part, and what they may ask for: a copy, a correction, and that their data go. */
-import { TextInput } from "@mantine/core";
+import { Modal, TextInput } from "@mantine/core";
 import type { Participant } from "@shared/api/rights";
 import type { StudyDetail } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
@@ -9,11 +9,11 @@ import { useTexts } from "../../../i18n";
 import { participantsQuery } from "../../../queries";
 import { AnswersDrawer } from "../../../rights/AnswersDrawer";
 import { EraseDialog } from "../../../rights/EraseDialog";
+import { Tombstone } from "../../../rights/Tombstone";
 import { EmptyState } from "../../../ui/EmptyState";
 import { Loaded } from "../../../ui/Loaded";
 import page from "../StudyPage.module.css";
 import { ParticipantTable } from "./ParticipantTable";
-import { TombstoneDialog } from "./TombstoneDialog";
 
 interface Answering {
   readonly sessionId: string;
@@ -80,5 +80,27 @@ function Nobody({ searching }: { readonly searching: boolean }): JSX.Element {
     <EmptyState icon="people" title={t("rights.empty")}>
       <Icon name="info" size={16} /> {t("rights.empty.body")}
     </EmptyState>
+  );
+}
+
+interface TombstoneDialogProps {
+  readonly participant: Participant | null;
+  readonly onClose: () => void;
+}
+
+/** What was erased of somebody. */
+function TombstoneDialog({ participant, onClose }: TombstoneDialogProps): JSX.Element {
+  const { t } = useTexts();
+  const erasure = participant?.erasure ?? null;
+  return (
+    <Modal
+      opened={erasure !== null}
+      onClose={onClose}
+      size="lg"
+      title={t("tombstone.title")}
+      closeButtonProps={{ "aria-label": t("action.close") }}
+    >
+      {erasure !== null && <Tombstone erasure={erasure} onClose={onClose} />}
+    </Modal>
   );
 }

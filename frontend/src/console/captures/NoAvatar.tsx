@@ -1,0 +1,36 @@
+/** What every tab of a capture gets, and what it says where no avatar can be moved by it. */
+import { Button } from "@mantine/core";
+import type { Capture } from "@shared/api/captures";
+import { Notice } from "@shared/ui/Notice";
+import type { JSX, ReactNode } from "react";
+import { Link } from "wouter";
+import { useTexts } from "../i18n";
+import type { JointMapDraft } from "./useJointMap";
+
+export interface TabProps {
+  readonly capture: Capture;
+  readonly map: JointMapDraft;
+}
+
+/** Why the movement cannot be put onto an avatar, and where that is mended. */
+export function NoAvatar({ capture, map }: TabProps): JSX.Element | null {
+  const { t } = useTexts();
+  let why: ReactNode = null;
+  let mend: JSX.Element | undefined;
+  if (!capture.has_skeleton) {
+    why = t("capture.noAvatar.skeleton", { why: capture.summary.no_skeleton ?? "" });
+  } else if (map.view?.usable === false) {
+    why = `${t("capture.noAvatar.map")} ${map.view.missing.join("; ")}`;
+    mend = (
+      <Button component={Link} href={`/captures/${capture.id}/joints`} size="xs" variant="default">
+        {t("capture.noAvatar.openMap")}
+      </Button>
+    );
+  }
+  if (why === null) return null;
+  return (
+    <div style={{ marginTop: 12 }}>
+      <Notice tone="warn" title={t("capture.noAvatar")} remedy={why} actions={mend} />
+    </div>
+  );
+}

@@ -1,2 +1,0 @@
-/** `account:admin` is admin. */
-export const nameOf = (actor: string): string => actor.replace("account:", "");

@@ -1,0 +1,98 @@
+/** Every alarm of the session, the newest first, with its times: taking note of one removes none. */
+import type { Alarm, SessionView } from "@shared/api/types";
+import { duration, timeOfDay } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { seconds } from "@shared/units";
+import { useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { useTexts } from "../../i18n";
+import { alarmsQuery } from "../../queries";
+import { Loaded } from "../../ui/Loaded";
+import { RecordDrawer } from "../../ui/RecordDrawer";
+import classes from "../Panels.module.css";
+import { amount, fromRecord, stateOf, titleKey } from "./alarms";
+import strip from "./SignalStrip.module.css";
+
+interface AlarmDrawerProps {
+  readonly session: SessionView;
+  readonly opened: boolean;
+  readonly onClose: () => void;
+}
+
+export function AlarmDrawer({ session, opened, onClose }: AlarmDrawerProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <RecordDrawer title={t("alarm.history")} opened={opened} onClose={onClose}>
+      <History session={session} />
+    </RecordDrawer>
+  );
+}
+
+function History({ session }: { readonly session: SessionView }): JSX.Element {
+  const { t } = useTexts();
+  const query = useQuery(alarmsQuery(session.id, stateOf(session)));
+  return (
+    <Loaded query={query}>
+      {(alarms) =>
+        alarms.length === 0 ? (
+          <p className={classes.nothing}>{t("alarm.none")}</p>
+        ) : (
+          <>
+            <p className={classes.nothing}>{t("alarm.kept")}</p>
+            <AlarmTable alarms={alarms} />
+          </>
+        )
+      }
+    </Loaded>
+  );
+}
+
+function AlarmTable({ alarms }: { readonly alarms: readonly Alarm[] }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <table className={`${classes.table} numbers`}>
+      <thead>
+        <tr>
+          <th scope="col">{t("alarm.began")}</th>
+          <th scope="col">{t("alarm.lasted")}</th>
+          <th scope="col">{t("alarm.what")}</th>
+        </tr>
+      </thead>
+      <tbody>
+        {alarms.map((alarm) => (
+          <AlarmRow key={alarm.id} alarm={alarm} />
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+function AlarmRow({ alarm }: { readonly alarm: Alarm }): JSX.Element {
+  const { t, language } = useTexts();
+  const shown = fromRecord(alarm);
+  const much = amount(shown, language);
+  const details = [
+    t(`alarm.severity.${alarm.severity}`),
+    alarm.stream === null ? null : t(`alarm.stream.${alarm.stream as "target" | "actual"}`),
+  ].filter((one) => one !== null);
+  return (
+    <tr>
+      <td className={classes.nowrap}>{timeOfDay(alarm.since, language)}</td>
+      <td className={classes.nowrap}>
+        {alarm.cleared_at === null ? (
+          <strong>{t("alarm.still")}</strong>
+        ) : (
+          duration(seconds((Date.parse(alarm.cleared_at) - Date.parse(alarm.since)) / 1000))
+        )}
+      </td>
+      <td>
+        <span className={strip[`row_${alarm.severity}`]}>
+          <Icon name={alarm.severity === "info" ? "info" : "alert"} size={16} />
+          {t(titleKey(shown))}
+          {much !== null && ` · ${much}`}
+        </span>
+        <div className={classes.nothing}>{details.join(" · ")}</div>
+      </td>
+    </tr>
+  );
+}

@@ -1,0 +1,183 @@
+/**
+ * How good the headset's data are, always at the same place and of the same height: what is wrong
+ * fills it with colour and says what to do, and nothing on the page moves.
+ */
+import { Button } from "@mantine/core";
+import { sessions } from "@shared/api/endpoints";
+import type { SessionView, Signal } from "@shared/api/types";
+import { number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { useMutation, useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { type Key, useTexts } from "../../i18n";
+import { useMay } from "../../may";
+import { alarmsQuery } from "../../queries";
+import {
+  type Alarms,
+  amount,
+  jointNames,
+  mostUrgent,
+  remedyKey,
+  type ShownAlarm,
+  stateOf,
+  titleKey,
+} from "./alarms";
+import classes from "./SignalStrip.module.css";
+
+interface SignalStripProps {
+  readonly session: SessionView;
+  readonly alarms: Alarms;
+  readonly onHistory: () => void;
+}
+
+export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): JSX.Element {
+  const { t } = useTexts();
+  const first = mostUrgent(alarms.on, alarms.isSeen);
+  const tone = first === undefined ? classes.fine : classes[first.severity];
+  const seen = first !== undefined && alarms.isSeen(first);
+  const signal = alarms.quality?.signal ?? null;
+  const total = useQuery(alarmsQuery(session.id, stateOf(session))).data?.length ?? 0;
+  return (
+    <section
+      className={`${classes.strip} ${tone} ${seen ? classes.seen : ""}`}
+      data-tour="signal"
+      aria-label={t("signal.label")}
+    >
+      {first === undefined ? (
+        <Calm session={session} isRecording={isMoving(signal)} />
+      ) : (
+        <Wrong alarm={first} session={session} others={alarms.on.length - 1} />
+      )}
+      {first?.code === "help_asked" && <AnswerCall session={session} />}
+      {first !== undefined && first.code !== "help_asked" && !seen && (
+        <Button size="xs" variant="default" onClick={() => alarms.see(first)}>
+          {t("alarm.understood")}
+        </Button>
+      )}
+      {session.ended_at === null && <Figures signal={signal} />}
+      <Button
+        size="xs"
+        variant="default"
+        leftSection={<Icon name="list" size={16} />}
+        onClick={onHistory}
+      >
+        {t("alarm.open")}
+        {total > 0 && <span className={`${classes.total} numbers`}>{total}</span>}
+      </Button>
+    </section>
+  );
+}
+
+/** The participant's call ends when somebody is there, not when somebody has read of it. */
+function AnswerCall({ session }: { readonly session: SessionView }): JSX.Element | null {
+  const { t } = useTexts();
+  const may = useMay();
+  const answer = useMutation({ mutationFn: () => sessions.answerHelp(session.id) });
+  if (!may("run")) return null;
+  return (
+    <Button size="xs" loading={answer.isPending} onClick={() => answer.mutate()}>
+      {t("alarm.help_asked.answer")}
+    </Button>
+  );
+}
+
+const isMoving = (signal: Signal | null): boolean =>
+  signal !== null && (signal.frame_rate_hz ?? 0) > 0;
+
+interface CalmProps {
+  readonly session: SessionView;
+  readonly isRecording: boolean;
+}
+
+function Calm({ session, isRecording }: CalmProps): JSX.Element {
+  const { t } = useTexts();
+  const ended = session.ended_at !== null;
+  const connected = session.devices.some((one) => one.kind === "headset" && one.connected);
+  const body: Key = !connected
+    ? "signal.fine.noHeadset"
+    : isRecording
+      ? "signal.fine.recording"
+      : "signal.fine.waiting";
+  return (
+    <div className={classes.message}>
+      <Icon name={connected && isRecording ? "check" : "info"} size={22} />
+      <div className={classes.words} role="status">
+        <div className={classes.title}>{t(ended ? "signal.over" : "signal.fine")}</div>
+        <div className={classes.remedy}>{t(ended ? "signal.over.body" : body)}</div>
+      </div>
+    </div>
+  );
+}
+
+interface WrongProps {
+  readonly alarm: ShownAlarm;
+  readonly session: SessionView;
+  readonly others: number;
+}
+
+function Wrong({ alarm, session, others }: WrongProps): JSX.Element {
+  const { t, language } = useTexts();
+  const joints = jointNames(alarm);
+  const much = amount(alarm, language);
+  const remedy = t(remedyKey(alarm, session));
+  return (
+    <div className={classes.message}>
+      <Icon name="alert" size={26} />
+      <div className={classes.words}>
+        <div className={classes.title}>
+          <span role={alarm.severity === "critical" ? "alert" : "status"}>
+            {t(titleKey(alarm))}
+            {joints !== null && `: ${joints}`}
+            <span className="visually-hidden">. {remedy}</span>
+          </span>
+          {/* What grows by the second is not read out again by the second. */}
+          {much !== null && (
+            <span className={`${classes.amount} numbers`} aria-hidden="true">
+              {isDuration(alarm) ? t("alarm.for", { time: much }) : much}
+            </span>
+          )}
+          {others > 0 && (
+            <span className={classes.others}>{t("alarm.more", { count: others })}</span>
+          )}
+        </div>
+        <div className={classes.remedy} aria-hidden="true" title={remedy}>
+          {remedy}
+        </div>
+      </div>
+    </div>
+  );
+}
+
+const isDuration = ({ code, unit }: ShownAlarm): boolean =>
+  unit === "s" && code !== "gap" && code !== "backlog";
+
+function Figures({ signal }: { readonly signal: Signal | null }): JSX.Element {
+  const { t, language } = useTexts();
+  const show = (value: number | null | undefined, digits: number, unit = "", before = "") =>
+    value === null || value === undefined
+      ? "–"
+      : `${before}${number(value, language, digits)}${unit}`;
+  const usual = show(signal?.usual_rate_hz, 0, " Hz");
+  const lost = signal?.gaps ? ` · ${show(signal.gap_s, 1, " s")}` : "";
+  const figures = [
+    ["rate", show(signal?.frame_rate_hz, 0, " Hz")],
+    ["gaps", `${show(signal?.gaps, 0)}${lost}`],
+    ["clock", show(signal?.clock_uncertainty_ms, 1, " ms", "± ")],
+    ["behind", show(signal?.behind_s, 1, " s")],
+    ["flagged", show(signal?.frames_flagged, 0)],
+  ] as const;
+  return (
+    <dl className={`${classes.figures} numbers`}>
+      {figures.map(([name, value]) => (
+        <div
+          key={name}
+          className={classes[name]}
+          title={t(`signal.hint.${name}`, name === "rate" ? { usual } : undefined)}
+        >
+          <dt>{t(`signal.${name}`)}</dt>
+          <dd>{value}</dd>
+        </div>
+      ))}
+    </dl>
+  );
+}

@@ -1,0 +1,181 @@
+/** Which alarms are on, in the order in which they matter, and the words for them. */
+import type { Alarm, LiveAlarm, SessionView, StorageNews } from "@shared/api/types";
+import { clockFace, number } from "@shared/format";
+import { type Milliseconds, milliseconds, seconds } from "@shared/units";
+import { useEffect, useState } from "react";
+import type { Key } from "../../i18n";
+import { type Quality, type TelemetryStore, useQuality } from "../session/telemetryStore";
+
+/** An alarm as it is shown, whether it was told live or read with the session. */
+export interface ShownAlarm {
+  /** The same for the same alarm, wherever it was heard of. */
+  readonly key: string;
+  readonly code: string;
+  readonly severity: Alarm["severity"];
+  readonly since: string;
+  readonly stream: string | null;
+  readonly joints: readonly string[];
+  /** Null where it would be out of date: only live news keep up with it. */
+  readonly value: number | null;
+  readonly unit: string | null;
+}
+
+/** News of the headset come once a second; when they stop, the session's own word counts. */
+const NEWS_LAST: Milliseconds = 3000 as Milliseconds;
+
+/** What is wrong now: critical first, then the newest. */
+export function currentAlarms(
+  session: SessionView,
+  quality: Quality | null,
+  storage: Storage | null,
+  now: Milliseconds,
+): readonly ShownAlarm[] {
+  const fresh = quality !== null && now - quality.at < NEWS_LAST;
+  const recorded = session.alarms.filter((alarm) => !fresh || isOfPerson(alarm.code));
+  const alarms = [...(fresh ? quality.alarms.map(fromNews) : []), ...recorded.map(fromRecord)];
+  return [...alarms, ...storageAlarms(storage)].toSorted(
+    (a, b) => urgency(b) - urgency(a) || Date.parse(b.since) - Date.parse(a.since),
+  );
+}
+
+/** About the participant, not the headset: the headset's news never tell of them. */
+const isOfPerson = (code: string): boolean => code.startsWith("stop_rule_");
+
+const SEVERITIES = ["info", "warning", "critical"] as const;
+const urgency = (alarm: ShownAlarm): number => SEVERITIES.indexOf(alarm.severity);
+
+const keyOf = (alarm: Alarm | LiveAlarm): string =>
+  `${alarm.code} ${alarm.stream ?? ""} ${Date.parse(alarm.since)}`;
+
+const fromNews = (alarm: LiveAlarm): ShownAlarm => ({ ...alarm, key: keyOf(alarm) });
+
+/** The record tells how it began; a length of time, but for a gap's, has grown since. */
+export function fromRecord(alarm: Alarm): ShownAlarm {
+  const grows = alarm.unit === "s" && alarm.code !== "gap";
+  return { ...alarm, key: keyOf(alarm), joints: [], value: grows ? null : alarm.value };
+}
+
+/**
+ * The alarm that is shown: of the most severe the newest that nobody has taken note of. One that
+ * was noted still stands before anything less severe.
+ */
+export function mostUrgent(
+  alarms: readonly ShownAlarm[],
+  isSeen: (alarm: ShownAlarm) => boolean,
+): ShownAlarm | undefined {
+  const [first] = alarms;
+  const alike = alarms.filter((alarm) => alarm.severity === first?.severity);
+  return alike.find((alarm) => !isSeen(alarm)) ?? first;
+}
+
+/** Differs whenever an alarm begins or ends: by then the list of them has changed, too. */
+export const stateOf = (session: SessionView): string =>
+  session.alarms.map((alarm) => alarm.id).join(" ");
+
+const CODES = [
+  "silent",
+  "disconnected",
+  "backlog",
+  "bad_values",
+  "frozen",
+  "low_frame_rate",
+  "gap",
+  "jump",
+  "clock_unknown",
+  "clock_uncertain",
+  "storage",
+  "low_disk",
+  "stop_rule_met",
+  "stop_rule_near",
+  "stop_rule_unknown",
+  "help_asked",
+] as const;
+
+type Code = (typeof CODES)[number];
+
+const known = (code: string): Code | "other" => CODES.find((one) => one === code) ?? "other";
+
+export const titleKey = (alarm: ShownAlarm): Key => `alarm.${known(alarm.code)}`;
+
+/** What to do; while the phase stands because of it, that it stands. */
+export function remedyKey(alarm: ShownAlarm, session: SessionView): Key {
+  const code = known(alarm.code);
+  const stands = session.current?.status === "paused";
+  if (stands && (code === "silent" || code === "disconnected")) return `alarm.${code}.paused`;
+  return `alarm.${code}.do`;
+}
+
+/** `4 s`, `1:05`, `± 12 ms`, `61 Hz`, `3`: how much of it there is, where that helps. */
+export function amount(alarm: ShownAlarm, language: string): string | null {
+  const { value, unit, code } = alarm;
+  if (value === null || code === "jump") return null;
+  if (code === "gap") return `${number(value, language, 2)} s`;
+  if (unit === "s") return value < 60 ? `${Math.floor(value)} s` : clockFace(seconds(value));
+  if (code === "clock_uncertain") return `± ${number(value, language, 0)} ms`;
+  return unit === null ? number(value, language, 0) : `${number(value, language, 0)} ${unit}`;
+}
+
+/** `Left Hand, Head`: the joints meant, at most three. */
+export function jointNames(alarm: ShownAlarm): string | null {
+  if (alarm.joints.length === 0) return null;
+  const named = alarm.joints.slice(0, 3).map((joint) => joint.replace(/([a-z])([A-Z])/g, "$1 $2"));
+  return named.join(", ") + (alarm.joints.length > 3 ? " …" : "");
+}
+
+export interface Storage {
+  readonly news: StorageNews;
+  /** When this page heard of it, as an ISO time. */
+  readonly heardAt: string;
+}
+
+/** Trouble with the server's disk, as alarms: it concerns every session, and the record cannot tell. */
+function storageAlarms(storage: Storage | null): readonly ShownAlarm[] {
+  if (storage === null) return [];
+  const { news, heardAt } = storage;
+  if (news.status === "failing") return [alarm("storage", "critical", news.since ?? heardAt)];
+  return news.low_disk ? [alarm("low_disk", "warning", heardAt)] : [];
+}
+
+const alarm = (code: string, severity: ShownAlarm["severity"], since: string): ShownAlarm => ({
+  key: `${code} ${since}`,
+  code,
+  severity,
+  since,
+  stream: null,
+  joints: [],
+  value: null,
+  unit: null,
+});
+
+export interface Alarms {
+  readonly on: readonly ShownAlarm[];
+  readonly quality: Quality | null;
+  readonly isSeen: (alarm: ShownAlarm) => boolean;
+  readonly see: (alarm: ShownAlarm) => void;
+}
+
+/** The alarms that are on, and which of them the operator has taken note of. */
+export function useAlarms(
+  session: SessionView,
+  store: TelemetryStore,
+  storage: Storage | null,
+): Alarms {
+  const quality = useQuality(store);
+  const [seen, setSeen] = useState<ReadonlySet<string>>(new Set());
+  useAgain(quality);
+  return {
+    on: currentAlarms(session, quality, storage, milliseconds(performance.now())),
+    quality,
+    isSeen: (alarm) => seen.has(alarm.key),
+    see: (alarm) => setSeen((before) => new Set([...before, alarm.key])),
+  };
+}
+
+/** Draw once more when the news have become old, since nothing else would. */
+function useAgain(quality: Quality | null): void {
+  const [, again] = useState<Quality | null>(null);
+  useEffect(() => {
+    const timer = setTimeout(() => again(quality), NEWS_LAST + 50);
+    return () => clearTimeout(timer);
+  }, [quality]);
+}

@@ -1,0 +1,151 @@
+/** Tablet and headset: whether they are there, and how to bring them in. */
+import { ActionIcon, Button } from "@mantine/core";
+import { sessions } from "@shared/api/endpoints";
+import type { Device, PairedDevice, SessionView } from "@shared/api/types";
+import { ago } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { useMutation } from "@tanstack/react-query";
+import { type JSX, useEffect, useState } from "react";
+import { useTexts } from "../../i18n";
+import { Key } from "../../ui/Key";
+import cockpit from "../Cockpit.module.css";
+import classes from "../Panels.module.css";
+import { isBusy } from "../session/keys";
+import { PairingDialog } from "./PairingDialog";
+
+const KINDS: readonly Device[] = ["tablet", "headset"];
+/** Pairing is far down the page for somebody without a mouse. */
+const PAIR_KEYS: Readonly<Record<Device, string>> = { tablet: "T", headset: "H" };
+
+export function DevicesPanel({ session }: { readonly session: SessionView }): JSX.Element {
+  const { t } = useTexts();
+  const [pairing, setPairing] = useState<Device | null>(null);
+  usePairKeys(setPairing);
+  return (
+    <section data-tour="devices">
+      <h2 className={cockpit.sectionTitle}>{t("devices.title")}</h2>
+      {KINDS.map((kind) => {
+        const paired = session.devices.filter((device) => device.kind === kind);
+        if (paired.length === 0) {
+          return <Unpaired key={kind} kind={kind} onPair={() => setPairing(kind)} />;
+        }
+        return paired.map((device) => (
+          <Paired
+            key={device.id}
+            sessionId={session.id}
+            device={device}
+            onPair={() => setPairing(kind)}
+          />
+        ));
+      })}
+      <PairingDialog session={session} device={pairing} onClose={() => setPairing(null)} />
+    </section>
+  );
+}
+
+function Unpaired({ kind, onPair }: { readonly kind: Device; readonly onPair: () => void }) {
+  const { t } = useTexts();
+  return (
+    <div className={classes.device}>
+      <Icon name={kind} size={22} />
+      <div>
+        <div className={classes.deviceName}>
+          {t(`device.${kind}`)} <Key name={PAIR_KEYS[kind]} />
+        </div>
+        <div className={classes.deviceState}>{t("device.unpaired")}</div>
+      </div>
+      <Button
+        size="xs"
+        variant="light"
+        onClick={onPair}
+        aria-label={t(`device.pair.${kind}`)}
+        aria-keyshortcuts={PAIR_KEYS[kind]}
+      >
+        {t("device.pair")}
+      </Button>
+    </div>
+  );
+}
+
+/** Keys that show a code; a device that is there already is replaced by whoever uses it. */
+function usePairKeys(pair: (kind: Device) => void): void {
+  useEffect(() => {
+    const onKey = (event: KeyboardEvent) => {
+      const kind = KINDS.find((one) => PAIR_KEYS[one] === event.key.toUpperCase());
+      if (kind === undefined || event.repeat || isBusy(event)) return;
+      event.preventDefault();
+      pair(kind);
+    };
+    document.addEventListener("keydown", onKey);
+    return () => document.removeEventListener("keydown", onKey);
+  }, [pair]);
+}
+
+interface PairedProps {
+  readonly sessionId: string;
+  readonly device: PairedDevice;
+  readonly onPair: () => void;
+}
+
+function Paired({ sessionId, device, onPair }: PairedProps): JSX.Element {
+  const { t, language } = useTexts();
+  const now = useSlowClock();
+  const revoke = useMutation({ mutationFn: () => sessions.revoke(sessionId, device.id) });
+  const seen = device.last_seen_at === null ? null : ago(device.last_seen_at, now, language);
+  return (
+    <div className={classes.device}>
+      <Icon name={device.kind} size={22} />
+      <div>
+        <div className={classes.deviceName}>{device.name || t(`device.${device.kind}`)}</div>
+        <div className={`${classes.deviceState} ${device.connected ? "" : classes.lost}`}>
+          <ConnectionMark connected={device.connected} />
+          {device.connected ? t("device.connected") : t("device.lost")}
+          {!device.connected && seen !== null && ` · ${seen}`}
+        </div>
+      </div>
+      {device.connected ? (
+        <ActionIcon
+          variant="subtle"
+          color="gray"
+          loading={revoke.isPending}
+          aria-label={t(`device.revoke.${device.kind}`)}
+          title={t(`device.revoke.${device.kind}`)}
+          onClick={() => revoke.mutate()}
+        >
+          <Icon name="close" size={16} />
+        </ActionIcon>
+      ) : (
+        <Button
+          size="xs"
+          variant="light"
+          onClick={onPair}
+          aria-label={t(`device.pair.${device.kind}`)}
+        >
+          {t("device.pair")}
+        </Button>
+      )}
+    </div>
+  );
+}
+
+function ConnectionMark({ connected }: { readonly connected: boolean }): JSX.Element {
+  return (
+    <svg width="10" height="10" viewBox="0 0 10 10" aria-hidden="true">
+      {connected ? (
+        <circle cx="5" cy="5" r="4.5" fill="var(--accent)" />
+      ) : (
+        <path d="M5 1 9.5 9.2H.5Z" fill="none" stroke="currentColor" strokeWidth="1.4" />
+      )}
+    </svg>
+  );
+}
+
+/** The time of day, every five seconds: enough for "last seen". */
+function useSlowClock(): Date {
+  const [now, setNow] = useState(() => new Date());
+  useEffect(() => {
+    const timer = setInterval(() => setNow(new Date()), 5000);
+    return () => clearInterval(timer);
+  }, []);
+  return now;
+}

@@ -1,0 +1,138 @@
+/** A short code, in type that can be read across the room, and the same as a QR code. */
+import { Button, Loader, Modal } from "@mantine/core";
+import { sessions } from "@shared/api/endpoints";
+import type { Device, Pairing, SessionView } from "@shared/api/types";
+import { clockFace } from "@shared/format";
+import { Notice } from "@shared/ui/Notice";
+import { seconds } from "@shared/units";
+import { useQuery } from "@tanstack/react-query";
+import { type JSX, useEffect, useRef, useState } from "react";
+import { Failure } from "../../errors";
+import { useTexts } from "../../i18n";
+import { useShown } from "../../ui/page";
+import classes from "../Panels.module.css";
+
+interface PairingDialogProps {
+  readonly session: SessionView;
+  readonly device: Device | null;
+  readonly onClose: () => void;
+}
+
+export function PairingDialog({ session, device, onClose }: PairingDialogProps): JSX.Element {
+  const { t } = useTexts();
+  const named = useShown(device);
+  return (
+    <Modal
+      opened={device !== null}
+      onClose={onClose}
+      size="md"
+      title={named && t(`device.pair.${named}`)}
+      closeButtonProps={{ "aria-label": t("action.close") }}
+    >
+      {device !== null && <Code session={session} device={device} onClose={onClose} />}
+    </Modal>
+  );
+}
+
+interface CodeProps extends PairingDialogProps {
+  readonly device: Device;
+}
+
+function Code({ session, device, onClose }: CodeProps): JSX.Element {
+  const query = useQuery({
+    queryKey: ["pairing", session.id, device],
+    queryFn: () => sessions.pair(session.id, device),
+    staleTime: Number.POSITIVE_INFINITY,
+    gcTime: 0,
+    refetchOnMount: "always",
+    refetchOnWindowFocus: false,
+  });
+  useCloseWhenPaired(session, device, onClose);
+  if (query.isError) return <Failure error={query.error} onRetry={() => void query.refetch()} />;
+  if (query.data === undefined || query.isFetching) {
+    return (
+      <div className={classes.pair}>
+        <Loader />
+      </div>
+    );
+  }
+  return <CodeShown pairing={query.data} device={device} onRenew={() => void query.refetch()} />;
+}
+
+/** A device that was not there when the dialog opened has used the code. */
+function useCloseWhenPaired(session: SessionView, device: Device, onClose: () => void): void {
+  const known = useRef(new Set(session.devices.map(({ id }) => id)));
+  const arrived = session.devices.some(({ id, kind }) => kind === device && !known.current.has(id));
+  useEffect(() => {
+    if (arrived) onClose();
+  }, [arrived, onClose]);
+}
+
+interface CodeShownProps {
+  readonly pairing: Pairing;
+  readonly device: Device;
+  readonly onRenew: () => void;
+}
+
+function CodeShown({ pairing, device, onRenew }: CodeShownProps): JSX.Element {
+  const { t } = useTexts();
+  const left = useSecondsUntil(pairing.expires_at);
+  if (left <= 0) {
+    return (
+      <Notice
+        tone="warn"
+        title={t("pairing.expired")}
+        actions={
+          <Button size="xs" onClick={onRenew}>
+            {t("pairing.renew")}
+          </Button>
+        }
+      />
+    );
+  }
+  return (
+    <div className={classes.pair}>
+      <span>{t(`pairing.how.${device}`)}</span>
+      <output className={classes.code}>{pairing.code}</output>
+      {pairing.qr_svg !== null && (
+        <img
+          className={classes.qr}
+          alt={t("pairing.qr")}
+          src={`data:image/svg+xml;charset=utf-8,${encodeURIComponent(pairing.qr_svg)}`}
+        />
+      )}
+      <span className={classes.url}>{pairing.url}</span>
+      <FirstTime pairing={pairing} />
+      <span className="numbers">{t("pairing.left", { time: clockFace(seconds(left)) })}</span>
+    </div>
+  );
+}
+
+/** Folded: needed once for each device, and then in the way. */
+function FirstTime({ pairing }: { readonly pairing: Pairing }): JSX.Element | null {
+  const { t } = useTexts();
+  if (pairing.help_url === null || pairing.help_qr_svg === null) return null;
+  return (
+    <details className={classes.first}>
+      <summary>{t("pairing.first")}</summary>
+      <img
+        className={classes.qr}
+        alt={t("pairing.first.qr")}
+        src={`data:image/svg+xml;charset=utf-8,${encodeURIComponent(pairing.help_qr_svg)}`}
+      />
+      <span className={classes.url}>{pairing.help_url}</span>
+    </details>
+  );
+}
+
+function useSecondsUntil(iso: string): number {
+  const until = () => Math.max(0, Math.ceil((Date.parse(iso) - Date.now()) / 1000));
+  const [left, setLeft] = useState(until);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: `until` only depends on `iso`
+  useEffect(() => {
+    setLeft(until());
+    const timer = setInterval(() => setLeft(until()), 1000);
+    return () => clearInterval(timer);
+  }, [iso]);
+  return left;
+}

@@ -1,0 +1,88 @@
+/** The session's own record, event by event, as the server appended it. */
+import type { SessionEvent, SessionView } from "@shared/api/types";
+import { timeOfDay } from "@shared/format";
+import { Notice } from "@shared/ui/Notice";
+import { useQuery } from "@tanstack/react-query";
+import type { JSX } from "react";
+import { useTexts } from "../../i18n";
+import { eventsQuery } from "../../queries";
+import { Loaded } from "../../ui/Loaded";
+import { RecordDrawer } from "../../ui/RecordDrawer";
+import classes from "../Panels.module.css";
+
+interface EventDrawerProps {
+  readonly session: SessionView;
+  readonly opened: boolean;
+  readonly onClose: () => void;
+}
+
+export function EventDrawer({ session, opened, onClose }: EventDrawerProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <RecordDrawer title={t("log.title")} opened={opened} onClose={onClose}>
+      <Events session={session} />
+    </RecordDrawer>
+  );
+}
+
+function Events({ session }: { readonly session: SessionView }): JSX.Element {
+  const query = useQuery(eventsQuery(session.id, session.version));
+  return <Loaded query={query}>{(events) => <EventTable events={events} />}</Loaded>;
+}
+
+function EventTable({ events }: { readonly events: readonly SessionEvent[] }): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <>
+      {events.some(({ hash }) => hash === null) && (
+        <Notice tone="info" icon="lock">
+          {t("blind.log")}
+        </Notice>
+      )}
+      <table className={`${classes.table} numbers`}>
+        <thead>
+          <tr>
+            <th scope="col">{t("log.number")}</th>
+            <th scope="col">{t("log.time")}</th>
+            <th scope="col">{t("log.event")}</th>
+            <th scope="col">{t("log.by")}</th>
+          </tr>
+        </thead>
+        <tbody>
+          {[...events].reverse().map((event) => (
+            <tr key={event.seq}>
+              <td>{event.seq}</td>
+              <td className={classes.nowrap}>{timeOfDay(event.at, language)}</td>
+              <td>
+                {event.type === "blinding_lifted"
+                  ? t("log.blinding_lifted")
+                  : event.type.replaceAll("_", " ")}
+                <div className={classes.nothing}>{detailsOf(event)}</div>
+              </td>
+              <td className={classes.nowrap}>{actorName(event.by)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </>
+  );
+}
+
+/** Identifiers and hashes are for the export; people read the rest. */
+const MACHINE = /(_id|_hash|^by|hash)$/;
+
+const detailsOf = (event: SessionEvent): string =>
+  Object.entries(event.data)
+    .filter(([name, value]) => value !== null && typeof value !== "object" && !MACHINE.test(name))
+    .map(([name, value]) => `${name.replaceAll("_", " ")} ${readable(name, value)}`)
+    .join(" · ");
+
+/** Steps are counted from 1 on every page, and lengths of time carry three decimals at most. */
+function readable(name: string, value: unknown): string {
+  if (typeof value !== "number") return String(value);
+  return name === "step" ? String(value + 1) : String(Math.round(value * 1000) / 1000);
+}
+
+/** `account:admin` is admin; a device is called by its kind. */
+const actorName = (by: string): string =>
+  by.startsWith("account:") ? by.slice("account:".length) : (by.split(":")[0] ?? by);

@@ -1,0 +1,119 @@
+/** What was recorded in each phase, once the session is over. */
+import { ActionIcon, Button } from "@mantine/core";
+import type { PhaseSummary, SessionView } from "@shared/api/types";
+import { latency, number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { milliseconds } from "@shared/units";
+import type { JSX } from "react";
+import { SessionDownload } from "../../downloads/DownloadsButton";
+import { useTexts } from "../../i18n";
+import cockpit from "../Cockpit.module.css";
+import classes from "../Panels.module.css";
+import { AchievedLatency } from "./AchievedLatency";
+
+const COLUMNS = [
+  "phase",
+  "latency",
+  "achieved",
+  "active",
+  "completions",
+  "contacts",
+  "contactTime",
+] as const;
+
+/** The replay's address has a question mark, which the router would take for its own. */
+const replayOf = (session: string, phase: number): string =>
+  `#/sessions/${encodeURIComponent(session)}/replay?phase=${phase}`;
+
+export function PhaseTable({ session }: { readonly session: SessionView }): JSX.Element | null {
+  const { t } = useTexts();
+  const tasks = session.phases.filter((phase) => phase.limb !== null);
+  if (tasks.length === 0) return null;
+  return (
+    <section className={classes.card}>
+      <div className={classes.titleRow}>
+        <h2 className={cockpit.sectionTitle}>{t("recorded.title")}</h2>
+        <SessionDownload session={session} />
+        <Button
+          component="a"
+          href={`#/sessions/${encodeURIComponent(session.id)}/replay`}
+          data-tour="replay"
+          variant="subtle"
+          size="compact-sm"
+          leftSection={<Icon name="play" size={15} />}
+        >
+          {t("replay.open")}
+        </Button>
+      </div>
+      <table className={`${classes.table} numbers`}>
+        <thead>
+          <tr>
+            {COLUMNS.map((column) => (
+              <th key={column} scope="col">
+                {t(`recorded.${column}`)}
+              </th>
+            ))}
+            <th scope="col">
+              <span className="visually-hidden">{t("replay.open")}</span>
+            </th>
+          </tr>
+        </thead>
+        <tbody>
+          {tasks.map((phase) => (
+            <PhaseRow key={phase.phase_id} session={session.id} phase={phase} />
+          ))}
+        </tbody>
+      </table>
+    </section>
+  );
+}
+
+interface PhaseRowProps {
+  readonly session: string;
+  readonly phase: PhaseSummary;
+}
+
+function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
+  const { t, language } = useTexts();
+  const voided = phase.status === "voided";
+  return (
+    <tr className={voided ? classes.voided : undefined}>
+      <td className={classes.phase}>
+        {phase.limb !== null && (
+          <span className={classes.nowrap}>{t(`step.task.${phase.limb}`)}</span>
+        )}
+        {phase.attempt > 1 && ` · ${t("timeline.attempt", { number: phase.attempt })}`}
+        {voided && ` · ${t("recorded.voided")}`}
+      </td>
+      <td>
+        {phase.latency_ms === null ? t("timeline.hidden") : latency(milliseconds(phase.latency_ms))}
+      </td>
+      <td>
+        <AchievedLatency phase={phase} />
+      </td>
+      <td>{number(phase.active_s, language, 1)} s</td>
+      <td>{phase.completions}</td>
+      <td>{phase.side_contacts}</td>
+      <td>{number(phase.side_contact_s, language, 1)} s</td>
+      <td>
+        <ReplayLink session={session} phase={phase} />
+      </td>
+    </tr>
+  );
+}
+
+function ReplayLink({ session, phase }: PhaseRowProps): JSX.Element {
+  const { t } = useTexts();
+  const name = phase.limb === null ? "" : t(`step.task.${phase.limb}`);
+  return (
+    <ActionIcon
+      component="a"
+      href={replayOf(session, phase.phase_id)}
+      variant="subtle"
+      size="sm"
+      aria-label={t("replay.open.phase", { phase: name })}
+    >
+      <Icon name="play" size={15} />
+    </ActionIcon>
+  );
+}

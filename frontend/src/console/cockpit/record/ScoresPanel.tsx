@@ -1,0 +1,126 @@
+/** Scores of the questionnaires as they arrive, newest first. */
+import { Button } from "@mantine/core";
+import { useDisclosure } from "@mantine/hooks";
+import type { AdministrationScores, Score, SessionView } from "@shared/api/types";
+import { latency, number } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { milliseconds } from "@shared/units";
+import type { JSX } from "react";
+import { useTexts } from "../../i18n";
+import { useMay } from "../../may";
+import { AnswersDrawer } from "../../rights/AnswersDrawer";
+import { stepName } from "../../steps";
+import cockpit from "../Cockpit.module.css";
+import classes from "../Panels.module.css";
+import answerHintsClasses from "./AnswerHints.module.css";
+
+export function ScoresPanel({ session }: { readonly session: SessionView }): JSX.Element {
+  const { t } = useTexts();
+  const may = useMay();
+  const [opened, { open, close }] = useDisclosure();
+  const scored = session.scores.filter(
+    ({ score_views, hints }) => score_views.length > 0 || hints.length > 0,
+  );
+  return (
+    <section>
+      <div className={classes.titleRow}>
+        <h2 className={cockpit.sectionTitle}>{t("scores.title")}</h2>
+        {may("rights") && (
+          <Button variant="subtle" size="compact-sm" onClick={open}>
+            {t("answers.open")}
+          </Button>
+        )}
+      </div>
+      <AnswersDrawer
+        sessionId={session.id}
+        code={session.participant_code}
+        opened={opened}
+        onClose={close}
+      />
+      {scored.length === 0 ? (
+        <p className={classes.nothing}>{t("scores.empty")}</p>
+      ) : (
+        <div className={classes.scores}>
+          {[...scored].reverse().map((one) => (
+            <Scores key={one.administration} session={session} one={one} />
+          ))}
+        </div>
+      )}
+    </section>
+  );
+}
+
+interface ScoresProps {
+  readonly session: SessionView;
+  readonly one: AdministrationScores;
+}
+
+function Scores({ session, one }: ScoresProps): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <div>
+      <div className={classes.scoreTitle}>{whereOf(session, one, t)}</div>
+      <dl className={`${classes.score} numbers`}>
+        {one.score_views.map((score) => (
+          <div key={score.key} style={{ display: "contents" }}>
+            <dt>{score.label}</dt>
+            <dd title={rangeOf(score, language)}>
+              {score.value === null ? t("scores.incomplete") : number(score.value, language)}
+            </dd>
+          </div>
+        ))}
+      </dl>
+      <AnswerHints hints={one.hints} />
+    </div>
+  );
+}
+
+/** Which phase the answers are about: the task before the questionnaire, and its condition. */
+function whereOf(
+  session: SessionView,
+  one: AdministrationScores,
+  t: ReturnType<typeof useTexts>["t"],
+): string {
+  const step = session.steps[one.step_index];
+  if (step === undefined) return one.instrument;
+  const task = session.steps
+    .slice(0, one.step_index)
+    .findLast((before) => before.kind === "task" && before.block === step.block);
+  const name = task === undefined || step.block === null ? t(stepName(step)) : t(stepName(task));
+  return step.latency_ms === null ? name : `${name} · ${latency(milliseconds(step.latency_ms))}`;
+}
+
+/** `−12 … 12`: what the score can be at all, where the instrument says so. */
+function rangeOf({ minimum, maximum }: Score, language: string): string | undefined {
+  if (minimum === null || maximum === null) return undefined;
+  return `${number(minimum, language)} … ${number(maximum, language)}`;
+}
+
+type Hint = AdministrationScores["hints"][number];
+
+/** What is noticeable about how a form was filled in: quiet lines below its scores. */
+function AnswerHints({ hints }: { readonly hints: readonly Hint[] }): JSX.Element | null {
+  const { t, language } = useTexts();
+  if (hints.length === 0) return null;
+  const words = ({ kind, items, value, seconds }: Hint) => {
+    switch (kind) {
+      case "alike":
+        return t("hint.alike", { items, value: number(value ?? 0, language) });
+      case "fast":
+        return t("hint.fast", { items, seconds: number(seconds ?? 0, language) });
+      case "left_out":
+        return t("hint.left_out", { count: items });
+    }
+  };
+  return (
+    <ul className={answerHintsClasses.hints} title={t("hint.about")}>
+      {hints.map((hint, place) => (
+        // biome-ignore lint/suspicious/noArrayIndexKey: hints have no other name than their place
+        <li key={place}>
+          <Icon name="info" size={16} />
+          <span>{words(hint)}</span>
+        </li>
+      ))}
+    </ul>
+  );
+}

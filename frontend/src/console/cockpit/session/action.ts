@@ -1,0 +1,110 @@
+/** What an operator does next, what wants a reason, and what can be done over: all from the session. */
+import type { Command, CommandType, SessionView, Step } from "@shared/api/types";
+import type { IconName } from "@shared/ui/Icon";
+import type { Key } from "../../i18n";
+import { isTimed } from "../../steps";
+
+interface PrimaryAction {
+  readonly command: Command;
+  readonly label: Key;
+  readonly icon: IconName;
+}
+
+/** The current step; null before the start and after the end. */
+export function currentStep(session: SessionView): Step | null {
+  return session.current === null ? null : (session.steps[session.current.index] ?? null);
+}
+
+/**
+ * The primary action, or null when the next move is not the operator's: the tablet is being filled
+ * in, the headset counts down, or the session is over. Height has its own form and is not here.
+ */
+export function primaryAction(session: SessionView): PrimaryAction | null {
+  const may = (type: Command["type"]): boolean => session.allowed.includes(type);
+  const step = currentStep(session);
+  if (may("start")) return { command: { type: "start" }, label: "do.start", icon: "play" };
+  if (step === null) return null;
+  if (may("resume")) return { command: { type: "resume" }, label: "do.resume", icon: "play" };
+  if (may("begin_phase")) {
+    return { command: { type: "begin_phase" }, label: beginLabel(step), icon: "play" };
+  }
+  if (may("materialise")) {
+    return { command: { type: "materialise" }, label: "do.materialise", icon: "body" };
+  }
+  if (may("complete_step") && step.kind !== "height" && !wantsConsent(step)) {
+    const label = COMPLETE[step.kind];
+    if (label !== undefined) {
+      const command: Command = { type: "complete_step", step_index: step.index };
+      return { command, label, icon: "check" };
+    }
+  }
+  return null;
+}
+
+function beginLabel(step: Step): Key {
+  if (step.kind === "practice") return "do.begin.practice";
+  return step.limb === null ? "do.begin.free_roam" : `do.begin.${step.limb}`;
+}
+
+/** Whether a consent needs the participant's own hand: a signature, or lines to tick. */
+export const wantsConsent = ({ consent }: Pick<Step, "consent">): boolean =>
+  consent != null &&
+  (consent.signature !== "none" || consent.statements.some((one) => !one.optional));
+
+const COMPLETE: Readonly<Partial<Record<Step["kind"], Key>>> = {
+  consent: "do.complete.consent",
+  instructions: "do.complete.instructions",
+  debrief: "do.complete.debrief",
+  free_roam: "do.complete.other",
+  materialise: "do.complete.other",
+};
+
+/** What to say or do now, for the operator's eye. */
+export function guidance(session: SessionView): Key {
+  const step = currentStep(session);
+  if (session.status !== "active" && session.status !== "planned") return `guide.${session.status}`;
+  if (step === null || session.current === null) return "guide.planned";
+  if (session.current.status !== "ready") return `guide.${session.current.status}`;
+  if (step.kind === "task") return step.limb === "foot" ? "guide.task.foot" : "guide.task.hand";
+  return `guide.${step.kind}`;
+}
+
+export type Reasoned = Extract<
+  CommandType,
+  "redo" | "skip" | "abort" | "withdraw" | "override_stop"
+>;
+
+/** Reasons that come up again and again, one click away. */
+export const COMMON_REASONS: Readonly<Record<Reasoned | "pause", readonly Key[]>> = {
+  pause: ["reason.break", "reason.tracking", "reason.question", "reason.unwell"],
+  redo: ["reason.tracking", "reason.misunderstood", "reason.interrupted"],
+  skip: ["reason.askedAloud", "reason.time", "reason.wish"],
+  abort: ["reason.equipment", "reason.time", "reason.interrupted", "reason.stopRule"],
+  override_stop: ["reason.recovered", "reason.mistyped"],
+  withdraw: ["reason.wish", "reason.sick", "reason.unwell"],
+};
+
+/**
+ * The step that an operator most likely wants done over.
+ *
+ * The current step while its phase is under way; else the task before it, because that is what goes
+ * wrong; else the step before. Everything from that step on is then done over.
+ */
+export function redoTarget(session: SessionView): number {
+  const { current, steps } = session;
+  if (current === null) return 0;
+  if (current.status !== "ready") return current.index;
+  const before = steps.slice(0, current.index);
+  const block = steps[current.index]?.block ?? null;
+  const task = before.findLast((step) => isTimed(step) && step.block === block);
+  return task?.index ?? Math.max(0, current.index - 1);
+}
+
+/** The steps that can be done over: those behind, and the current one once it has begun. */
+export function redoable(session: SessionView): readonly Step[] {
+  const { current, steps } = session;
+  if (current === null) return [];
+  const step = steps[current.index];
+  const begun = current.status !== "ready" || (step !== undefined && isTimed(step));
+  return steps.slice(0, begun ? current.index + 1 : current.index);
+}

@@ -1,0 +1,164 @@
+/** A session as the server sees it, kept current by its live feed, and the way to command it. */
+import { sessions } from "@shared/api/endpoints";
+import { type FeedState, openFeed } from "@shared/api/live";
+import { isApiError, isUnauthorised } from "@shared/api/request";
+import type { Command, SessionView, StorageNews, TelemetryNews } from "@shared/api/types";
+import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { useEffect, useMemo, useState } from "react";
+import { lookAgain } from "../../account";
+import type { Key } from "../../i18n";
+import { sessionQuery } from "../../queries";
+import type { Storage } from "../alarms/alarms";
+import { TelemetryStore } from "./telemetryStore";
+
+/** A command that came too late: another operator was first. */
+interface Overtaken {
+  readonly command: Command;
+  readonly changes: readonly Change[];
+}
+
+export type Send = (command: Command, onDone?: () => void) => void;
+
+export function useSession(id: string) {
+  const queries = useQueryClient();
+  const query = useQuery(sessionQuery(id));
+  const store = useMemo(() => new TelemetryStore(), []);
+  const [storage, setStorage] = useState<Storage | null>(null);
+  const [feed, setFeed] = useState<FeedState>("connecting");
+  const [overtaken, setOvertaken] = useState<Overtaken | null>(null);
+  const { queryKey } = sessionQuery(id);
+
+  const accept = (view: SessionView) =>
+    queries.setQueryData<SessionView>(queryKey, (known) => newer(known, view));
+
+  // biome-ignore lint/correctness/useExhaustiveDependencies: one feed for one session
+  useEffect(
+    () =>
+      openFeed({
+        url: sessions.liveUrl(id),
+        onState: (state) => {
+          setFeed(state);
+          // A feed does not say why it broke off: the sign-in may have been ended elsewhere.
+          if (state === "lost") void lookAgain(queries);
+        },
+        on: {
+          session: (data) => accept(data as SessionView),
+          telemetry: (data) => store.put(data as TelemetryNews),
+          storage: (data) =>
+            setStorage({ news: data as StorageNews, heardAt: new Date().toISOString() }),
+        },
+      }),
+    [id],
+  );
+
+  const command = useMutation({
+    mutationFn: ({ view, command }: { view: SessionView; command: Command }) =>
+      sessions.command(id, view.version, command),
+    onSuccess: (view) => {
+      setOvertaken(null);
+      accept(view);
+    },
+    onError: async (error, sent) => {
+      if (!isApiError(error, "stale")) return;
+      overtake(sent, await sessions.get(id));
+    },
+  });
+
+  const overtake = (
+    sent: { readonly view: SessionView; readonly command: Command },
+    fresh: SessionView,
+  ) => {
+    accept(fresh);
+    setOvertaken({ command: sent.command, changes: changesBetween(sent.view, fresh) });
+  };
+
+  const send: Send = (order, onDone) => {
+    if (query.data === undefined || command.isPending) return;
+    command.mutate({ view: query.data, command: order }, { onSuccess: () => onDone?.() });
+  };
+
+  /** For an order prepared on `seen` with reasons that have changed the version since. */
+  const sendAnew = async (seen: SessionView, order: Command): Promise<void> => {
+    const done = await orderAnew(sessions, seen, order);
+    if (done.overtaken) return overtake({ view: seen, command: order }, done.view);
+    setOvertaken(null);
+    accept(done.view);
+  };
+
+  return {
+    query,
+    store,
+    storage,
+    feed,
+    send,
+    sendAnew,
+    sending: command.isPending,
+    error: isTold(command.error) ? null : command.error,
+    overtaken,
+    dismiss: () => {
+      command.reset();
+      setOvertaken(null);
+    },
+  };
+}
+
+/** Errors that the page tells in a place of their own. */
+const isTold = (error: unknown): boolean => isApiError(error, "stale") || isUnauthorised(error);
+
+/** Answers and live events may cross on the line; the view with the higher version stays. */
+function newer(known: SessionView | undefined, view: SessionView): SessionView {
+  return known !== undefined && known.version > view.version ? known : view;
+}
+
+/**
+ * An order that was prepared for a while, with reasons written and put on record meanwhile.
+ *
+ * Notes and reasons, one's own and those of another operator, change the version of a session and
+ * nothing that the order depends on. So it is sent again on the newest version for as long as the
+ * session's status is the one that the order was prepared for.
+ */
+interface Ordered {
+  readonly view: SessionView;
+  /** Another operator was first: the status is another one, and nothing was sent. */
+  readonly overtaken: boolean;
+}
+
+/** Operators write one reason after the other, and there are few of both. */
+const MOST_TIMES = 20;
+
+/** Raises what the server refuses for another reason, or `stale` when notes never end. */
+export async function orderAnew(
+  api: Pick<typeof sessions, "get" | "command">,
+  seen: SessionView,
+  order: Command,
+): Promise<Ordered> {
+  for (let time = 1; ; time += 1) {
+    const fresh = await api.get(seen.id);
+    if (fresh.status !== seen.status) return { view: fresh, overtaken: true };
+    try {
+      return { view: await api.command(seen.id, fresh.version, order), overtaken: false };
+    } catch (error) {
+      if (!isApiError(error, "stale") || time === MOST_TIMES) throw error;
+    }
+  }
+}
+
+interface Change {
+  readonly key: Key;
+  readonly values?: Readonly<Record<string, string | number>>;
+}
+
+/** What another operator changed between two views of a session, in the words of the console. */
+export function changesBetween(before: SessionView, after: SessionView): readonly Change[] {
+  const changes: Change[] = [];
+  if (before.status !== after.status) changes.push({ key: `change.status.${after.status}` });
+  const step = after.current?.index;
+  if (step !== undefined && step !== before.current?.index) {
+    changes.push({ key: "change.step", values: { number: step + 1 } });
+  } else if (after.current !== null && before.current?.status !== after.current.status) {
+    changes.push({ key: `change.phase.${after.current.status}` });
+  }
+  const added = after.notes.length - before.notes.length;
+  if (added > 0) changes.push({ key: "change.notes", values: { count: added } });
+  return changes.length === 0 ? [{ key: "change.other" }] : changes;
+}

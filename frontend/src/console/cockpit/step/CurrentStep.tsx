@@ -1,0 +1,225 @@
+/** The step that is on, and the one large button that moves the session forward. */
+import { Button, Loader, Menu } from "@mantine/core";
+import type { SessionView, Step } from "@shared/api/types";
+import { latency } from "@shared/format";
+import { Icon } from "@shared/ui/Icon";
+import { milliseconds } from "@shared/units";
+import type { JSX } from "react";
+import { useTexts } from "../../i18n";
+import { isForm, isTimed, stepIcon, stepName } from "../../steps";
+import { Key } from "../../ui/Key";
+import {
+  COMMON_REASONS,
+  currentStep,
+  guidance,
+  primaryAction,
+  type Reasoned,
+  wantsConsent,
+} from "../session/action";
+import type { useSession } from "../session/useSession";
+import classes from "./CurrentStep.module.css";
+import { HeightForm } from "./HeightForm";
+import { PaperConsent } from "./PaperConsent";
+import { PhaseClock } from "./PhaseClock";
+
+interface CurrentStepProps {
+  readonly session: SessionView;
+  readonly live: ReturnType<typeof useSession>;
+  readonly onAsk: (type: Reasoned) => void;
+  readonly onEnterAnswers: () => void;
+}
+
+export function CurrentStep(props: CurrentStepProps): JSX.Element {
+  const { session, live } = props;
+  const { t } = useTexts();
+  const step = currentStep(session);
+  return (
+    <section className={classes.card} data-tour="step" aria-live="polite">
+      {step === null ? (
+        <h2 className={classes.title}>{t(`session.${session.status}`)}</h2>
+      ) : (
+        <>
+          <Kicker session={session} step={step} />
+          <h2 className={classes.title}>
+            <Icon name={stepIcon(step)} size={28} />
+            {t(stepName(step))}
+          </h2>
+        </>
+      )}
+      <p className={classes.guide}>{t(guidance(session))}</p>
+      {step !== null && isTimed(step) && <PhaseClock session={session} store={live.store} />}
+      {session.current?.status === "paused" && <PauseReason live={live} />}
+      {step?.kind === "height" && session.allowed.includes("complete_step") ? (
+        <HeightForm
+          session={session}
+          step={step.index}
+          send={live.send}
+          sending={live.sending}
+          exceptions={<Exceptions {...props} />}
+        />
+      ) : (
+        <div className={classes.actions} data-tour="next">
+          <Primary {...props} />
+          <Exceptions {...props} />
+        </div>
+      )}
+    </section>
+  );
+}
+
+function Kicker({ session, step }: { readonly session: SessionView; readonly step: Step }) {
+  const { t } = useTexts();
+  const parts = [t("step.of", { number: step.index + 1, total: session.steps.length })];
+  if (step.block !== null) {
+    const blocks = new Set(session.steps.map((other) => other.block).filter((b) => b !== null));
+    const number = [...blocks].indexOf(step.block) + 1;
+    parts.push(t("step.block", { number, total: blocks.size }));
+  }
+  if (step.latency_ms !== null) {
+    parts.push(t("step.latency", { latency: latency(milliseconds(step.latency_ms)) }));
+  } else if (step.block !== null) parts.push(t("step.latencyHidden"));
+  if (step.until_completions != null) {
+    parts.push(t("practice.until", { count: step.until_completions }));
+  }
+  if (step.attempt > 1) parts.push(t("timeline.attempt", { number: step.attempt }));
+  return (
+    <div className={`${classes.kicker} numbers`}>
+      {parts.map((part) => (
+        <span key={part}>{part}</span>
+      ))}
+    </div>
+  );
+}
+
+function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Element | null {
+  const { t } = useTexts();
+  const action = primaryAction(session);
+  const step = currentStep(session);
+  if (action !== null) {
+    return (
+      <Button
+        size="lg"
+        className={classes.primary ?? ""}
+        leftSection={<Icon name={action.icon} />}
+        rightSection={<Key name={t("keys.enter")} />}
+        loading={live.sending}
+        onClick={() => live.send(action.command)}
+      >
+        {t(action.label)}
+      </Button>
+    );
+  }
+  if (session.allowed.includes("pause")) {
+    return (
+      <Button
+        size="lg"
+        variant="outline"
+        className={classes.primary ?? ""}
+        leftSection={<Icon name="pause" />}
+        rightSection={<Key name="P" />}
+        loading={live.sending}
+        onClick={() => live.send({ type: "pause" })}
+      >
+        {t("do.pause")}
+      </Button>
+    );
+  }
+  if (step !== null && session.allowed.includes("complete_step") && wantsConsent(step)) {
+    return <PaperConsent session={session} step={step} live={live} />;
+  }
+  if (session.allowed.includes("resume") || step === null || !isForm(step)) return null;
+  return (
+    <>
+      <span className={classes.waiting}>
+        <Loader size="sm" type="dots" />
+        {t("step.waitingTablet")}
+      </span>
+      {session.allowed.includes("enter_answers") && (
+        <Button
+          variant="default"
+          leftSection={<Icon name="form" size={18} />}
+          onClick={onEnterAnswers}
+        >
+          {t("do.enterAnswers")}
+        </Button>
+      )}
+    </>
+  );
+}
+
+const DANGERS = ["abort", "withdraw"] as const;
+
+function Exceptions({ session, onAsk }: CurrentStepProps): JSX.Element | null {
+  const { t } = useTexts();
+  const may = (type: Reasoned): boolean => session.allowed.includes(type);
+  const dangers = DANGERS.filter(may);
+  return (
+    <div className={classes.exceptions}>
+      {may("redo") && (
+        <Button
+          variant="subtle"
+          color="gray"
+          px="sm"
+          rightSection={<Key name="R" />}
+          onClick={() => onAsk("redo")}
+        >
+          {t("do.redo")}
+        </Button>
+      )}
+      {may("skip") && (
+        <Button
+          variant="subtle"
+          color="gray"
+          px="sm"
+          rightSection={<Key name="S" />}
+          onClick={() => onAsk("skip")}
+        >
+          {t("do.skip")}
+        </Button>
+      )}
+      {dangers.length > 0 && (
+        <Menu position="bottom-end" width={280} withInitialFocusPlaceholder={false}>
+          <Menu.Target>
+            <Button
+              variant="subtle"
+              color="red"
+              px="sm"
+              rightSection={<Icon name="down" size={14} />}
+            >
+              {t("do.end")}
+            </Button>
+          </Menu.Target>
+          <Menu.Dropdown>
+            {dangers.map((type) => (
+              <Menu.Item key={type} onClick={() => onAsk(type)}>
+                {t(`do.${type}`)}
+              </Menu.Item>
+            ))}
+          </Menu.Dropdown>
+        </Menu>
+      )}
+    </div>
+  );
+}
+
+/** Pausing is instant; why is said afterwards, while the clock stands, and kept as a note. */
+function PauseReason({ live }: { readonly live: ReturnType<typeof useSession> }): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <div className={classes.why}>
+      <span>{t("pause.why")}</span>
+      {COMMON_REASONS.pause.map((key) => (
+        <Button
+          key={key}
+          size="compact-sm"
+          variant="default"
+          radius="xl"
+          disabled={live.sending}
+          onClick={() => live.send({ type: "note", text: t("pause.note", { reason: t(key) }) })}
+        >
+          {t(key)}
+        </Button>
+      ))}
+    </div>
+  );
+}

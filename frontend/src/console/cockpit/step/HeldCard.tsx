@@ -1,0 +1,48 @@
+/** A stop rule was met: in place of the step stands what to do for the participant, and two ways on. */
+import { Button } from "@mantine/core";
+import type { SessionView } from "@shared/api/types";
+import { Icon } from "@shared/ui/Icon";
+import type { JSX } from "react";
+import { useTexts } from "../../i18n";
+import { useMay } from "../../may";
+import type { Reasoned } from "../session/action";
+import classes from "./HeldCard.module.css";
+
+interface HeldCardProps {
+  readonly held: NonNullable<SessionView["held"]>;
+  readonly onAsk: (type: Reasoned) => void;
+}
+
+export function HeldCard({ held, onAsk }: HeldCardProps): JSX.Element {
+  const { t } = useTexts();
+  const may = useMay();
+  const values = { score: held.score, instrument: held.instrument, limit: held.stop_at };
+  return (
+    <section className={classes.card} role="alert">
+      <h2 className={classes.title}>
+        <Icon name="alert" size={36} />
+        {t("held.title")}
+      </h2>
+      <p className={classes.why}>{t(held.is_rise ? "held.rise" : "held.score", values)}</p>
+      <p>{t("held.body")}</p>
+      {may("run") && (
+        <div className={classes.actions}>
+          <Button
+            size="lg"
+            color="red"
+            leftSection={<Icon name="stop" />}
+            onClick={() => onAsk("abort")}
+          >
+            {t("held.end")}
+          </Button>
+          <Button size="lg" variant="default" onClick={() => onAsk("override_stop")}>
+            {t("do.override_stop")}
+          </Button>
+          <Button variant="subtle" color="red" onClick={() => onAsk("withdraw")}>
+            {t("held.withdraw")}
+          </Button>
+        </div>
+      )}
+    </section>
+  );
+}

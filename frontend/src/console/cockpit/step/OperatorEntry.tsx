@@ -1,0 +1,124 @@
+/** The questionnaire read aloud: the operator enters the answers, and the record says so. */
+import { Center, Loader, Modal } from "@mantine/core";
+import { sessions } from "@shared/api/endpoints";
+import type { Administration, SessionView, Step } from "@shared/api/types";
+import { EMPTY_DRAFT } from "@shared/forms/draft";
+import { formTexts } from "@shared/forms/texts";
+import { Notice } from "@shared/ui/Notice";
+import { uuid } from "@shared/uuid";
+import { useMutation, useQuery } from "@tanstack/react-query";
+import { type JSX, lazy, Suspense, useState } from "react";
+import { Failure } from "../../errors";
+import { useTexts } from "../../i18n";
+import { Loaded } from "../../ui/Loaded";
+
+const FormView = lazy(async () => ({ default: (await import("@shared/forms/FormView")).FormView }));
+
+interface OperatorEntryProps {
+  readonly session: SessionView;
+  readonly step: Step | null;
+  readonly opened: boolean;
+  readonly onClose: () => void;
+}
+
+export function OperatorEntry({ session, step, opened, onClose }: OperatorEntryProps): JSX.Element {
+  const { t } = useTexts();
+  return (
+    <Modal
+      opened={opened}
+      onClose={onClose}
+      size={980}
+      title={t("entry.title", { code: session.participant_code })}
+      closeButtonProps={{ "aria-label": t("action.close") }}
+      closeOnClickOutside={false}
+    >
+      {opened && (
+        <Entry session={session} stepKey={`${step?.key} ${step?.attempt}`} onClose={onClose} />
+      )}
+    </Modal>
+  );
+}
+
+interface EntryProps {
+  readonly session: SessionView;
+  readonly stepKey: string;
+  readonly onClose: () => void;
+}
+
+function Entry({ session, stepKey, onClose }: EntryProps): JSX.Element {
+  const { t } = useTexts();
+  const query = useQuery({
+    queryKey: ["administration", session.id, stepKey],
+    queryFn: () => sessions.administration(session.id),
+    // Asked again whenever it is opened; kept, so that a draft outlives a sign-in that has ended.
+    refetchOnMount: "always",
+    gcTime: 24 * 60 * 60_000,
+  });
+  return (
+    <Loaded query={query}>
+      {(administration) =>
+        administration === null ? (
+          <Notice tone="info" title={t("entry.none")} />
+        ) : (
+          <EntryForm session={session} administration={administration} onClose={onClose} />
+        )
+      }
+    </Loaded>
+  );
+}
+
+interface EntryFormProps {
+  readonly session: SessionView;
+  readonly administration: Administration;
+  readonly onClose: () => void;
+}
+
+function EntryForm({ session, administration, onClose }: EntryFormProps): JSX.Element {
+  const { t } = useTexts();
+  const texts = formTexts(t);
+  const [startedAt] = useState(() => new Date());
+  const [draft, setDraft] = useState(EMPTY_DRAFT);
+  // One key for one filling-in: sending it again after a lost answer stores it once.
+  const [key] = useState(uuid);
+  const save = useMutation({
+    mutationFn: sessions.submit.bind(null, session.id),
+    onSuccess: onClose,
+  });
+  return (
+    <Suspense
+      fallback={
+        <Center mih={240}>
+          <Loader />
+        </Center>
+      }
+    >
+      <Notice tone="info">{t("entry.recorded")}</Notice>
+      {save.isError && <Failure error={save.error} />}
+      <div style={{ marginTop: 16 }}>
+        <FormView
+          administration={administration}
+          language={session.language}
+          texts={texts}
+          draft={draft}
+          startedAt={startedAt}
+          mayOmit
+          busy={save.isPending}
+          onChange={setDraft}
+          onSubmit={(answers, { timings, traces }) =>
+            save.mutate({
+              idempotency_key: key,
+              administration: administration.key,
+              answers,
+              shown_order: administration.item_order,
+              seed: administration.seed,
+              language: session.language,
+              started_at_utc: startedAt.toISOString(),
+              timings,
+              item_traces: traces,
+            })
+          }
+        />
+      </div>
+    </Suspense>
+  );
+}

@@ -1,0 +1,154 @@
+/** The large clock of active time. It never claims more than the last report supports. */
+import type { Current, SessionView } from "@shared/api/types";
+import { activeAt, type ClockReport, isHolding } from "@shared/clock";
+import { clockFace } from "@shared/format";
+import { Icon, type IconName } from "@shared/ui/Icon";
+import { type Milliseconds, milliseconds, type Seconds, seconds } from "@shared/units";
+import { type JSX, useEffect, useMemo, useState } from "react";
+import { type Key, useTexts } from "../../i18n";
+import { type TelemetryStore, useTelemetry } from "../session/telemetryStore";
+import classes from "./CurrentStep.module.css";
+
+const ICONS = {
+  ready: "clock",
+  preparing: "clock",
+  running: "play",
+  paused: "pause",
+  walk_back: "walk",
+  freezing: "stop",
+} as const satisfies Record<string, IconName>;
+
+interface PhaseClockProps {
+  readonly session: SessionView;
+  readonly store: TelemetryStore;
+}
+
+export function PhaseClock({ session, store }: PhaseClockProps): JSX.Element | null {
+  const { t } = useTexts();
+  const report = useReport(session, store);
+  const now = useNow(report.running);
+  const { current } = session;
+  if (current === null) return null;
+  const active = activeAt(report, now);
+  const warning = warningOf(session, report, now);
+  const cause = current.status === "paused" ? causeKey(current.pause_reason) : null;
+  return (
+    <>
+      <div className={classes.clockRow} data-tour="clock">
+        <div
+          className={`${classes.clock} numbers ${report.running ? "" : classes.still}`}
+          role="timer"
+          aria-label={t("clock.label")}
+        >
+          {clockFace(active)}
+        </div>
+        <div className={classes.of}>
+          {report.duration !== null && (
+            <div className="numbers">{t("clock.of", { time: clockFace(report.duration) })}</div>
+          )}
+          <span className={`${classes.state} ${classes[current.status]}`}>
+            <Icon name={ICONS[current.status]} size={18} />
+            {t(stateKey(current))}
+            {cause !== null && `: ${t(cause)}`}
+          </span>
+        </div>
+      </div>
+      <Progress active={active} report={report} label={t("clock.progress")} />
+      <div className={classes.honest} role="status">
+        {warning !== null && (
+          <>
+            <Icon name="alert" size={16} />
+            {t(warning)}
+          </>
+        )}
+      </div>
+    </>
+  );
+}
+
+/** A pause or its end is only true once the headset has confirmed it. */
+function stateKey(current: Current): Key {
+  if (current.pausing) return "phase.pausing";
+  return current.resuming ? "phase.resuming" : `phase.${current.status}`;
+}
+
+const CAUSES = [
+  "operator",
+  "headset_lost",
+  "headset_silent",
+  "server_restarted",
+  "headset",
+] as const;
+
+function causeKey(reason: string | null): Key | null {
+  const known = CAUSES.find((cause) => cause === reason);
+  return known === undefined ? null : `cause.${known}`;
+}
+
+interface ProgressProps {
+  readonly active: Seconds;
+  readonly report: ClockReport;
+  readonly label: string;
+}
+
+function Progress({ active, report, label }: ProgressProps): JSX.Element | null {
+  if (report.duration === null) return null;
+  const share = Math.min(1, active / report.duration);
+  return (
+    <div
+      className={classes.progress}
+      role="progressbar"
+      aria-label={label}
+      aria-valuemin={0}
+      aria-valuemax={report.duration}
+      aria-valuenow={Math.floor(active)}
+    >
+      <div
+        className={`${classes.bar} ${report.running ? "" : classes.stopped}`}
+        style={{ width: `${share * 100}%` }}
+      />
+    </div>
+  );
+}
+
+const hasHeadset = (session: SessionView): boolean =>
+  session.devices.some((device) => device.kind === "headset" && device.connected);
+
+/** The newest word about the clock: the session's own, or telemetry that came after it. */
+function useReport(session: SessionView, store: TelemetryStore): ClockReport {
+  const received = useTelemetry(store);
+  const { current, time_scale } = session;
+  // The page learns of a session's change and of its time together, so the moment is taken here.
+  const own = useMemo(
+    () => ({ active: current?.active_s ?? 0, at: milliseconds(performance.now()) }),
+    [current],
+  );
+  const running = current?.status === "running" && hasHeadset(session);
+  const fresh = running && received !== null && received.at > own.at;
+  return {
+    active: seconds(fresh ? received.telemetry.active_s : own.active),
+    receivedAt: fresh ? received.at : own.at,
+    duration: current?.duration_s == null ? null : seconds(current.duration_s),
+    running,
+    timeScale: time_scale,
+  };
+}
+
+function warningOf(session: SessionView, report: ClockReport, now: Milliseconds): Key | null {
+  if (!hasHeadset(session)) return "clock.noHeadset";
+  return isHolding(report, now) ? "clock.holding" : null;
+}
+
+const TICK_MS = 200;
+
+/** The page's monotonic time, ticking only while something depends on it. */
+function useNow(ticking: boolean): Milliseconds {
+  const [now, setNow] = useState(() => milliseconds(performance.now()));
+  useEffect(() => {
+    setNow(milliseconds(performance.now()));
+    if (!ticking) return;
+    const timer = setInterval(() => setNow(milliseconds(performance.now())), TICK_MS);
+    return () => clearInterval(timer);
+  }, [ticking]);
+  return now;
+}

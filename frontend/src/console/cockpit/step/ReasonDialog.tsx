@@ -1,0 +1,100 @@
+/** Every exception asks why, because the record keeps the reason; common reasons are one key away. */
+import { Button, Group, Modal, Select, Stack, Text } from "@mantine/core";
+import type { SessionView } from "@shared/api/types";
+import { type JSX, useState } from "react";
+import { Failure } from "../../errors";
+import { useTexts } from "../../i18n";
+import { stepName } from "../../steps";
+import { useShown } from "../../ui/page";
+import { ReasonField } from "../../ui/ReasonField";
+import { COMMON_REASONS, type Reasoned, redoable, redoTarget } from "../session/action";
+import type { useSession } from "../session/useSession";
+
+interface ReasonDialogProps {
+  readonly type: Reasoned | null;
+  readonly session: SessionView;
+  readonly live: ReturnType<typeof useSession>;
+  readonly onClose: () => void;
+}
+
+export function ReasonDialog({ type, session, live, onClose }: ReasonDialogProps): JSX.Element {
+  const { t } = useTexts();
+  const named = useShown(type);
+  return (
+    <Modal
+      opened={type !== null}
+      onClose={onClose}
+      title={named && t(`ask.${named}`)}
+      closeButtonProps={{ "aria-label": t("action.close") }}
+    >
+      {type !== null && <ReasonForm type={type} session={session} live={live} onClose={onClose} />}
+    </Modal>
+  );
+}
+
+interface ReasonFormProps extends ReasonDialogProps {
+  readonly type: Reasoned;
+}
+
+function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Element {
+  const { t } = useTexts();
+  const [reason, setReason] = useState("");
+  const [step, setStep] = useState(() => redoTarget(session));
+  const grave = type === "abort" || type === "withdraw";
+  return (
+    <form
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (reason.trim() === "") return;
+        const which = type === "redo" ? { step_index: step } : {};
+        live.send({ type, reason: reason.trim(), ...which }, onClose);
+      }}
+    >
+      <Stack>
+        <Text c="dimmed">{t(`ask.${type}.body`)}</Text>
+        {type === "redo" && <RedoChoice session={session} step={step} onChange={setStep} />}
+        <ReasonField usual={COMMON_REASONS[type]} value={reason} onChange={setReason} />
+        {live.error !== null && <Failure error={live.error} />}
+        <Group justify="flex-end">
+          <Button variant="default" onClick={onClose}>
+            {t("action.cancel")}
+          </Button>
+          <Button
+            type="submit"
+            color={grave ? "red" : "petrol"}
+            disabled={reason.trim() === ""}
+            loading={live.sending}
+          >
+            {t(`do.${type}`)}
+          </Button>
+        </Group>
+      </Stack>
+    </form>
+  );
+}
+
+interface RedoChoiceProps {
+  readonly session: SessionView;
+  readonly step: number;
+  readonly onChange: (step: number) => void;
+}
+
+/** From which step on the session is done over, and what that costs. */
+function RedoChoice({ session, step, onChange }: RedoChoiceProps): JSX.Element {
+  const { t } = useTexts();
+  const steps = redoable(session).map(({ index, ...one }) => ({
+    value: String(index),
+    label: t("redo.step", { number: index + 1, name: t(stepName(one)) }),
+  }));
+  const last = session.current?.index ?? step;
+  return (
+    <Select
+      label={t("redo.from")}
+      description={last > step ? t("redo.also", { count: last - step }) : undefined}
+      data={steps.reverse()}
+      value={String(step)}
+      allowDeselect={false}
+      onChange={(value) => value !== null && onChange(Number(value))}
+    />
+  );
+}

@@ -1,0 +1,29 @@
+/** The disk in three parts that fill it: what this server takes, what others take, what is free. */
+import type { StorageRoom } from "@shared/api/housekeeping";
+
+interface DiskShares {
+  readonly own: number;
+  readonly other: number;
+  readonly free: number;
+  readonly total: number;
+}
+
+export function diskShares({ disk, parts }: StorageRoom): DiskShares {
+  // With a database elsewhere only folders lie on this disk.
+  const here = parts.filter(
+    ({ place }) => disk.holds_database || place === "backups" || place === "scratch",
+  );
+  const taken = Math.max(0, disk.total_bytes - disk.free_bytes);
+  const own = Math.min(
+    taken,
+    here.reduce((sum, part) => sum + part.bytes, 0),
+  );
+  return { own, other: taken - own, free: disk.free_bytes, total: disk.total_bytes };
+}
+
+/** Two digits that count: a forecast is no more exact than the mean it comes from. */
+export function roughly(count: number): number {
+  if (count < 100) return count;
+  const step = 10 ** (Math.floor(Math.log10(count)) - 1);
+  return Math.floor(count / step) * step;
+}

@@ -1,0 +1,78 @@
+/** Tables: lists of things, and the numbers behind a result. */
+import { Table } from "@mantine/core";
+import type { JSX, ReactNode } from "react";
+import classes from "./ListTable.module.css";
+import numbers from "./NumbersTable.module.css";
+
+interface ListTableProps {
+  readonly columns: readonly string[];
+  /** Whether the last column, which has no name, holds what can be done with a row. */
+  readonly withDoing: boolean;
+  readonly className?: string | undefined;
+  readonly children: ReactNode;
+}
+
+/** A list as a table: the names of its columns, and a row for each thing. */
+export function ListTable({
+  columns,
+  withDoing,
+  className = "",
+  children,
+}: ListTableProps): JSX.Element {
+  return (
+    <div className={`${classes.frame} ${className}`}>
+      <Table verticalSpacing="sm" horizontalSpacing="md">
+        <Table.Thead>
+          <Table.Tr>
+            {columns.map((column) => (
+              <Table.Th key={column}>{column}</Table.Th>
+            ))}
+            {withDoing && <Table.Td />}
+          </Table.Tr>
+        </Table.Thead>
+        <Table.Tbody>{children}</Table.Tbody>
+      </Table>
+    </div>
+  );
+}
+
+interface NumbersTableProps {
+  readonly label: string;
+  readonly columns: readonly string[];
+  readonly rows: readonly (readonly string[])[];
+  readonly className?: string | undefined;
+}
+
+/** The numbers behind a result, as they were written: names of columns, and rows of cells. */
+export function NumbersTable({
+  label,
+  columns,
+  rows,
+  className = "",
+}: NumbersTableProps): JSX.Element {
+  return (
+    // biome-ignore lint/a11y/noNoninteractiveTabindex: what scrolls must be reached with the keyboard
+    <section className={`${numbers.scroll} ${className}`} aria-label={label} tabIndex={0}>
+      <table className={`${numbers.table} numbers`}>
+        <thead>
+          <tr>
+            {columns.map((column) => (
+              <th key={column} scope="col">
+                {column}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {rows.map((row) => (
+            <tr key={row.join("|")}>
+              {row.map((cell, at) => (
+                <td key={columns[at]}>{cell}</td>
+              ))}
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </section>
+  );
+}

@@ -1,0 +1,126 @@
+/**
+ * What every view in space is made of: renderer, camera and light, bodies among blocks on a floor.
+ *
+ * A picture is drawn once an animation frame at most, and only after something has changed, so that
+ * a page at rest costs nothing. This module brings three.js with it: import it lazily.
+ */
+import {
+  AmbientLight,
+  DirectionalLight,
+  type Group,
+  type PerspectiveCamera,
+  Scene,
+  WebGLRenderer,
+  type WebGLRendererParameters,
+} from "three";
+import { Blocks3d } from "./blocks3d";
+import type { Body3d } from "./body3d";
+import type { Block, BlockTones, StagePalette } from "./figure";
+import type { FloorPlan } from "./floor";
+import { disposeFloor, makeFloor } from "./floor3d";
+
+export abstract class Space3d {
+  protected readonly renderer: WebGLRenderer;
+  protected readonly scene = new Scene();
+  protected bodies: readonly Body3d[] = [];
+  protected blocks: Blocks3d | null = null;
+  #floor: Group | null = null;
+  #asked = 0;
+
+  /** Throws where the browser has no WebGL. */
+  constructor(
+    protected readonly camera: PerspectiveCamera,
+    canvas: WebGLRendererParameters,
+  ) {
+    this.renderer = new WebGLRenderer({ antialias: true, ...canvas });
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    const sun = new DirectionalLight("#ffffff", 2.1);
+    sun.position.set(2, 6, 3);
+    this.scene.add(new AmbientLight("#ffffff", 1.5), sun);
+  }
+
+  /** Show what the blocks mean now; those that are not named are plain. */
+  light(tones: BlockTones): void {
+    this.blocks?.light(tones);
+    this.ask();
+  }
+
+  resize(width: number, height: number): void {
+    if (width === 0 || height === 0) return;
+    this.renderer.setSize(width, height, false);
+    const before = this.camera.aspect;
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.resized(before);
+    // At once: a canvas is empty after its size has changed.
+    this.#draw();
+  }
+
+  dispose(): void {
+    cancelAnimationFrame(this.#asked);
+    this.#clearBodies();
+    this.#clearBlocks();
+    this.#clearFloor();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
+  /** Called after the camera got another aspect; `before` is the one it had. */
+  protected abstract resized(before: number): void;
+
+  /** Called after every picture. */
+  protected drawn(): void {}
+
+  protected standBodies(bodies: readonly Body3d[]): void {
+    this.#clearBodies();
+    this.bodies = bodies;
+    for (const body of bodies) this.scene.add(body.group);
+  }
+
+  protected standBlocks(blocks: readonly Block[], palette: StagePalette): void {
+    this.#clearBlocks();
+    if (blocks.length === 0) return;
+    this.blocks = new Blocks3d(blocks, palette);
+    this.scene.add(this.blocks.group);
+  }
+
+  protected layFloor(plan: FloorPlan, palette: StagePalette): void {
+    this.#clearFloor();
+    this.#floor = makeFloor(plan, palette);
+    this.scene.add(this.#floor);
+  }
+
+  protected ask(): void {
+    if (this.#asked !== 0) return;
+    this.#asked = requestAnimationFrame(() => this.#draw());
+  }
+
+  #draw(): void {
+    cancelAnimationFrame(this.#asked);
+    this.#asked = 0;
+    this.renderer.render(this.scene, this.camera);
+    this.drawn();
+  }
+
+  #clearBodies(): void {
+    for (const body of this.bodies) {
+      this.scene.remove(body.group);
+      body.dispose();
+    }
+    this.bodies = [];
+  }
+
+  #clearBlocks(): void {
+    if (this.blocks === null) return;
+    this.scene.remove(this.blocks.group);
+    this.blocks.dispose();
+    this.blocks = null;
+  }
+
+  #clearFloor(): void {
+    if (this.#floor === null) return;
+    this.scene.remove(this.#floor);
+    disposeFloor(this.#floor);
+    this.#floor = null;
+  }
+}

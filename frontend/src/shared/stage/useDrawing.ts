@@ -1,0 +1,77 @@
+/** A drawing in space on a canvas of its own, as large as the element that it stands in. */
+import { type RefObject, useEffect, useState } from "react";
+
+interface Drawing {
+  resize(width: number, height: number): void;
+  dispose(): void;
+}
+
+/** `flat` where the browser has no WebGL, or gives none. */
+export type Way = "loading" | "space" | "flat";
+
+/**
+ * Draw on an element while it is on the page. `load` brings three.js and what draws with it, and is
+ * the same function at every call.
+ */
+export function useDrawing<T extends Drawing>(
+  root: RefObject<HTMLElement | null>,
+  load: () => Promise<(canvas: HTMLCanvasElement) => T>,
+): { readonly way: Way; readonly drawing: T | null } {
+  const [way, setWay] = useState<Way>("loading");
+  const [drawing, setDrawing] = useState<T | null>(null);
+  useEffect(() => {
+    const element = root.current;
+    if (element === null) return;
+    let gone = false;
+    let tidy = () => {};
+    void load().then((make) => {
+      if (gone) return;
+      const begun = mount(element, make);
+      if (begun === null) return setWay("flat");
+      tidy = begun.tidy;
+      setDrawing(begun.drawing);
+      setWay("space");
+    });
+    return () => {
+      gone = true;
+      setDrawing(null);
+      setWay("loading");
+      tidy();
+    };
+  }, [root, load]);
+  return { way, drawing };
+}
+
+/** Begin to draw; null where the browser has no WebGL, or gives none. */
+function mount<T extends Drawing>(element: HTMLElement, make: (canvas: HTMLCanvasElement) => T) {
+  if (!hasWebGl()) return null;
+  const canvas = document.createElement("canvas");
+  element.append(canvas);
+  try {
+    const drawing = make(canvas);
+    const observer = new ResizeObserver(() =>
+      drawing.resize(element.clientWidth, element.clientHeight),
+    );
+    observer.observe(element);
+    const tidy = () => {
+      observer.disconnect();
+      drawing.dispose();
+      canvas.remove();
+    };
+    return { drawing, tidy };
+  } catch {
+    canvas.remove();
+    return null;
+  }
+}
+
+/** Asked beforehand, because the library complains aloud where there is none. */
+function hasWebGl(): boolean {
+  try {
+    const context = document.createElement("canvas").getContext("webgl2");
+    context?.getExtension("WEBGL_lose_context")?.loseContext();
+    return context !== null;
+  } catch {
+    return false;
+  }
+}

@@ -1,0 +1,177 @@
+/** One form on this tablet: its draft, and the sending of it until the server has it. */
+import { tablet } from "@shared/api/endpoints";
+import type { ApiError } from "@shared/api/request";
+import type { Administration, Answer, Submission, TabletState } from "@shared/api/types";
+import type { FormDraft } from "@shared/forms/draft";
+import { useCallback, useEffect, useRef, useState } from "react";
+import { type Signing, UNSIGNED } from "../screens/signed";
+import { deliver } from "./deliver";
+import { DraftStore, type Kept } from "./store";
+
+export const drafts = new DraftStore();
+
+export type FormPhase =
+  | { readonly name: "opening" }
+  | { readonly name: "filling"; readonly kept: Kept; readonly refused: ApiError | null }
+  | { readonly name: "sending"; readonly offline: boolean }
+  | { readonly name: "held"; readonly error: ApiError }
+  | { readonly name: "done" };
+
+const RETRY_MS = 3000;
+
+interface KeptForm {
+  readonly phase: FormPhase;
+  readonly keep: (draft: FormDraft) => void;
+  /** Try once more to bring a held form to the server. */
+  readonly again: () => void;
+  readonly send: (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => void;
+}
+
+/** `onSettled` is called when the screen may have changed: stored, superseded or unpaired. */
+export function useKeptForm(
+  sessionId: string,
+  administration: Administration,
+  language: string,
+  onSettled: () => void,
+): KeptForm {
+  const [phase, setPhase] = useState<FormPhase>({ name: "opening" });
+  const retry = useRef<ReturnType<typeof setTimeout>>(undefined);
+  const kept = useRef<Kept | null>(null);
+  const settled = useRef(onSettled);
+  useEffect(() => {
+    settled.current = onSettled;
+  });
+
+  const attempt = useCallback(async (id: string, submission: Submission) => {
+    clearTimeout(retry.current);
+    const delivery = await deliver(drafts, id, submission, tablet.submit);
+    switch (delivery.kind) {
+      case "later":
+        setPhase({ name: "sending", offline: true });
+        retry.current = setTimeout(() => void attempt(id, submission), RETRY_MS);
+        return;
+      case "held":
+        setPhase({ name: "held", error: delivery.error });
+        return;
+      case "refused":
+        if (kept.current === null) return;
+        setPhase({ name: "filling", kept: kept.current, refused: delivery.error });
+        return;
+      case "stored":
+      case "superseded":
+        setPhase({ name: "done" });
+        settled.current();
+        return;
+      case "unpaired":
+        settled.current();
+    }
+  }, []);
+
+  useEffect(() => {
+    let gone = false;
+    void drafts.open(sessionId, administration.key, new Date()).then((opened) => {
+      if (gone) return;
+      kept.current = opened;
+      if (opened.queued === null) setPhase({ name: "filling", kept: opened, refused: null });
+      else {
+        setPhase({ name: "sending", offline: false });
+        void attempt(opened.id, opened.queued);
+      }
+    });
+    return () => {
+      gone = true;
+      clearTimeout(retry.current);
+    };
+  }, [sessionId, administration.key, attempt]);
+
+  const keep = (draft: FormDraft) => {
+    if (kept.current === null) return;
+    kept.current = { ...kept.current, draft };
+    void drafts.keep(kept.current.id, draft);
+  };
+
+  const send = (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => {
+    const opened = kept.current;
+    if (opened === null) return;
+    setPhase({ name: "sending", offline: false });
+    const submission = submissionOf(opened, administration, language, answers, draft);
+    void drafts.queue(opened.id, submission).then((queued) => attempt(opened.id, queued));
+  };
+  const again = () => {
+    setPhase({ name: "sending", offline: false });
+    void drafts.open(sessionId, administration.key, new Date()).then(({ id, queued }) => {
+      if (queued !== null) void attempt(id, queued);
+    });
+  };
+  return { phase, keep, send, again };
+}
+
+function submissionOf(
+  kept: Kept,
+  administration: Administration,
+  language: string,
+  answers: Readonly<Record<string, Answer>>,
+  draft: FormDraft,
+): Submission {
+  return {
+    idempotency_key: kept.idempotencyKey,
+    administration: administration.key,
+    answers,
+    shown_order: administration.item_order,
+    seed: administration.seed,
+    language,
+    started_at_utc: kept.startedAt,
+    timings: draft.timings,
+    item_traces: draft.traces,
+  };
+}
+
+/** A stroke changes it many times a second. */
+const KEEP_AFTER_MS = 150;
+
+/** A consent that is being given: its lines and its signature, also after the browser was killed. */
+export function useKeptSigning(
+  state: TabletState,
+): readonly [signing: Signing, change: (signing: Signing) => void] {
+  const [signing, setSigning] = useState<Signing>(UNSIGNED);
+  const touched = useRef(false);
+  const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a consent's page is mounted anew for each step
+  useEffect(() => {
+    void drafts.signing(state).then((kept) => {
+      if (kept !== undefined && !touched.current) setSigning(kept);
+    });
+    return () => clearTimeout(timer.current);
+  }, []);
+  const change = (next: Signing): void => {
+    touched.current = true;
+    setSigning(next);
+    clearTimeout(timer.current);
+    timer.current = setTimeout(() => void drafts.keepSigning(state, next), KEEP_AFTER_MS);
+  };
+  return [signing, change];
+}
+
+/**
+ * Forms that were sent while nobody could say whether they arrived.
+ *
+ * When the answer of the server is lost, the session may have moved on before this tablet knows. So
+ * whenever it hears from the server again, what still waits is sent once more: the server knows the
+ * key and confirms, and the tablet forgets. A form on the screen looks after itself.
+ */
+export function useSweep(state: TabletState, connected: boolean): void {
+  const { session_id: sessionId, version } = state;
+  const shown = state.administration?.key ?? null;
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a new version is a reason to look again
+  useEffect(() => {
+    if (connected) void sweep(sessionId, shown);
+  }, [sessionId, version, shown, connected]);
+}
+
+async function sweep(sessionId: string, shown: string | null): Promise<void> {
+  await drafts.forgetOld(new Date());
+  for (const kept of await drafts.waiting(sessionId)) {
+    if (kept.administration === shown || kept.queued === null) continue;
+    await deliver(drafts, kept.id, kept.queued, tablet.submit);
+  }
+}

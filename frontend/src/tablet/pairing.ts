@@ -1,0 +1,32 @@
+/** Pairing codes, six letters or digits in two groups of three (`4FQ-7KP`), and that one was used. */
+export const CODE_LENGTH = 6;
+
+/** The letters and digits of whatever was typed, in capitals, at most a code long. */
+export function codeCharacters(typed: string): string {
+  return typed
+    .toUpperCase()
+    .replace(/[^A-Z0-9]/g, "")
+    .slice(0, CODE_LENGTH);
+}
+
+/** As it is shown and sent: with its dash as soon as the first group is full. */
+export function writtenCode(characters: string): string {
+  return characters.length <= 3 ? characters : `${characters.slice(0, 3)}-${characters.slice(3)}`;
+}
+
+/** The code a QR link brought along, and the address without it. */
+export function codeFromAddress(address: URL): { code: string | null; rest: string } {
+  const characters = codeCharacters(address.searchParams.get("code") ?? "");
+  const rest = new URL(address);
+  rest.searchParams.delete("code");
+  return {
+    code: characters.length === CODE_LENGTH ? writtenCode(characters) : null,
+    rest: `${rest.pathname}${rest.search}${rest.hash}`,
+  };
+}
+
+/** Whether this tablet was paired before: then a refused cookie means that it was disconnected. */
+const KEY = "reembody.tablet.paired";
+
+export const rememberPaired = (): void => localStorage.setItem(KEY, "yes");
+export const pairedBefore = (): boolean => localStorage.getItem(KEY) === "yes";
