@@ -5,6 +5,11 @@ import vite from "./vite.config.ts";
 export default mergeConfig(
   vite,
   defineConfig({
-    test: { include: ["**/*.test.ts", "**/*.test.tsx"], environment: "node" },
+    test: {
+      include: ["**/*.test.ts", "**/*.test.tsx"],
+      environment: "node",
+      // A slow machine must pass: the limit is there for tests that never end.
+      testTimeout: 120_000,
+    },
   }),
 );
