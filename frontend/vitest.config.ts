@@ -8,6 +8,8 @@ export default mergeConfig(
     test: {
       include: ["**/*.test.ts", "**/*.test.tsx"],
       environment: "node",
+      // Files share modules, which halves the time: a test leaves nothing behind that another sees.
+      isolate: false,
       // A slow machine must pass: the limit is there for tests that never end.
       testTimeout: 120_000,
     },
