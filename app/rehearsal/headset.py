@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.client.telemetry import TelemetryClient
+from app.client import TelemetryClient
 from app.protocol import Tasks
 from app.rehearsal.avatars import DelayedCopy, RemoteAvatar
 from app.rehearsal.body import Person
@@ -23,9 +23,16 @@ from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
 from app.science.skeleton import JOINT_NAMES, Pose
 from app.science.tasks import Laterality, TaskLayout, TaskRules
-from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
-from app.wire.batch import ACTIVE
-from app.wire.messages import HeadsetState, MaterialisedReport, PhaseOrder, ReportBody
+from app.wire import (
+    ACTIVE,
+    VALUES_PER_FRAME,
+    HeadsetState,
+    MaterialisedReport,
+    PhaseOrder,
+    ReportBody,
+    StreamName,
+    encode_batch,
+)
 
 FRAMES_PER_BATCH = 6
 T_POSE_S = 2.0

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from httpx2 import AsyncClient
 
-from app.client.http import Json, call_again
+from app.client import Json, call_again
 from app.protocol.avatar import AvatarFile, configuration_of
 from app.rehearsal.avatars import RELEASE_MARGIN_M, Bools, no_touches
 from app.science.avatar.configuration.configuration import Configuration

@@ -16,9 +16,7 @@ from typing import Any
 import numpy as np
 from httpx2 import AsyncClient
 
-from app.client.http import Operator, Tablet, call, call_again
-from app.client.journal import Journal
-from app.client.telemetry import TelemetryClient
+from app.client import Journal, Operator, Tablet, TelemetryClient, call, call_again
 from app.protocol import Tasks
 from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, perform

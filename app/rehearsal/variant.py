@@ -5,7 +5,7 @@ from typing import Any
 
 from httpx2 import AsyncClient
 
-from app.client.http import ServerRefusedError, call
+from app.client import ServerRefusedError, call
 
 SUFFIX = "-physics"
 AVATAR = "standard"

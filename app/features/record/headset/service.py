@@ -20,7 +20,7 @@ from app.features.record.telemetry import certain_active_s, positions_of, take_e
 from app.models import Completion, StudySession, StudyVersion, Submission
 from app.platform.access import session_by_id
 from app.protocol.plan import Step
-from app.wire.messages import (
+from app.wire import (
     PROTOCOL_VERSION,
     HeadsetState,
     Hello,

@@ -21,8 +21,16 @@ from app.models.types import new_id
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.rows import insert_rows
-from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
-from app.wire.messages import Flag, Probed, Produced, Resend
+from app.wire import (
+    BatchHeader,
+    Flag,
+    FrameFlags,
+    Probed,
+    Produced,
+    Resend,
+    decode_batch,
+    encode_batch,
+)
 
 BATCHES = cast("Table", TelemetryBatch.__table__)
 PROBES = cast("Table", ClockProbe.__table__)
