@@ -118,7 +118,7 @@ def _avatar(order: TuneOrder) -> tuple[Configuration, Figure | None]:
 
 
 def _movement(capture: Path, stature_m: float) -> Movement:
-    from app.rehearsal.captured import captured_movement
+    from app.rehearsal.body import captured_movement
 
     return resample(captured_movement(capture, build_skeleton(stature_m)), _RATE_HZ)
 
