@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 
 from app.protocol import compile_plan, sequences
-from app.protocol.timeline import ITEM_S, OPENING_S, form_s, timeline, total_s
+from app.protocol.durations import ITEM_S, OPENING_S, form_s, timeline, total_s
 from tests.protocol.helpers import instruments, study
 
 
