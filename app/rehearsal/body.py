@@ -5,8 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.adapters.captures import CaptureError
-from app.adapters.captures.files import read_capture_file
+from app.adapters.captures import CaptureError, read_capture_file
 from app.science.retargeting.in_place import movement_in_place
 from app.science.retargeting.joint_map import propose_joint_map
 from app.science.rig import RigError, RigMotion

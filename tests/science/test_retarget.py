@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.adapters.captures.files import read_capture_file
+from app.adapters.captures.reader import read_capture_file
 from app.rehearsal.body import UnusableCapture, captured_movement, make_person
 from app.science import rotations as rot
 from app.science.retargeting.in_place import movement_in_place

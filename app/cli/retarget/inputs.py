@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from app.adapters.captures.capture import Capture, CaptureError, Reading
-from app.adapters.captures.files import read_capture_file
+from app.adapters.captures import Capture, CaptureError, Reading, read_capture_file
 from app.science.retargeting.joint_map import JointMap, propose_joint_map
 from app.science.retargeting.reference_avatars import (
     REFERENCE_JOINT_MAP,

@@ -5,8 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.adapters.captures.bvh_export import to_bvh
-from app.adapters.captures.table_export import to_csv
+from app.adapters.captures import to_bvh, to_csv
 from app.cli.retarget.ground import ground_along
 from app.cli.retarget.inputs import Clip, joint_map_of, read_avatar, read_clip, reading_of
 from app.science.retargeting.ground import Flat, Ground

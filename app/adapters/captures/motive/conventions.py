@@ -1,15 +1,27 @@
-"""When the rows of a Motive CSV were: by frame and rate, since its times are rounded."""
+"""A take's conventions: when its rows were, and its unit of length.
+
+Rows are placed by frame and rate, since the times in the file are rounded. The unit is told by the
+settings, else it is what makes the numbers a room's.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from app.adapters.captures.capture import CaptureError, Convention, Limits
+from app.adapters.captures.capture import CaptureError, Convention, Limits, Reading
 from app.adapters.captures.motive.head import Head
 from app.adapters.captures.motive.values import TakeValues
+from app.adapters.captures.units import chosen_length
 
 _AGREES = 0.02
+_TOLD = {
+    "meters": ("m", 1.0),
+    "centimeters": ("cm", 0.01),
+    "millimeters": ("mm", 0.001),
+    "inches": ("inch", 0.0254),
+    "feet": ("foot", 0.3048),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,3 +84,27 @@ def _rate(head: Head, values: TakeValues, slots: npt.NDArray[np.int64]) -> tuple
     if told:
         notes.append(f"The times tell {by_times:.4g} Hz, the settings {told[0]:g} Hz.")
     return by_times, notes
+
+
+def length_of(head: Head, values: TakeValues, reading: Reading) -> tuple[float, Convention]:
+    """Return metres per unit, and who says so.
+
+    Raises:
+        CaptureError: the settings tell a unit that does not exist.
+    """
+    said = chosen_length(reading)
+    if said is not None and reading.metres_per_unit is not None:
+        return reading.metres_per_unit, said
+    told = head.settings.get("length units", "").lower()
+    if told:
+        if told not in _TOLD:
+            raise CaptureError(f"length units {told[:40]!r}: {', '.join(_TOLD)} are valid.", line=1)
+        name, scale = _TOLD[told]
+        return scale, Convention(name, "file")
+    # People and props are seen between the floor and 3 m, so that the 90th percentile tells.
+    known = np.abs(values.places[np.isfinite(values.places)])
+    typical = float(np.percentile(known, 90)) if known.size else 1.0
+    name, scale = _TOLD[
+        "meters" if typical < 12 else "centimeters" if typical < 400 else "millimeters"
+    ]
+    return scale, Convention(name, "guessed")

@@ -1,9 +1,28 @@
-"""The unit of a file that names none, by what a human body measures; and what the user chose."""
+"""Units of length: as files write them, as the user chose, or guessed from the size of a body."""
 
+import math
 from dataclasses import dataclass
 
-from app.adapters.captures.capture import Convention, Reading
+from app.adapters.captures.capture import CaptureError, Convention, Reading
 
+METRES_IN: dict[str, float] = {
+    "mm": 0.001,
+    "millimeters": 0.001,
+    "millimetres": 0.001,
+    "cm": 0.01,
+    "centimeters": 0.01,
+    "centimetres": 0.01,
+    "dm": 0.1,
+    "m": 1.0,
+    "meters": 1.0,
+    "metres": 1.0,
+    "in": 0.0254,
+    "inch": 0.0254,
+    "inches": 0.0254,
+    "ft": 0.3048,
+}
+
+HIGHEST_RATE_HZ = 100_000.0
 _NAMED: tuple[tuple[str, float], ...] = (
     ("cm", 0.01),
     ("m", 1.0),
@@ -13,6 +32,37 @@ _NAMED: tuple[tuple[str, float], ...] = (
 )
 _PLAUSIBLE_M = (0.85, 2.4)
 _ADULT_M = 1.7
+
+
+def unit_of_markers(
+    word: str | None, chosen: float | None, *, line: int = 0
+) -> tuple[float, Convention]:
+    """Return metres per unit and who says so; millimetres are guessed where a file is silent.
+
+    Raises:
+        CaptureError: the file names a unit that is none.
+    """
+    if chosen is not None:
+        return chosen, Convention(f"{chosen:g} m", "chosen")
+    told = (word or "").strip().lower()
+    if not told:
+        return 0.001, Convention("mm", "guessed")
+    if told not in METRES_IN:
+        raise CaptureError(
+            f"the unit {told[:40]!r} is not known: valid are {', '.join(METRES_IN)}; or say how"
+            " many metres a unit has.",
+            line=line,
+        )
+    return METRES_IN[told], Convention(told, "file")
+
+
+def checked_rate(rate_hz: float, *, line: int = 0) -> float:
+    """Return the rate; raises CaptureError where no camera runs at it."""
+    if not (math.isfinite(rate_hz) and 0.0 < rate_hz <= HIGHEST_RATE_HZ):
+        raise CaptureError(
+            f"the rate is {rate_hz:g} Hz: above 0 up to {HIGHEST_RATE_HZ:g} is valid.", line=line
+        )
+    return rate_hz
 
 
 @dataclass(frozen=True)
