@@ -7,7 +7,7 @@ import pytest
 from app.cli.serve.banner import addresses
 from app.clock import Clock
 from app.lan.network import Reach
-from app.lan.plan import make_plan
+from app.lan.serving.plan import make_plan
 from app.settings import Settings
 from tests.lan.machines import LAB_PC
 

@@ -2,8 +2,7 @@
 
 import sys
 
-from app.lan.network import Reach
-from app.lan.qr import qr_terminal
+from app.lan import Reach, qr_terminal
 
 WITHOUT_TLS = """
   !!  WITHOUT ENCRYPTION  !!

@@ -5,9 +5,7 @@ import json
 from app.cli.serve.run import settings_with
 from app.clock import Clock
 from app.errors import InvalidInput
-from app.lan.addresses import look_around
-from app.lan.certificates import Identity, LabAuthority
-from app.lan.plan import make_plan
+from app.lan.serving import Identity, LabAuthority, look_around, make_plan
 
 
 def show_certificate(*, as_json: bool) -> str:

@@ -17,11 +17,18 @@ from app.clock import Clock
 from app.collecting import settle
 from app.errors import ReembodyError
 from app.features.care.opening.service import prepare_database
-from app.lan.help.site import HelpSite
-from app.lan.listening import Door, LabServer, allow_open_files, bind, tls_context
-from app.lan.network import Network
-from app.lan.plan import Plan, make_plan
-from app.lan.watch import CertificateWatch
+from app.lan import Network
+from app.lan.serving import (
+    CertificateWatch,
+    Door,
+    HelpSite,
+    LabServer,
+    Plan,
+    allow_open_files,
+    bind,
+    make_plan,
+    tls_context,
+)
 from app.main import create_app
 from app.settings import Settings
 

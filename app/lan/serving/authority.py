@@ -15,7 +15,7 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
 
-from app.lan.addresses import Address, Machine
+from app.lan.serving.addresses import Address, Machine
 
 YEARS = 10
 SKEW = timedelta(hours=1)

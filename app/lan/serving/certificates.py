@@ -4,9 +4,13 @@
 made once, and one with the server's certificate, made again whenever an address is missing or its
 end is near. `OwnFiles` are the lab's own, looked at and never written. Both hand out an `Identity`
 and load it into the context that the open door uses, so a new one takes effect without a restart.
+Files with keys are written whole or not at all, and readable by their owner only.
 """
 
+import os
+import secrets
 import ssl
+import stat
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -15,14 +19,24 @@ from typing import Literal, Protocol
 from cryptography import x509
 
 from app.clock import Clock
-from app.errors import InvalidInput
-from app.lan.addresses import Address, Machine
-from app.lan.authority import Authority, authority_from_pem, fingerprint, new_authority
-from app.lan.leaf import Host, Leaf, hosts_of, leaf_from_pem, new_leaf, still_good, wanted_hosts
-from app.lan.private_files import read_private, write_private
+from app.errors import InvalidInput, NotAllowed
+from app.lan.serving.addresses import Address, Machine
+from app.lan.serving.authority import Authority, authority_from_pem, fingerprint, new_authority
+from app.lan.serving.leaf import (
+    Host,
+    Leaf,
+    hosts_of,
+    leaf_from_pem,
+    new_leaf,
+    still_good,
+    wanted_hosts,
+)
 
 FOLDER = "tls"
 AUTHORITY_FILE, SERVER_FILE = "authority.pem", "server.pem"
+OTHERS = stat.S_IRWXG | stat.S_IRWXO
+POSIX = os.name == "posix"
+"""Elsewhere a file's mode says nothing about who may read it; its folder's rights hold."""
 
 
 @dataclass(frozen=True)
@@ -175,3 +189,45 @@ class OwnFiles:
 
 def _no_password() -> str:
     raise ValueError("the key is encrypted; the server needs one without a password")
+
+
+def write_private(file: Path, content: bytes) -> None:
+    """Put `content` at `file` for its owner alone, on disk before it replaces what was there."""
+    file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+    file.parent.chmod(0o700)
+    part = file.with_name(f".{file.name}.{secrets.token_hex(4)}")
+    try:
+        handle = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(handle, "wb") as writing:
+            writing.write(content)
+            writing.flush()
+            os.fsync(writing.fileno())
+        part.replace(file)
+    finally:
+        part.unlink(missing_ok=True)
+    _flush_folder(file.parent)
+
+
+def read_private(file: Path) -> bytes:
+    """The content of a file with a key; raises NotAllowed if others could have read it."""
+    if POSIX and file.stat().st_mode & OTHERS:
+        raise NotAllowed(
+            f"{file} holds a private key, and others on this machine can read it",
+            value=oct(stat.S_IMODE(file.stat().st_mode)),
+            valid="0o600",
+            remedy=(
+                f"If nobody has: chmod 600 {file}. If somebody may have: delete it and start again;"
+                " devices then install the new certificate"
+            ),
+        )
+    return file.read_bytes()
+
+
+def _flush_folder(folder: Path) -> None:
+    if not POSIX:
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

@@ -4,20 +4,23 @@ Nobody signs in here and nothing is redirected: a device that comes with a cooki
 would otherwise send them in the clear.
 """
 
+import plistlib
 from collections.abc import Callable
 from urllib.parse import urlsplit
+from uuid import NAMESPACE_OID, uuid5
 
 from cryptography import x509
+from cryptography.hazmat.primitives import hashes
 from cryptography.hazmat.primitives.serialization import Encoding
+from cryptography.x509.oid import NameOID
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 
-from app.lan.authority import fingerprint
-from app.lan.help.choosing import texts_for
-from app.lan.help.page import HelpFacts, help_page, style_hash
-from app.lan.help.profile import mobileconfig
 from app.lan.network import Network
+from app.lan.serving.authority import fingerprint
+from app.lan.serving.help.page import HelpFacts, help_page, style_hash
+from app.lan.serving.help.texts import texts_for
 
 
 class HelpSite:
@@ -99,3 +102,30 @@ def _headers() -> dict[str, str]:
         "cross-origin-opener-policy": "same-origin",
         "cache-control": "no-store",
     }
+
+
+def mobileconfig(authority: x509.Certificate) -> bytes:
+    """An unsigned profile; the same certificate always gives the same, so it replaces itself."""
+    digest = authority.fingerprint(hashes.SHA256()).hex()
+    (name,) = authority.subject.get_attributes_for_oid(NameOID.COMMON_NAME)
+    identifier = f"reembody.authority.{digest[:16]}"
+    payload = {
+        "PayloadType": "com.apple.security.root",
+        "PayloadVersion": 1,
+        "PayloadIdentifier": f"{identifier}.certificate",
+        "PayloadUUID": str(uuid5(NAMESPACE_OID, f"{digest}.certificate")).upper(),
+        "PayloadDisplayName": str(name.value),
+        "PayloadCertificateFileName": "reembody-ca.crt",
+        "PayloadContent": authority.public_bytes(Encoding.DER),
+    }
+    return plistlib.dumps(
+        {
+            "PayloadType": "Configuration",
+            "PayloadVersion": 1,
+            "PayloadIdentifier": identifier,
+            "PayloadUUID": str(uuid5(NAMESPACE_OID, digest)).upper(),
+            "PayloadDisplayName": str(name.value),
+            "PayloadDescription": "Lets this device trust the server of the lab, and nothing else.",
+            "PayloadContent": [payload],
+        }
+    )

@@ -16,7 +16,7 @@ import uvicorn
 from uvicorn.config import STARTUP_FAILURE
 
 from app.errors import InvalidInput
-from app.lan.deadlines import ReceivingProtocol, Unfinished
+from app.lan.serving.deadlines import ReceivingProtocol, Unfinished
 
 HANDSHAKE_WITHIN_S = 10.0
 MOST_OPEN_FILES = 8192

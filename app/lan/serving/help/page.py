@@ -10,9 +10,8 @@ from html import escape
 from importlib.resources import files
 from string import Template
 
-from app.lan.help.choosing import device_of
-from app.lan.help.texts import Device, HelpTexts
-from app.lan.qr import qr_svg
+from app.lan.network import qr_svg
+from app.lan.serving.help.texts import Device, HelpTexts, device_of
 
 PAIRS_IN_A_GROUP = 4
 
@@ -96,4 +95,4 @@ def _rich(text: str) -> str:
 
 @cache
 def _read(name: str) -> str:
-    return (files("app.lan.help") / name).read_text(encoding="utf-8")
+    return (files("app.lan.serving.help") / name).read_text(encoding="utf-8")

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from cryptography import x509
 
 from app.errors import ReembodyError
-from app.lan.addresses import Machine, look_around
-from app.lan.certificates import Identity
 from app.lan.network import Network
-from app.lan.plan import Plan
+from app.lan.serving.addresses import Machine, look_around
+from app.lan.serving.certificates import Identity
+from app.lan.serving.plan import Plan
 
 log = logging.getLogger(__name__)
 LOOKED_AT_EVERY_S = 60.0

@@ -9,9 +9,9 @@ from ipaddress import ip_address
 
 from app.clock import Clock
 from app.errors import InvalidInput, NotAllowed
-from app.lan.addresses import Address, Machine, url_host
-from app.lan.certificates import CertificateSource, Identity, LabAuthority, OwnFiles
 from app.lan.network import Mode, Reach, ShownCertificate
+from app.lan.serving.addresses import Address, Machine, url_host
+from app.lan.serving.certificates import CertificateSource, Identity, LabAuthority, OwnFiles
 from app.settings import Settings
 
 EVERYWHERE = ("0.0.0.0", "::")  # noqa: S104 - asked for with --lan, and encrypted

@@ -11,8 +11,8 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
-from app.lan.addresses import LOOPBACK, Address, Machine
-from app.lan.authority import SKEW, Authority, key_pem
+from app.lan.serving.addresses import LOOPBACK, Address, Machine
+from app.lan.serving.authority import SKEW, Authority, key_pem
 
 LASTS = timedelta(days=397)
 """Browsers refuse server certificates that are valid for longer (398 days)."""
