@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.serve.banner import addresses
+from app.cli.serve.output import addresses
 from app.clock import Clock
 from app.lan.network import Reach
 from app.lan.serving.plan import make_plan

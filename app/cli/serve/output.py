@@ -1,8 +1,10 @@
-"""What the terminal says about a server that is about to listen."""
+"""What the terminal says about a server that is about to listen, and about its certificate."""
 
+import json
 import sys
 
 from app.lan import Reach, qr_terminal
+from app.lan.serving import Identity
 
 WITHOUT_TLS = """
   !!  WITHOUT ENCRYPTION  !!
@@ -51,3 +53,27 @@ def _certificate(reach: Reach) -> list[str]:
 def _halves(fingerprint: str) -> list[str]:
     middle = len(fingerprint) // 2
     return [f"  {fingerprint[:middle]}", f"  {fingerprint[middle + 1 :]}"]
+
+
+def certificate_text(identity: Identity, *, as_json: bool) -> str:
+    """What a certificate says, line by line or as JSON."""
+    facts = {
+        "source": identity.source,
+        "hosts": [str(one) for one in identity.hosts],
+        "expires_at": identity.expires_at.isoformat(),
+        "server_fingerprint_sha256": identity.server_fingerprint,
+        "authority_fingerprint_sha256": identity.authority_fingerprint,
+        "authority_expires_at": (
+            None
+            if identity.authority is None
+            else identity.authority.not_valid_after_utc.isoformat()
+        ),
+        "uncovered_addresses": [str(one) for one in identity.uncovered],
+    }
+    if as_json:
+        return json.dumps(facts, indent=2)
+    return "\n".join(
+        f"{name.replace('_', ' '):<29} {', '.join(value) if isinstance(value, list) else value}"
+        for name, value in facts.items()
+        if value
+    )

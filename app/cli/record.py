@@ -1,13 +1,16 @@
-"""Exporting a study from the command line."""
+"""What leaves the record from the command line: a study as a folder, a session's receipt."""
 
+import json
 import sys
 from pathlib import Path
 
 from app.cli.installation import opened_database
 from app.clock import Clock
 from app.database import Database
+from app.errors import NotFound
 from app.features.design.studies.service import study_by_key
 from app.features.people.audit.copies import COMMAND_LINE, record_copy
+from app.features.record.receipts import receipt_of, receipt_text
 from app.features.results.analysis.tables import KINDS, Kind
 from app.features.results.exports.service import Exported, export_study, usual_kind
 
@@ -52,3 +55,21 @@ def _tell_progress(path: str) -> None:
     if sys.stderr.isatty():
         sys.stderr.write(f"\r\033[Kwriting {path}" if path != "README.txt" else "\r\033[K")
         sys.stderr.flush()
+
+
+def verify_session(session_id: str, *, as_json: bool) -> tuple[str, bool]:
+    """The receipt of a session of this installation as text or JSON, and whether it is complete.
+
+    Reads beside a running server. Raises ReembodyError for an unknown session.
+    """
+    with opened_database() as database, database.reading() as db:
+        try:
+            receipt = receipt_of(db, session_id)
+        except NotFound as error:
+            raise NotFound(
+                f"there is no session {session_id!r}",
+                value=session_id,
+                remedy="Its id stands at the end of the address of its page, and in sessions.csv.",
+            ) from error
+    text = json.dumps(receipt.as_json(), indent=2) if as_json else receipt_text(receipt)
+    return text, receipt.complete
