@@ -23,7 +23,6 @@ from app.features.care.opening.service import (
 from app.features.care.rights.service import ErasuresKept, finish_erasures
 from app.features.people.audit.copies import COMMAND_LINE, record_copy
 from app.features.record.erasure import expect_erasure, forget_erasure
-from app.features.record.telemetry import stop_running_clocks
 from app.platform.context import AppContext
 from app.platform.folders import backups_of
 from app.schema_revisions import newest_revision
@@ -171,6 +170,8 @@ def _overwrite(context: AppContext) -> None:
 
 def _stop_clocks(context: AppContext) -> None:
     """Nobody wears the headsets of those phases now; the next start of a server does the same."""
+    from app.features.record.telemetry import stop_running_clocks  # nor any session
+
     try:
         stop_running_clocks(context)
     except DBAPIError as error:

@@ -8,7 +8,6 @@ from sqlalchemy import select
 from app.clock import Clock
 from app.database import Database, open_database
 from app.features.care.opening.service import prepare_database
-from app.features.people.accounts.service import issue_token
 from app.models import Account
 from app.settings import Settings
 
@@ -30,6 +29,8 @@ def opened_database() -> Iterator[Database]:
 
 def new_token(username: str, hours: float) -> str:
     """A bearer token for an account of this installation; raises LookupError if there is none."""
+    from app.features.people.accounts.service import issue_token  # only tokens need accounts
+
     with opened_database() as database, database.writing() as db:
         account = db.scalar(select(Account).where(Account.username == username))
         if account is None:
