@@ -37,8 +37,9 @@ def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[N
     try:
         yield
     except ReembodyError as error:
-        listed = with_valid and isinstance(error.valid, list)
-        valid = f"; valid: {', '.join(error.valid)}" if listed else ""
+        valid = ""
+        if with_valid and isinstance(error.valid, list):
+            valid = f"; valid: {', '.join(error.valid)}"
         fail(f"{error.message}{valid}. {error.remedy}".strip())
     except expected as error:
         fail(str(error))
