@@ -10,8 +10,7 @@ from app.errors import ReembodyError
 from app.features.record.sessions import Materialise, Report, apply_command
 from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.positions import Outcome
-from app.models import ClientReport, Completion, Contact
-from app.models.types import new_id
+from app.models import ClientReport, Completion, Contact, new_id
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.wire import (
