@@ -3,7 +3,9 @@
 SQLite runs in WAL mode with synchronous FULL, so that a commit survives a power loss. It has one
 writer: writing transactions start with BEGIN IMMEDIATE (a deferred transaction that upgrades from
 reading to writing fails at once, whatever the busy time-out) and queue on an in-process lock, which
-keeps their waiting fair and short. PostgreSQL needs neither and gets neither.
+keeps their waiting fair and short. PostgreSQL needs neither and gets neither. Another program may
+hold the lock that writers need: whoever meets it waits `BUSY_TIMEOUT_S`; as long as it stays locked
+those behind are told almost at once, so that a queue never adds up waits.
 
 A request's transaction may begin and end on different threads. So the lock belongs to nobody in
 particular, and requests wait for it on threads of their own: if they waited on the threads that run
@@ -12,26 +14,30 @@ waited for where endpoints run, so fewer requests may write at once than there a
 """
 
 import asyncio
+import sqlite3
 import threading
 import time
+from collections import deque
 from collections.abc import AsyncIterator, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import TracebackType
 from typing import Any, Protocol, TypeVar
 
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
-from sqlalchemy import Engine, MetaData, create_engine, event, make_url
-from sqlalchemy.exc import DatabaseError
+from sqlalchemy import Connection, Engine, MetaData, create_engine, event, make_url
+from sqlalchemy.engine.interfaces import DBAPIConnection
+from sqlalchemy.exc import DatabaseError, OperationalError
 from sqlalchemy.orm import DeclarativeBase, Session
-from sqlalchemy.pool import NullPool
+from sqlalchemy.pool import ConnectionPoolEntry, NullPool
 
 from app.errors import NotDurable
-from app.sqlite import BUSY_TIMEOUT_S, SqliteBegin, has_changes, prepare_connection
-from app.turns import Turns
 
+BUSY_TIMEOUT_S, STILL_BUSY_TIMEOUT_S = 2.0, 0.1
+LONGEST_LOG_PAGES = 65_536
 NAMING_CONVENTION = {
     "ix": "ix_%(table_name)s_%(column_0_N_name)s",
     "uq": "uq_%(table_name)s_%(column_0_N_name)s",
@@ -44,6 +50,115 @@ TURN_TIMEOUT_S = 20.0
 WRITERS = 20
 """Half of the threads that endpoints run on."""
 Result = TypeVar("Result")
+
+
+def prepare_connection(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
+    """Set a new connection up for durable commits."""
+    if not isinstance(dbapi_connection, sqlite3.Connection):
+        return
+    # Transactions are opened explicitly by `SqliteBegin`.
+    dbapi_connection.isolation_level = None
+    pragmas = (
+        "journal_mode=WAL",
+        "synchronous=FULL",
+        "foreign_keys=ON",
+        # What is deleted is overwritten with zeros: else erased data could be read in the file.
+        "secure_delete=ON",
+        # The server copies the log itself, beside its commits; this is only a limit to its length.
+        f"wal_autocheckpoint={LONGEST_LOG_PAGES}",
+    )
+    for pragma in pragmas:
+        dbapi_connection.execute(f"PRAGMA {pragma}")
+
+
+class SqliteBegin:
+    """Opens the transactions of an engine, and remembers whether another program held the lock."""
+
+    def __init__(self) -> None:
+        self._locked = False
+
+    def __call__(self, connection: Connection) -> None:
+        """Begin; a transaction that will write takes the lock at once."""
+        if not connection.get_execution_options().get("reembody_writes", False):
+            connection.exec_driver_sql("BEGIN")
+            return
+        timeout_s = STILL_BUSY_TIMEOUT_S if self._locked else BUSY_TIMEOUT_S
+        if connection.info.get("busy_timeout_s") != timeout_s:
+            connection.exec_driver_sql(f"PRAGMA busy_timeout={round(1000 * timeout_s)}")
+            connection.info["busy_timeout_s"] = timeout_s
+        try:
+            connection.exec_driver_sql("BEGIN IMMEDIATE")
+        except OperationalError as error:
+            self._locked = _is_locked(error)
+            raise
+        self._locked = False
+        connection.info["changes_before"] = _total_changes(connection)
+
+
+def has_changes(connection: Connection) -> bool:
+    """Whether its transaction changed anything; True where nobody counts, as on PostgreSQL."""
+    before = connection.info.get("changes_before")
+    return before is None or _total_changes(connection) > before
+
+
+def _is_locked(error: OperationalError) -> bool:
+    code: int = getattr(error.orig, "sqlite_errorcode", 0)
+    return code & 0xFF == sqlite3.SQLITE_BUSY
+
+
+def _total_changes(connection: Connection) -> int:
+    return int(getattr(connection.connection.dbapi_connection, "total_changes", 0))
+
+
+class Turns:
+    """A lock whose waiters get it in the order in which they came.
+
+    Python's own lock goes to whoever asks at the right moment: of a crowd that wants to write, most
+    are served at once and a few wait for all the others. One holder at a time; it may be given back
+    by another thread than the one that took it.
+    """
+
+    def __init__(self) -> None:
+        self._mutex = threading.Lock()
+        self._taken = False
+        self._waiting: deque[threading.Lock] = deque()
+
+    def acquire(self, timeout: float = -1) -> bool:
+        """Take it, after at most `timeout` seconds (no limit if negative); False if it did not."""
+        with self._mutex:
+            if not self._taken:
+                self._taken = True
+                return True
+            mine = threading.Lock()
+            mine.acquire()
+            self._waiting.append(mine)
+        if mine.acquire(timeout=timeout):
+            return True
+        with self._mutex:
+            if mine not in self._waiting:
+                # Handed over while the time ran out.
+                return True
+            self._waiting.remove(mine)
+            return False
+
+    def release(self) -> None:
+        """Hand it to the one who waits longest."""
+        with self._mutex:
+            if self._waiting:
+                self._waiting.popleft().release()
+            else:
+                self._taken = False
+
+    def __enter__(self) -> None:
+        self.acquire()
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.release()
 
 
 class Base(DeclarativeBase):

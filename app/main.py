@@ -27,7 +27,7 @@ from app.features.record.tryout import TryoutDesk
 from app.features.results.analysis.drawing import Drawings
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.replay.desk import ReplayDesk
-from app.lan.network import Network
+from app.lan import Network
 from app.platform.context import AppContext, PartMaker
 from app.platform.hub import Hub
 from app.platform.rate_limit import RateLimiter

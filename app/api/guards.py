@@ -2,9 +2,15 @@
 
 Cookies are SameSite=Strict already; the origin check is the second lock for requests that change
 something, and the first for WebSockets, which no cookie rule of the browser covers.
+
+The name is checked because no page of the internet may pass for this server: a hostile page can
+make its own name lead to an address inside the lab (DNS rebinding), and the browser then takes this
+server for that page's own. It cannot do so under a name that only a local network gives out, nor
+under an address.
 """
 
 from collections.abc import Callable, Iterable, Mapping
+from ipaddress import ip_address
 from types import MappingProxyType
 from urllib.parse import urlsplit
 
@@ -12,7 +18,6 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.errors import error_response
-from app.api.host_names import require_known_host
 from app.errors import NotAllowed, ReembodyError, TooLarge
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
@@ -30,6 +35,7 @@ SECURITY_HEADERS: Mapping[str, str] = {
     "referrer-policy": "no-referrer",
     "cross-origin-opener-policy": "same-origin",
 }
+LOCAL_ENDINGS = (".local", ".localhost", ".lan", ".home.arpa", ".internal")
 
 
 class Guards:
@@ -125,3 +131,28 @@ def _headed(scope: Scope, send: Send) -> Send:
         await send(message)
 
     return send_with_headers
+
+
+def require_known_host(host: str, known: Iterable[str]) -> None:
+    """Raise NotAllowed where a request asks for this server under a name of somebody else's.
+
+    `host` is the Host header; `known` are the names that the lab gave to the server.
+    """
+    name = (urlsplit(f"//{host}").hostname or "").rstrip(".")
+    if "." not in name or name.endswith(LOCAL_ENDINGS) or _is_address(name):
+        return
+    if name not in {one.lower() for one in known}:
+        raise NotAllowed(
+            "this server is not known by that name",
+            value=host,
+            valid="an address, a name of the local network, or one of REEMBODY_HOST_NAMES",
+            remedy='Set REEMBODY_HOST_NAMES=["name.example.org"] where the lab gave it that name.',
+        )
+
+
+def _is_address(name: str) -> bool:
+    try:
+        ip_address(name)
+    except ValueError:
+        return False
+    return True

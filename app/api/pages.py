@@ -1,19 +1,77 @@
-"""Serving the built pages."""
+"""Serving the built pages; their scripts and styles are kept by browsers for ever, and compressed.
 
+Tablets and headsets fetch them over the lab's wireless network, where a megabyte takes a while.
+"""
+
+import asyncio
+import gzip
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from fastapi import APIRouter, FastAPI
 from fastapi.responses import FileResponse, HTMLResponse, Response
+from fastapi.staticfiles import StaticFiles
+from starlette.datastructures import Headers
+from starlette.types import Scope
 
-from app.api.assets import Assets
-
+# Pictures and fonts are compressed already, and a small file gains nothing.
+_WORTH_IT = ("text/javascript", "text/css", "image/svg+xml", "application/json")
+_SMALL_BYTES = 1024
+_LEVEL = 6
 PAGES = {"/": "console/index.html", "/tablet": "tablet/index.html"}
 # A service worker may look after addresses beside and below its own, and is known by its address.
 TABLET_WORKER = "/tablet-worker.js"
 _NOT_BUILT = """<!doctype html><html lang="en"><meta charset="utf-8"><title>Reembody</title>
 <h1>The pages are not built yet</h1><p>The interface under /api works. Start the server with
 <code>./run</code>, which builds the pages.</p></html>"""
+
+
+class Assets(StaticFiles):
+    """File names carry a hash of the content, so a browser may keep them.
+
+    What is compressed once stays in memory: about a megabyte for all pages together.
+    """
+
+    def file_response(self, *args: Any, **kwargs: Any) -> Response:
+        """A file that may be kept."""
+        response = super().file_response(*args, **kwargs)
+        response.headers["cache-control"] = "public, max-age=31536000, immutable"
+        return response
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        """The file, compressed for whoever takes gzip."""
+        response = await super().get_response(path, scope)
+        if not isinstance(response, FileResponse) or not _is_worth_it(response):
+            return response
+        response.headers["vary"] = "Accept-Encoding"
+        if scope["method"] != "GET" or not _takes_gzip(Headers(scope=scope)):
+            return response
+        body = await asyncio.to_thread(_compressed, str(response.path))
+        headers = {
+            "cache-control": response.headers["cache-control"],
+            "content-encoding": "gzip",
+            "vary": "Accept-Encoding",
+        }
+        return Response(body, headers=headers, media_type=response.media_type)
+
+
+def _is_worth_it(response: FileResponse) -> bool:
+    kind = (response.media_type or "").partition(";")[0]
+    size = int(response.headers.get("content-length", "0"))
+    return response.status_code == 200 and kind in _WORTH_IT and size > _SMALL_BYTES
+
+
+def _takes_gzip(headers: Headers) -> bool:
+    offered = headers.get("accept-encoding", "").lower().replace(" ", "").split(",")
+    return any(one == "gzip" or (one.startswith("gzip;") and one[5:] != "q=0") for one in offered)
+
+
+@lru_cache(maxsize=256)
+def _compressed(path: str) -> bytes:
+    """The same bytes for the same file: no time of day in them."""
+    return gzip.compress(Path(path).read_bytes(), _LEVEL, mtime=0)
 
 
 def install_pages(app: FastAPI, static: Path) -> None:

@@ -1,4 +1,4 @@
-"""Every command, each a few lines: parse, call, print."""
+"""All commands of `reembody`: the small ones here, each a few lines that parse, call and print."""
 
 import json
 import sys
@@ -9,9 +9,9 @@ import typer
 
 from app import __version__
 from app.cli.analyse.command import analyse
-from app.cli.failing import fail
+from app.cli.errors import INCOMPLETE, reported
 from app.cli.retarget.command import retarget
-from app.cli.serve.tls_command import tls
+from app.cli.serve.command import serve, tls
 from app.cli.tune.command import tune
 from app.cli.walk.command import walk
 
@@ -25,7 +25,7 @@ app.add_typer(walk, name="walk")
 app.command()(retarget)
 app.command()(tune)
 app.command()(analyse)
-INCOMPLETE = 1
+app.command()(serve)
 
 
 def _tell_version(asked: bool) -> None:
@@ -44,49 +44,6 @@ def reembody(
 
 
 @app.command()
-def serve(
-    port: Annotated[int | None, typer.Option(help="Port to listen on.")] = None,
-    host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
-    lan: Annotated[
-        bool | None, typer.Option("--lan", help="Also https on the lab's network.")
-    ] = None,
-    lan_port: Annotated[int | None, typer.Option(help="Port of https (8443).")] = None,
-    lan_host: Annotated[
-        str | None, typer.Option(help="Address of https; every one of this machine if left out.")
-    ] = None,
-    help_port: Annotated[
-        int | None, typer.Option(help="Port of the page that helps devices (8080).")
-    ] = None,
-    certificate: Annotated[
-        Path | None, typer.Option(help="Your own certificate with its chain, PEM.")
-    ] = None,
-    key: Annotated[Path | None, typer.Option(help="Its key, PEM.")] = None,
-    without_tls: Annotated[
-        bool | None, typer.Option("--without-tls", help="Reachable by others, unencrypted.")
-    ] = None,
-    new_database: Annotated[
-        bool, typer.Option("--new-database", help="Begin an empty one behind one in quarantine.")
-    ] = False,
-    until_input_ends: Annotated[bool, typer.Option("--until-input-ends", hidden=True)] = False,
-) -> None:
-    """Serve the product on this machine, with --lan also on the lab's network."""
-    from app.cli.serve.run import serve_forever
-
-    given = {
-        "port": port,
-        "host": host,
-        "lan": lan,
-        "lan_port": lan_port,
-        "lan_host": lan_host,
-        "help_port": help_port,
-        "certificate": certificate,
-        "key": key,
-        "without_tls": without_tls,
-    }
-    serve_forever(given, new_database=new_database, until_input_ends=until_input_ends)
-
-
-@app.command()
 def score(
     answers: Annotated[Path, typer.Argument(help="CSV with item columns; others are ids.")],
     instrument: Annotated[str, typer.Option(help="Key of the instrument.")],
@@ -94,10 +51,8 @@ def score(
     """Score a table of answers; writes ids and scores as CSV to standard output."""
     from app.cli.scoring import score_file
 
-    try:
+    with reported(ValueError, OSError):
         sys.stdout.write(score_file(answers, instrument))
-    except (ValueError, OSError) as error:
-        fail(str(error))
 
 
 @app.command()
@@ -109,15 +64,10 @@ def export(
     ] = None,
 ) -> None:
     """Write a study as tidy CSV with a codebook."""
-    from app.cli.exporting import export_to_folder
-    from app.errors import ReembodyError
+    from app.cli.record import export_to_folder
 
-    try:
+    with reported(ValueError, OSError):
         print(export_to_folder(study, to, kind))
-    except ReembodyError as error:
-        fail(f"{error.message}. {error.remedy}".strip())
-    except (ValueError, OSError) as error:
-        fail(str(error))
 
 
 @app.command()
@@ -126,13 +76,10 @@ def verify(
     as_json: Annotated[bool, typer.Option("--json", help="Print the receipt as JSON.")] = False,
 ) -> None:
     """Prove from the record what of a session is there; exit code 1 if anything is missing."""
-    from app.cli.verifying import verify_session
-    from app.errors import ReembodyError
+    from app.cli.record import verify_session
 
-    try:
+    with reported():
         text, complete = verify_session(session, as_json=as_json)
-    except ReembodyError as error:
-        fail(f"{error.message}. {error.remedy}".strip())
     print(text)
     if not complete:
         raise typer.Exit(INCOMPLETE)
@@ -153,15 +100,10 @@ def token(
     hours: Annotated[float, typer.Option(help="How long it is valid.")] = 12.0,
 ) -> None:
     """Print a bearer token for scripts."""
-    from app.cli.tokens import new_token
-    from app.errors import ReembodyError
+    from app.cli.installation import new_token
 
-    try:
+    with reported(LookupError):
         print(new_token(account, hours))
-    except ReembodyError as error:
-        fail(f"{error.message}. {error.remedy}".strip())
-    except LookupError as error:
-        fail(str(error))
 
 
 @app.command()
@@ -184,7 +126,7 @@ def rehearse(
     """Take a simulated participant through a whole session."""
     from app.cli.rehearsing import run_rehearsal
 
-    try:
+    with reported(ValueError, RuntimeError):
         print(
             run_rehearsal(
                 url=url,
@@ -198,8 +140,6 @@ def rehearse(
                 as_json=as_json,
             )
         )
-    except (ValueError, RuntimeError) as error:
-        fail(str(error))
 
 
 @app.command()
@@ -208,13 +148,10 @@ def backup(
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Copy everything into one file, while the server runs or not."""
-    from app.cli.backing_up import back_up_to
-    from app.errors import ReembodyError
+    from app.cli.backups import back_up_to
 
-    try:
+    with reported():
         print(back_up_to(file, as_json=as_json))
-    except ReembodyError as error:
-        fail(f"{error.message}. {error.remedy}".strip())
 
 
 @app.command()
@@ -229,14 +166,11 @@ def restore(
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Put a backup in the place of everything that is there."""
-    from app.cli.restoring import restore_from
-    from app.errors import ReembodyError
+    from app.cli.backups import restore_from
 
-    try:
+    with reported():
         print(
             restore_from(
                 file, replace=replace, even_though_active=even_though_active, as_json=as_json
             )
         )
-    except ReembodyError as error:
-        fail(f"{error.message}. {error.remedy}".strip())

@@ -1,11 +1,14 @@
-"""The database of this installation, for commands that work beside the server or without it."""
+"""This installation, for commands that work beside the server or without it: database, tokens."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from sqlalchemy import select
+
 from app.clock import Clock
 from app.database import Database, open_database
 from app.features.care.opening.service import prepare_database
+from app.models import Account
 from app.settings import Settings
 
 
@@ -22,3 +25,17 @@ def opened_database() -> Iterator[Database]:
         yield database
     finally:
         database.close()
+
+
+def new_token(username: str, hours: float) -> str:
+    """A bearer token for an account of this installation; raises LookupError if there is none."""
+    from app.features.people.accounts.service import issue_token  # only tokens need accounts
+
+    with opened_database() as database, database.writing() as db:
+        account = db.scalar(select(Account).where(Account.username == username))
+        if account is None:
+            raise LookupError(
+                f"there is no account {username!r}; start the server once to make the first"
+            )
+        now = Clock().utc_now()
+        return issue_token(db, account, purpose="script", now=now, hours=hours).token

@@ -3,6 +3,8 @@
 import asyncio
 import contextlib
 import logging
+import time
+from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from types import TracebackType
@@ -11,10 +13,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from app.client.journal import Entry, Journal
-from app.client.probing import Prober
-from app.client.producing import Announcer
-from app.wire import StreamName
-from app.wire.messages import (
+from app.wire import (
     PROTOCOL_VERSION,
     REPORT_STREAM,
     SERVER_MESSAGE,
@@ -24,17 +23,105 @@ from app.wire.messages import (
     Flag,
     HeadsetState,
     Hello,
+    Probe,
     ProbeAnswer,
+    Probed,
+    Produced,
     RefusedReport,
     Report,
     ReportBody,
     Resend,
+    StreamName,
     Welcome,
 )
 
+TIMEOUT_S = 2.0
 log = logging.getLogger(__name__)
 RETRY_S = (0.1, 0.2, 0.5, 1.0)
 OPEN_TIMEOUT_S = 10.0
+
+
+@dataclass
+class Announcer:
+    """Tells how far the client itself has come, so that the server knows what it does not have.
+
+    Of everything once a connection is open, then once a second of what has changed.
+    """
+
+    socket: ClientConnection
+    journal: Journal
+    every_s: float = 1.0
+    _told: dict[tuple[str, int], int] = field(default_factory=dict)
+
+    async def run(self) -> None:
+        """Tell until cancelled."""
+        while True:
+            await self.tell()
+            await asyncio.sleep(self.every_s)
+
+    async def tell(self) -> None:
+        """Tell of what has changed since the last time."""
+        news: dict[int, dict[str, int]] = defaultdict(dict)
+        for (stream, epoch), count in self.journal.produced.items():
+            if self._told.get((stream, epoch)) != count:
+                news[epoch][str(stream)] = count
+                self._told[stream, epoch] = count
+        for epoch, streams in news.items():
+            message = Produced.model_validate({"epoch": epoch, "streams": streams})
+            await self.socket.send(message.model_dump_json())
+
+
+@dataclass
+class Prober:
+    """Asks for the server's clock again and again; tells the raw reading of each exchange.
+
+    `monotonic_s` is the client's own clock. An answer that does not come within `timeout_s` is told
+    as null, never as a number; when it comes after all, it is ignored.
+    """
+
+    socket: ClientConnection
+    monotonic_s: Callable[[], float]
+    every_s: float
+    timeout_s: float = TIMEOUT_S
+    _asked: dict[float, float] = field(default_factory=dict)
+
+    async def run(self) -> None:
+        """Ask until cancelled."""
+        while True:
+            await self._give_up()
+            client_sent_s = self.monotonic_s()
+            self._asked[client_sent_s] = time.monotonic()
+            await self.socket.send(Probe(client_sent_s=client_sent_s).model_dump_json())
+            await asyncio.sleep(self.every_s)
+
+    async def take(self, answer: ProbeAnswer, received_s: float) -> None:
+        """Tell the four times of an exchange, as they were read."""
+        if self._asked.pop(answer.client_sent_s, None) is None:
+            return
+        await self._tell(
+            Probed(
+                client_sent_s=answer.client_sent_s,
+                server_received_ns=answer.server_received_ns,
+                server_sent_ns=answer.server_sent_ns,
+                client_received_s=received_s,
+            )
+        )
+
+    async def _give_up(self) -> None:
+        before_s = time.monotonic() - self.timeout_s
+        for client_sent_s in [sent for sent, at_s in self._asked.items() if at_s <= before_s]:
+            del self._asked[client_sent_s]
+            await self._tell(
+                Probed(
+                    client_sent_s=client_sent_s,
+                    server_received_ns=None,
+                    server_sent_ns=None,
+                    client_received_s=None,
+                )
+            )
+
+    async def _tell(self, reading: Probed) -> None:
+        await self.socket.send(reading.model_dump_json())
 
 
 class TelemetryError(RuntimeError):

@@ -1,13 +1,16 @@
-"""Where the running server can be reached, as pages and terminals tell it.
+"""Where the running server can be reached, as pages, terminals and QR codes tell it.
 
 `Network` is one for the whole run and always answers with the newest `Reach`: a laptop that joins
 another Wi-Fi gets other addresses and another certificate while the server runs.
 """
 
+import io
 from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Literal
 from urllib.parse import urlsplit
+
+import segno
 
 Mode = Literal["loopback", "lan", "without_tls"]
 LOOPBACK_HOSTS = ("localhost", "127.0.0.1", "::1")
@@ -65,3 +68,19 @@ class Network:
     """The newest reach; replaced as a whole, so any thread may read it."""
 
     reach: Reach = field(default_factory=Reach)
+
+
+def qr_svg(text: str) -> str:
+    """A QR code as an SVG element without a size of its own."""
+    buffer = io.BytesIO()
+    segno.make(text, error="m").save(
+        buffer, kind="svg", xmldecl=False, svgns=True, border=2, scale=1, omitsize=True
+    )
+    return buffer.getvalue().decode()
+
+
+def qr_terminal(text: str) -> str:
+    """A QR code in half blocks, two rows a line."""
+    buffer = io.StringIO()
+    segno.make(text, error="l").terminal(buffer, compact=True, border=2)
+    return buffer.getvalue()

@@ -1,19 +1,16 @@
 """The tables, one family a file. Importing this package registers them all."""
 
-from app.models.accounts import Account, Invitation, LoginToken, StudyMember
-from app.models.audit import AuditEntry, AuditHead
-from app.models.avatars import Avatar, AvatarVersion
+from app.models.accounts import Account, AuditEntry, AuditHead, Invitation, LoginToken, StudyMember
+from app.models.avatars import Avatar, AvatarVersion, HumanoidRow
 from app.models.captures import CaptureContent, CapturePiece, CaptureRow, SavedJointMap
-from app.models.desk import Calibration, Suggestion
-from app.models.devices import Device, PairingCode
-from app.models.humanoids import HumanoidRow
+from app.models.devices import Calibration, Device, PairingCode
 from app.models.imports import AnswerImport, ImportedForm
-from app.models.ledger import Ledger, LedgerSlot, Participant, SlotAttempt
+from app.models.ledger import KINDS, Ledger, LedgerSlot, Participant, SlotAttempt
 from app.models.quality import AlarmRow, PhaseLatency, PhaseQuality
 from app.models.questionnaires import Answer, ScoreValue, Submission
 from app.models.rights import AnswerCorrection, CopyMade, Erasure
 from app.models.sessions import Phase, SessionContent, SessionEvent, StudySession
-from app.models.studies import InstrumentVersion, Study, StudyVersion
+from app.models.studies import InstrumentVersion, Study, StudyVersion, Suggestion
 from app.models.telemetry import (
     ClientReport,
     ClockProbe,
@@ -25,9 +22,11 @@ from app.models.telemetry import (
     TelemetryChunk,
     TelemetryStream,
 )
+from app.models.types import UtcDateTime, new_id
 from app.models.walking import WalkingModelRow, WalkingScene, WalkSetRow
 
 __all__ = [
+    "KINDS",
     "Account",
     "AlarmRow",
     "Answer",
@@ -76,7 +75,9 @@ __all__ = [
     "TelemetryBatch",
     "TelemetryChunk",
     "TelemetryStream",
+    "UtcDateTime",
     "WalkSetRow",
     "WalkingModelRow",
     "WalkingScene",
+    "new_id",
 ]

@@ -1,9 +1,9 @@
-"""Who may use the console, for which studies, and the logins that are alive."""
+"""Who works here, and the chain of what they did."""
 
 from datetime import datetime
 from typing import Any
 
-from sqlalchemy import JSON, CheckConstraint, ForeignKey, String, true
+from sqlalchemy import JSON, CheckConstraint, ForeignKey, String, Text, true
 from sqlalchemy.orm import Mapped, mapped_column, relationship
 
 from app.database import Base
@@ -71,3 +71,36 @@ class LoginToken(Base):
     revoked_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
 
     account: Mapped[Account] = relationship(lazy="raise")
+
+
+class AuditEntry(Base):
+    """One act. `hash` covers the previous hash and every other column.
+
+    `subject` names what was acted upon by kind and key or id ("study:pilot", "session:0f3a..."),
+    and `details` is canonical JSON. Neither holds anything of a participant, not even their code:
+    an entry cannot be erased.
+    """
+
+    __tablename__ = "audit_entries"
+
+    seq: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    at: Mapped[UtcTime]
+    actor: Mapped[str] = mapped_column(String(100), index=True)
+    action: Mapped[str] = mapped_column(String(60), index=True)
+    subject: Mapped[str] = mapped_column(String(200))
+    details: Mapped[str] = mapped_column(Text)
+    previous_hash: Mapped[str] = mapped_column(String(64))
+    hash: Mapped[str] = mapped_column(String(64))
+
+
+class AuditHead(Base):
+    """The end of the chain: one row that writers queue on, so that the chain never forks.
+
+    It also tells a chain whose end was cut off from a shorter one.
+    """
+
+    __tablename__ = "audit_head"
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    seq: Mapped[int]
+    hash: Mapped[str] = mapped_column(String(64))

@@ -1,4 +1,4 @@
-"""Tablets and headsets: paired once by a short code, then known by a scoped token."""
+"""The equipment: tablets and headsets, known by a scoped token, and how slow a setup is."""
 
 from datetime import datetime
 
@@ -50,3 +50,27 @@ class Device(Base):
     paired_at: Mapped[UtcTime]
     last_seen_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
     revoked_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+
+
+class Calibration(Base):
+    """A measurement of the equipment's own motion-to-photon delay; added latency comes on top.
+
+    Appended, never edited: a later measurement of the same `equipment` supersedes it, and
+    `retired_at` marks one that was a mistake. `measured_on` is an ISO date.
+    """
+
+    __tablename__ = "calibrations"
+
+    id: Mapped[Id]
+    equipment: Mapped[str] = mapped_column(String(120))
+    motion_to_photon_s: Mapped[float]
+    sd_s: Mapped[float]
+    samples: Mapped[int]
+    method: Mapped[str] = mapped_column(String(400))
+    measured_on: Mapped[str] = mapped_column(String(10))
+    note: Mapped[str] = mapped_column(String(2000))
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime]
+    retired_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
+    retired_by: Mapped[str | None] = mapped_column(String(100))
+    retired_reason: Mapped[str | None] = mapped_column(String(2000))

@@ -1,4 +1,7 @@
-"""Studies and instruments: every version that was ever used, by the hash of its content."""
+"""Studies and instruments: every version that was ever used, by the hash of its content.
+
+What experts advise about a version of a study stands with it.
+"""
 
 from datetime import datetime
 from typing import Any
@@ -58,3 +61,25 @@ class InstrumentVersion(Base):
     source_yaml: Mapped[str] = mapped_column(Text)
     canonical_json: Mapped[str] = mapped_column(Text)
     created_at: Mapped[UtcTime]
+
+
+class Suggestion(Base):
+    """What an expert advised about a version of a study, and what became of it.
+
+    `status` is open, adopted or declined; `adopted_in` is the number of the version that has it.
+    `about` names a step of the study, or is empty for the whole.
+    """
+
+    __tablename__ = "suggestions"
+
+    id: Mapped[Id]
+    study_version_id: Mapped[str] = mapped_column(ForeignKey("study_versions.id"), index=True)
+    session_id: Mapped[str | None] = mapped_column(ForeignKey("sessions.id"), index=True)
+    about: Mapped[str] = mapped_column(String(80))
+    body: Mapped[str] = mapped_column(Text)
+    status: Mapped[str] = mapped_column(String(20))
+    adopted_in: Mapped[int | None]
+    by: Mapped[str] = mapped_column(String(100))
+    at: Mapped[UtcTime]
+    decided_by: Mapped[str | None] = mapped_column(String(100))
+    decided_at: Mapped[datetime | None] = mapped_column(UtcDateTime)

@@ -11,7 +11,7 @@ from typing import TypeVar
 
 from app.clock import Clock
 from app.database import Database
-from app.lan.network import Network
+from app.lan import Network
 from app.platform.hub import Hub
 from app.platform.rate_limit import RateLimiter
 from app.platform.storage_health import StorageHealth

@@ -1,27 +1,45 @@
 """Study and instrument files: strict reading, frozen values, content hashes, plans and orders."""
 
-from app.protocol.appearance import Appearance, Colours, Cues, Palette
-from app.protocol.canonical import canonical_json, sha256_of
-from app.protocol.common import Provenance, Text
+from app.protocol.common import Provenance, Text, canonical_json, sha256_of
 from app.protocol.conditions import Condition, Orders
+from app.protocol.difference import Difference, differences
+from app.protocol.durations import (
+    BY_HAND_S,
+    ITEM_S,
+    OPENING_S,
+    READING_WORDS_PER_S,
+    TimedStep,
+    form_s,
+    timeline,
+    total_s,
+)
 from app.protocol.errors import ConfigError, ConfigProblem, PlanError
+from app.protocol.explanations import explain
 from app.protocol.loading import (
     LoadedInstrument,
     LoadedStudy,
+    instrument_as_json,
     load_instrument,
     load_study,
     parse_instrument_json,
     parse_study_json,
+    study_schema,
 )
 from app.protocol.orders import LedgerRow, ledger_block, sequences
-from app.protocol.plan import Step, StepKind, compile_plan
+from app.protocol.plan import TIMED_KINDS, Step, StepKind, compile_plan
 from app.protocol.preregistration import ExclusionRule, Preregistration, PrimaryTest
 from app.protocol.procedure import Block, ConsentStep, Procedure, SetupStep, TaskPhase
 from app.protocol.safety import Safety, StopRule
+from app.protocol.source import Path, Plain, Source, path_text, read_source
 from app.protocol.study import Blinding, LatencySettings, StudyProtocol
-from app.protocol.tasks import FootTask, HandTask, Tasks
+from app.protocol.tasks import Appearance, Colours, Cues, FootTask, HandTask, Palette, Tasks
 
 __all__ = [
+    "BY_HAND_S",
+    "ITEM_S",
+    "OPENING_S",
+    "READING_WORDS_PER_S",
+    "TIMED_KINDS",
     "Appearance",
     "Blinding",
     "Block",
@@ -31,6 +49,7 @@ __all__ = [
     "ConfigProblem",
     "ConsentStep",
     "Cues",
+    "Difference",
     "ExclusionRule",
     "FootTask",
     "HandTask",
@@ -40,6 +59,8 @@ __all__ = [
     "LoadedStudy",
     "Orders",
     "Palette",
+    "Path",
+    "Plain",
     "PlanError",
     "Preregistration",
     "PrimaryTest",
@@ -47,6 +68,7 @@ __all__ = [
     "Provenance",
     "Safety",
     "SetupStep",
+    "Source",
     "Step",
     "StepKind",
     "StopRule",
@@ -54,13 +76,23 @@ __all__ = [
     "TaskPhase",
     "Tasks",
     "Text",
+    "TimedStep",
     "canonical_json",
     "compile_plan",
+    "differences",
+    "explain",
+    "form_s",
+    "instrument_as_json",
     "ledger_block",
     "load_instrument",
     "load_study",
     "parse_instrument_json",
     "parse_study_json",
+    "path_text",
+    "read_source",
     "sequences",
     "sha256_of",
+    "study_schema",
+    "timeline",
+    "total_s",
 ]

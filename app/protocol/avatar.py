@@ -13,10 +13,9 @@ from typing import Annotated, Any, Final, Literal
 
 from pydantic import Field, StringConstraints, TypeAdapter, ValidationError
 
-from app.protocol.canonical import canonical_json, sha256_of
-from app.protocol.common import Strict
+from app.protocol.common import Strict, canonical_json, sha256_of
 from app.protocol.errors import ConfigError, ConfigProblem
-from app.protocol.explain import explain, locate
+from app.protocol.explanations import explain, locate
 from app.protocol.source import Path, Source, read_source
 from app.science.avatar.body.deleva import Population
 from app.science.avatar.body.parts import AXIS_NAMES, PART_NAMES

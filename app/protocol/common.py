@@ -1,5 +1,10 @@
-"""What all parts of a study file share: frozen strict models, texts, keys and durations."""
+"""What all parts of a study file share: frozen strict models, texts, keys, durations and hashes.
 
+Equal content has one spelling, so that a hash names the content and not its formatting.
+"""
+
+import hashlib
+import json
 from collections.abc import Mapping
 from typing import Annotated, Any
 
@@ -60,3 +65,15 @@ def refusal(
         "said": message, "value": value, "valid": valid, "remedy": remedy, "at": at,
     }  # fmt: skip
     return PydanticCustomError("refused", "{said}", context)
+
+
+def canonical_json(value: object) -> str:
+    """JSON with sorted keys, no whitespace and unescaped letters. Raises ValueError for NaN."""
+    return json.dumps(
+        value, sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False
+    )
+
+
+def sha256_of(text: str) -> str:
+    """SHA-256 of the text's UTF-8 bytes, as 64 hexadecimal digits."""
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -2,24 +2,32 @@
 
 These checks read the plain tree and skip what has another shape than expected (its own problem is
 reported elsewhere). So they run even when a value somewhere else is wrong, and a person sees all
-problems of a file at once.
+problems of a file at once. Whether a named avatar exists and goes with how it is moved, and whether
+a named picture exists, are among them.
 """
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 
-from app.protocol.avatar_checks import avatar_problems
 from app.protocol.common import TEXT_MARK
 from app.protocol.conditions import MAX_PERMUTED
-from app.protocol.pictures import picture_problems
-from app.protocol.preregistration_checks import preregistration_problems
-from app.protocol.safety_checks import practice_problems, safety_problems
+from app.protocol.plan import DEFAULT_LANGUAGES
+from app.protocol.preregistration import preregistration_problems
+from app.protocol.safety import practice_problems, safety_problems
 from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
 from app.protocol.study import SCREEN_TEXTS
-from app.protocol.titles import DEFAULT_LANGUAGES
 from app.science.instruments import DefinitionProblem, Instrument
 from app.science.instruments.texts import text_problems
+
+_AVATAR_KEY = "avatar_configuration"
+_AVATAR_AT: Path = (_AVATAR_KEY,)
+_USUAL_AVATAR = "standard"
+# The pictures that texts can show on the tablet: `![t_pose]`, alone between two lines. The product
+# draws them; `frontend/src/shared/pictures.ts` has the same names.
+PICTURES = ("equipment", "t_pose", "mirror", "hand_boxes", "foot_boxes")
+_PICTURE = re.compile(r"^\s*!\[([^\]\n]*)\]\s*$", re.MULTILINE)
 
 
 def cross_problems(
@@ -199,3 +207,73 @@ def _dict(value: Plain) -> dict[str, Plain]:
 
 def _list(value: Plain) -> list[Plain]:
     return value if isinstance(value, list) else []
+
+
+def avatar_problems(
+    tree: Mapping[str, Plain], avatars: Mapping[str, int] | None
+) -> Iterator[DefinitionProblem]:
+    """A physics avatar needs a configuration, a delayed copy has none.
+
+    Args:
+        tree: of the study file.
+        avatars: key -> number of its newest version; None where nobody knows which there are.
+    """
+    moved, named = tree.get("avatar"), tree.get(_AVATAR_KEY)
+    known = sorted(avatars or ())
+    example = _USUAL_AVATAR if _USUAL_AVATAR in known or not known else known[0]
+    if moved == "physics" and named is None:
+        yield DefinitionProblem(
+            _AVATAR_AT,
+            "The avatar is moved by physics, but its configuration is not named.",
+            None,
+            known,
+            f"Add for example {_AVATAR_KEY}: {{key: {example}, version: 1}}.",
+        )
+    if moved == "delayed_copy" and named is not None:
+        yield DefinitionProblem(
+            _AVATAR_AT,
+            "A delayed copy has no configuration: nothing of it would be used.",
+            None,
+            "left out",
+            "Take it out, or write avatar: physics.",
+        )
+    if isinstance(named, dict) and avatars is not None:
+        yield from _unknown_avatar(named.get("key"), named.get("version"), avatars)
+
+
+def _unknown_avatar(
+    key: Plain, version: Plain, avatars: Mapping[str, int]
+) -> Iterator[DefinitionProblem]:
+    if not isinstance(key, str):
+        return
+    if key not in avatars:
+        known = sorted(avatars)
+        yield DefinitionProblem(
+            (*_AVATAR_AT, "key"),
+            f"There is no avatar {key!r}.",
+            key,
+            known,
+            f"Use one of: {', '.join(known)}.",
+        )
+    elif isinstance(version, int) and version > avatars[key]:
+        yield DefinitionProblem(
+            (*_AVATAR_AT, "version"),
+            f"The avatar {key!r} has no version {version}.",
+            version,
+            f"1 to {avatars[key]}",
+            "Name a version that was saved.",
+        )
+
+
+def picture_problems(path: Path, wordings: Mapping[str, str]) -> Iterator[DefinitionProblem]:
+    """A name that is no picture's would leave a hole in the instructions."""
+    for language, words in wordings.items():
+        for name in _PICTURE.findall(words):
+            if name not in PICTURES:
+                yield DefinitionProblem(
+                    (*path, language),
+                    f"There is no picture {name!r}.",
+                    name,
+                    list(PICTURES),
+                    f"Use one of: {', '.join(PICTURES)}; or take the line out.",
+                )

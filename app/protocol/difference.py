@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
-from app.protocol.canonical import canonical_json
+from app.protocol.common import canonical_json
 from app.protocol.source import Path, Plain
 
 

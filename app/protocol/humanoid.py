@@ -4,8 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, TypeAdapter
 
-from app.protocol.canonical import canonical_json
-from app.protocol.common import Strict
+from app.protocol.common import Strict, canonical_json
 from app.science.avatar.body.figure import Figure
 from app.science.avatar.body.hulls import Piece
 from app.science.avatar.body.parts import PART_NAMES

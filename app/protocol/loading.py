@@ -14,10 +14,10 @@ from typing import Generic, TypeVar, cast
 
 from pydantic import TypeAdapter, ValidationError
 
-from app.protocol.canonical import canonical_json, sha256_of
+from app.protocol.common import canonical_json, sha256_of
 from app.protocol.cross import cross_problems
 from app.protocol.errors import ConfigError, ConfigProblem
-from app.protocol.explain import UNKNOWN_KEY, explain, locate, remove
+from app.protocol.explanations import UNKNOWN_KEY, explain, locate, remove
 from app.protocol.schema import Schema
 from app.protocol.source import Plain, Source, read_source
 from app.protocol.study import StudyProtocol

@@ -5,7 +5,7 @@ followed by its questionnaire, and the block's own forms, then the closing steps
 during a session.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -22,9 +22,23 @@ from app.protocol.procedure import (
     TaskPhase,
 )
 from app.protocol.study import StudyProtocol
-from app.protocol.titles import title_of
 from app.science.tasks.layout import Limb
 
+DEFAULT_TITLES: dict[str, dict[str, str]] = {
+    "consent": {"en": "Consent", "de": "Einwilligung"},
+    "form": {"en": "Questions", "de": "Fragen"},
+    "instructions": {"en": "Instructions", "de": "Anleitung"},
+    "height": {"en": "Height", "de": "Körpergröße"},
+    "materialise": {"en": "Entering the body", "de": "Eintritt in den Körper"},
+    "free_roam": {"en": "Free movement", "de": "Freies Bewegen"},
+    "practice_hand": {"en": "Practice with the hand", "de": "Übung mit der Hand"},
+    "practice_foot": {"en": "Practice with the foot", "de": "Übung mit dem Fuß"},
+    "hand": {"en": "Hand task", "de": "Handaufgabe"},
+    "foot": {"en": "Foot task", "de": "Fußaufgabe"},
+    "questionnaire": {"en": "Questionnaire", "de": "Fragebogen"},
+    "debrief": {"en": "Debriefing", "de": "Abschluss"},
+}
+DEFAULT_LANGUAGES = frozenset({"en", "de"})
 StepKind = Literal[
     "consent",
     "form",
@@ -41,6 +55,11 @@ StepKind = Literal[
 
 TIMED_KINDS: tuple[StepKind, ...] = ("free_roam", "practice", "task")
 """Steps that are phases: they run on the headset's clock and are recorded as such."""
+
+
+def title_of(kind: str, given: Mapping[str, str] | None) -> Mapping[str, str]:
+    """The given title, or the built-in one of the step's kind (of its limb for a task)."""
+    return DEFAULT_TITLES[kind] if given is None else given
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,18 @@
 """When a session must not simply go on: limits on scores that are asked during it.
 
 A *stop rule* looks at one score each time its instrument is filled in. At `warn_at` the operator is
-warned; at `stop_at` the session is held until the operator ends it or goes on with a reason.
+warned; at `stop_at` the session is held until the operator ends it or goes on with a reason. The
+checks below say whether the rules and the practice of a study file can ever do what they are for.
 """
 
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Self
 
 from pydantic import Field, StringConstraints, model_validator
 
 from app.protocol.common import Key, Strict, refusal
+from app.protocol.source import Path, Plain
+from app.science.instruments import DefinitionProblem, Instrument, Score
 
 FormKey = Annotated[
     str,
@@ -48,3 +52,151 @@ class Safety(Strict):
     """The stop rules of a study, in the order in which they are looked at."""
 
     stop_rules: Annotated[tuple[StopRule, ...], Field(min_length=1, max_length=10)]
+
+
+def safety_problems(
+    tree: Mapping[str, Plain], instruments: Mapping[str, Instrument]
+) -> Iterator[DefinitionProblem]:
+    """A rule on something that is not asked, on an unknown score, or beyond the score's range."""
+    rules = _list(_dict(tree.get("safety")).get("stop_rules"))
+    for at, rule in enumerate(rules):
+        if isinstance(rule, dict):
+            yield from _rule(("safety", "stop_rules", at), rule, tree, instruments)
+
+
+def practice_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
+    """Practice without a body to practise with."""
+    before = [_dict(step).get("step") for step in _list(_dict(tree.get("procedure")).get("before"))]
+    for at, kind in enumerate(before):
+        if kind == "practice" and "materialise" not in before[:at]:
+            yield DefinitionProblem(
+                ("procedure", "before", at, "step"),
+                "The practice comes before the participant has a body.",
+                kind,
+                "a place behind the step materialise",
+                "Move it behind the step materialise.",
+            )
+
+
+def _rule(
+    path: Path,
+    rule: dict[str, Plain],
+    tree: Mapping[str, Plain],
+    instruments: Mapping[str, Instrument],
+) -> Iterator[DefinitionProblem]:
+    key = rule.get("instrument")
+    if not isinstance(key, str):
+        return
+    early, late = _asked(tree)
+    if key not in early:
+        asked = sorted(early)
+        said = "only after the blocks, when there is nothing left to stop" if key in late else ""
+        yield DefinitionProblem(
+            (*path, "instrument"),
+            f"The study asks {key!r} {said}." if said else f"The study does not ask {key!r}.",
+            key,
+            asked,
+            "Ask it before, in or at the end of the blocks, or use one of: "
+            f"{', '.join(asked) or 'none is asked'}.",
+        )
+    if key in instruments:
+        yield from _score(path, rule, instruments[key])
+    yield from _start(path, rule, key, tree)
+
+
+def _score(
+    path: Path, rule: dict[str, Plain], instrument: Instrument
+) -> Iterator[DefinitionProblem]:
+    key = rule.get("score")
+    known = {score.key: score for score in instrument.scores}
+    if isinstance(key, str) and key not in known:
+        yield DefinitionProblem(
+            (*path, "score"),
+            f"The instrument {instrument.key!r} has no score {key!r}.",
+            key,
+            sorted(known),
+            f"Use one of: {', '.join(sorted(known)) or 'it has none'}.",
+        )
+    elif isinstance(key, str):
+        for field in ("stop_at", "warn_at"):
+            limit = rule.get(field)
+            if isinstance(limit, int | float) and not isinstance(limit, bool):
+                yield from _limit((*path, field), limit, known[key], rule.get("change_from"))
+
+
+def _limit(
+    path: Path, limit: float, score: Score, change_from: Plain
+) -> Iterator[DefinitionProblem]:
+    if score.minimum is None or score.maximum is None:
+        return
+    low, high = score.minimum, score.maximum
+    if change_from is not None:
+        low, high = 0.0, high - low
+    # At the lowest value the rule would be met by everybody.
+    if not low < limit <= high:
+        what = "rise" if change_from is not None else "score"
+        yield DefinitionProblem(
+            path,
+            f"The limit {limit:g} is met by everybody or by nobody: the {what} of "
+            f"{score.key!r} goes from {low:g} to {high:g}.",
+            limit,
+            f"above {low:g}, at most {high:g}",
+            f"Give a limit above {low:g} and at most {high:g}.",
+        )
+
+
+def _start(
+    path: Path, rule: dict[str, Plain], key: str, tree: Mapping[str, Plain]
+) -> Iterator[DefinitionProblem]:
+    """`change_from` names a form before the blocks that asks the same instrument."""
+    start = rule.get("change_from")
+    if not isinstance(start, str):
+        return
+    forms = _forms_before(tree)
+    fitting = [name for name, instrument in forms if instrument == key]
+    if start not in fitting:
+        yield DefinitionProblem(
+            (*path, "change_from"),
+            f"There is no form {start!r} before the blocks that asks {key!r}.",
+            start,
+            fitting,
+            f"Use one of: {', '.join(fitting)}."
+            if fitting
+            else f"Add a step {{step: form, instrument: {key}}} before the blocks.",
+        )
+
+
+def _asked(tree: Mapping[str, Plain]) -> tuple[set[str], set[str]]:
+    """What is asked up to the end of the last block, and what behind it."""
+    procedure = _dict(tree.get("procedure"))
+    block = _dict(procedure.get("block"))
+    early = [
+        *(_dict(step).get("instrument") for step in _list(procedure.get("before"))),
+        *(_dict(phase).get("questionnaire") for phase in _list(block.get("phases"))),
+        *(_dict(step).get("instrument") for step in _list(block.get("after"))),
+    ]
+    late = [_dict(step).get("instrument") for step in _list(procedure.get("after"))]
+    return {one for one in early if isinstance(one, str)}, {
+        one for one in late if isinstance(one, str)
+    }
+
+
+def _forms_before(tree: Mapping[str, Plain]) -> list[tuple[str, str]]:
+    """The forms before the blocks by the keys that the plan gives them, with their instrument."""
+    seen: dict[str, int] = {}
+    forms = []
+    for step in _list(_dict(tree.get("procedure")).get("before")):
+        instrument = _dict(step).get("instrument")
+        if isinstance(instrument, str):
+            count = seen[instrument] = seen.get(instrument, 0) + 1
+            name = f"form.{instrument}" if count == 1 else f"form.{instrument}.{count}"
+            forms.append((name, instrument))
+    return forms
+
+
+def _dict(value: Plain) -> dict[str, Plain]:
+    return value if isinstance(value, dict) else {}
+
+
+def _list(value: Plain) -> list[Plain]:
+    return value if isinstance(value, list) else []

@@ -4,14 +4,12 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field, StringConstraints
 
-from app.protocol.appearance import Appearance
-from app.protocol.canonical import canonical_json, sha256_of
-from app.protocol.common import Key, Provenance, Strict, Text, refusal
+from app.protocol.common import Key, Provenance, Strict, Text, canonical_json, refusal, sha256_of
 from app.protocol.conditions import Condition, Conditions, Orders
 from app.protocol.preregistration import Preregistration
 from app.protocol.procedure import FormStep, Procedure
 from app.protocol.safety import Safety
-from app.protocol.tasks import Tasks
+from app.protocol.tasks import Appearance, Tasks
 from app.science.skeleton.joints import JOINT_NAMES
 
 SCREEN_TEXTS = ("waiting", "freeze", "walk_back")

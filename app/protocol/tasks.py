@@ -1,4 +1,6 @@
-"""The places of the box tasks, as a study fixes them for everybody (only the avatar is scaled).
+"""The box tasks, as a study fixes them for everybody: their places, colours and shapes.
+
+Only the avatar is scaled. Shapes say the same as colours to people who cannot tell those apart.
 
 World frame: origin on the floor at the centre of the start square, +x right, +y up, the participant
 faces -z; metres.
@@ -6,9 +8,9 @@ faces -z; metres.
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, StringConstraints, model_validator
 
-from app.protocol.common import Length, Point, Strict, refusal
+from app.protocol.common import Key, Length, Point, Strict, Text, refusal
 from app.science.tasks.layout import (
     BlockSpec,
     BoxSpec,
@@ -24,6 +26,12 @@ from app.science.tasks.layout import (
 _MAX_BOXES = 12
 
 Size = Annotated[tuple[Length, Length, Length], Field(description="[width, height, depth] in m")]
+Colour = Annotated[
+    str,
+    StringConstraints(pattern=r"^#[0-9a-f]{6}$"),
+    Field(description='"#rrggbb" in lower-case hexadecimal digits, in quotes'),
+]
+Cue = Literal["none", "check", "cross", "ring", "stripes"]
 
 
 class SolidBlock(Strict):
@@ -157,3 +165,51 @@ def _try(task: HandTask | FootTask) -> None:
             valid="boxes numbered 1, 2, ... from the left, apart from each other and the target",
             remedy="Change the numbers, places or sizes of this task as the message says.",
         ) from error
+
+
+class Colours(Strict):
+    """A colour for each thing of the task and each of its states."""
+
+    panel: Colour
+    panel_done: Colour
+    side: Colour
+    side_touched: Colour
+    target: Colour
+    start_square: Colour
+
+
+class Cues(Strict):
+    """A shape drawn on the thing in that state, besides its colour."""
+
+    panel_done: Cue
+    side_touched: Cue
+    target: Cue
+
+
+class Palette(Strict):
+    """One way to show the task."""
+
+    key: Key
+    title: Text
+    colours: Colours
+    cues: Cues
+
+
+class Appearance(Strict):
+    """The palettes of a study; the operator may choose another than the default for a session."""
+
+    default: Key
+    palettes: Annotated[tuple[Palette, ...], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _default_exists(self) -> Self:
+        keys = [palette.key for palette in self.palettes]
+        if self.default not in keys or len(set(keys)) < len(keys):
+            raise refusal(
+                "The default palette is not there, or two palettes have one key.",
+                value=self.default,
+                valid=keys,
+                remedy="Give each palette its own key, and name one of them as the default.",
+                at=("default",),
+            )
+        return self

@@ -16,7 +16,7 @@ import threading
 from dataclasses import fields
 from typing import Any
 
-from app.client.http import Operator, ServerRefusedError, UnreachableError
+from app.client import Operator, ServerRefusedError, UnreachableError
 from app.rehearsal.cast import ENDED, OVERTAKEN, perform
 from app.rehearsal.rehearse import RehearsalPlan, assembled
 

@@ -1,11 +1,14 @@
-"""The rehearsing participant's body and movement."""
+"""The rehearsing participant's body and movement, made up here or taken from a capture."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from app.rehearsal.captured import UnusableCapture, captured_movement
+from app.adapters.captures import CaptureError, read_capture_file
+from app.science.retargeting.in_place import movement_in_place
+from app.science.retargeting.joint_map import propose_joint_map
+from app.science.rig import RigError, RigMotion
 from app.science.simulation import SimulatedParticipant, idle_movement
 from app.science.skeleton import Skeleton, SkeletonError, build_skeleton
 from app.science.skeleton.movement import Movement, loop, resample
@@ -14,6 +17,42 @@ FRAME_RATE_HZ = 90.0
 CROSSFADE_S, SHORTEST_CROSSFADE_S = 0.4, 0.1
 SHORTEST_LOOP_S = 0.55
 """A capture of a second still makes a loop, with a shorter cross-fade."""
+
+
+class UnusableCapture(ValueError):
+    """The capture cannot be used as movement; says why and what to do."""
+
+
+def captured_movement(path: Path, skeleton: Skeleton) -> Movement:
+    """The capture's movement on a skeleton, in place and facing -z; markers get a skeleton first.
+
+    Raises:
+        UnusableCapture: the file cannot be read, or no body can be made of it.
+    """
+    try:
+        source = skeleton_motion(path)
+        joint_map = propose_joint_map(source.rig).joint_map
+        return movement_in_place(source, joint_map, skeleton)
+    except (CaptureError, RigError, SkeletonError, OSError) as error:
+        raise UnusableCapture(f"{path} cannot be used: {error}") from error
+
+
+def skeleton_motion(path: Path) -> RigMotion:
+    """The movement of the capture's own skeleton, or of one fitted to its markers or bodies.
+
+    Raises:
+        UnusableCapture: no skeleton can be fitted.
+        CaptureError, OSError: see `read_capture_file`.
+    """
+    motion = read_capture_file(path).motion
+    if isinstance(motion, RigMotion):
+        return motion
+    from app.science.fitting import FitError, fit_skeleton  # most captures bring a skeleton
+
+    try:
+        return fit_skeleton(motion).motion
+    except FitError as error:
+        raise UnusableCapture(f"{path} cannot be used: {error}") from error
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.client.http import Operator, ServerRefusedError, Tablet
+from app.client import Operator, ServerRefusedError, Tablet
 from app.rehearsal.answers import agreement, fill_in
 from app.rehearsal.body import Person
 from app.rehearsal.headset import Headset

@@ -6,30 +6,67 @@ server when the participant's stature is known and the T-pose is held.
 """
 
 import asyncio
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.client.telemetry import TelemetryClient
+from app.client import TelemetryClient
 from app.protocol import Tasks
-from app.rehearsal.avatars import DelayedCopy, RemoteAvatar
-from app.rehearsal.body import Person
-from app.rehearsal.frame_clock import FrameClock
+from app.rehearsal.avatars import AvatarSource, DelayedCopy, RemoteAvatar
+from app.rehearsal.body import FRAME_RATE_HZ, Person
 from app.rehearsal.goals import goal_of
-from app.rehearsal.physics import AvatarSource
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
 from app.science.skeleton import JOINT_NAMES, Pose
 from app.science.tasks import Laterality, TaskLayout, TaskRules
-from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
-from app.wire.batch import ACTIVE
-from app.wire.messages import HeadsetState, MaterialisedReport, PhaseOrder, ReportBody
+from app.wire import (
+    ACTIVE,
+    VALUES_PER_FRAME,
+    HeadsetState,
+    MaterialisedReport,
+    PhaseOrder,
+    ReportBody,
+    StreamName,
+    encode_batch,
+)
 
 FRAMES_PER_BATCH = 6
 T_POSE_S = 2.0
 MESSAGES_AHEAD = 100
+
+
+@dataclass
+class FrameClock:
+    """Goes `speed` seconds a second, and never beyond the frame that was drawn last.
+
+    So a machine that is too slow for the speed has a slower clock, as a headset that drops frames
+    has not: only a rehearsal faster than life can come to that.
+    """
+
+    speed: float
+    frame: int = 0
+    _started_s: float = field(default_factory=time.monotonic)
+
+    def start(self) -> None:
+        """The first frame is due now."""
+        self._started_s = time.monotonic()
+
+    @property
+    def t_s(self) -> float:
+        """The time of the present frame."""
+        return self.frame / FRAME_RATE_HZ
+
+    def now_s(self) -> float:
+        """The time at any moment, also between two frames."""
+        return min(self.t_s, (time.monotonic() - self._started_s) * self.speed)
+
+    @property
+    def due_in_s(self) -> float:
+        """How many real seconds until the next frame; not above zero where it is late."""
+        return self._started_s + self.t_s / self.speed - time.monotonic()
 
 
 @dataclass

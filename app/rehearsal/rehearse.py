@@ -6,6 +6,7 @@ so everywhere.
 """
 
 import json
+import re
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
@@ -16,20 +17,28 @@ from typing import Any
 import numpy as np
 from httpx2 import AsyncClient
 
-from app.client.http import Operator, Tablet, call, call_again
-from app.client.journal import Journal
-from app.client.telemetry import TelemetryClient
+from app.client import (
+    Journal,
+    Operator,
+    ServerRefusedError,
+    Tablet,
+    TelemetryClient,
+    call,
+    call_again,
+)
 from app.protocol import Tasks
+from app.rehearsal.avatars import FromServer
 from app.rehearsal.body import make_person
 from app.rehearsal.cast import Cast, perform
-from app.rehearsal.frame_clock import FrameClock
-from app.rehearsal.headset import Headset
-from app.rehearsal.physics import FromServer
-from app.rehearsal.variant import physics_variant
+from app.rehearsal.headset import FrameClock, Headset
 
 Json = dict[str, Any]
 AVATARS = ("delayed_copy", "physics")
 """What the scripted headset can show."""
+PHYSICS_SUFFIX = "-physics"
+PHYSICS_AVATAR = "standard"
+_KEY = re.compile(r"^key: .*$", re.MULTILINE)
+_MOVED = re.compile(r"^avatar: delayed_copy[ \t]*$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -203,3 +212,41 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
         speed=plan.speed,
         capture=None if plan.capture is None else plan.capture.name,
     )
+
+
+class NoVariantError(ValueError):
+    """The study has no form with a physics avatar; says why."""
+
+
+async def physics_variant(http: AsyncClient, study: str) -> str:
+    """The key of the study itself if physics moves its avatar, else of its copy that has one.
+
+    The copy is made where it is missing, and gets a version where the study has changed since. It
+    differs in its key and in what moves the avatar: the newest version of the standard one.
+
+    Raises:
+        NoVariantError: the file cannot be changed at these places. ServerRefusedError.
+    """
+    view: dict[str, Any] = await call(http, "GET", f"/api/studies/{study}")
+    text = view["yaml"] or ""
+    if (view["protocol"] or {}).get("avatar") == "physics":
+        return study
+    if len(_MOVED.findall(text)) != 1 or len(_KEY.findall(text)) != 1:
+        raise NoVariantError(
+            f"the file of {study!r} does not say `avatar: delayed_copy` on a line of its own; make"
+            " a version of it with a physics avatar (docs/avatar-configuration.md)"
+        )
+    newest = (await call(http, "GET", f"/api/avatars/{PHYSICS_AVATAR}"))["newest"]["number"]
+    key = study + PHYSICS_SUFFIX
+    chosen = f"avatar: physics\navatar_configuration: {{key: {PHYSICS_AVATAR}, version: {newest}}}"
+    changed = _MOVED.sub(chosen, _KEY.sub(f"key: {key}", text))
+    try:
+        known = await call(http, "GET", f"/api/studies/{key}")
+    except ServerRefusedError as error:
+        if error.code != "not_found":
+            raise
+        await call(http, "POST", "/api/studies", {"yaml": changed})
+        return key
+    if known["yaml"] != changed:
+        await call(http, "POST", f"/api/studies/{key}/versions", {"yaml": changed})
+    return key

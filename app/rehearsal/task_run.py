@@ -16,7 +16,7 @@ from app.science.tasks import (
     TaskState,
     completions,
 )
-from app.wire.messages import CompletionReport, ContactReport, PhaseOrder, ReportBody
+from app.wire import CompletionReport, ContactReport, PhaseOrder, ReportBody
 
 _EFFECTS = {
     EventKind.PANEL_GREEN: "green",

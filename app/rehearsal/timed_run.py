@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.science.tasks import ActiveClock, CommandKind
-from app.wire.messages import PhaseOrder, PhaseReport, ReportBody
+from app.wire import PhaseOrder, PhaseReport, ReportBody
 
 Bools = NDArray[np.bool_]
 Touches = Callable[[], tuple[Bools, Bools]]

@@ -6,74 +6,287 @@ session, `ack` after each commit, `resend` where it expected an earlier seq, `fl
 `refused` for a report that did not fit, and `error` before it closes.
 """
 
-from app.wire.basis import (
-    MAX_SEQ,
-    PROTOCOL_VERSION,
-    REPORT_STREAM,
-    SUBPROTOCOL,
-    Message,
-)
-from app.wire.from_client import (
-    CLIENT_MESSAGE,
-    ClientMessage,
-    ClientMessages,
-    CompletionReport,
-    ContactReport,
-    Hello,
-    MaterialisedReport,
-    PhaseReport,
-    Probe,
-    Probed,
-    Produced,
-    Report,
-    ReportBody,
-)
-from app.wire.from_server import (
-    SERVER_MESSAGE,
-    Ack,
-    Failure,
-    Flag,
-    HeadsetState,
-    ParticipantInfo,
-    PhaseOrder,
-    ProbeAnswer,
-    RefusedReport,
-    Resend,
-    ServerMessage,
-    StreamPosition,
-    Welcome,
-)
+from typing import Annotated, Any, Literal, Self
 
-__all__ = [
-    "CLIENT_MESSAGE",
-    "MAX_SEQ",
-    "PROTOCOL_VERSION",
-    "REPORT_STREAM",
-    "SERVER_MESSAGE",
-    "SUBPROTOCOL",
-    "Ack",
-    "ClientMessage",
-    "ClientMessages",
-    "CompletionReport",
-    "ContactReport",
-    "Failure",
-    "Flag",
-    "HeadsetState",
-    "Hello",
-    "MaterialisedReport",
-    "Message",
-    "ParticipantInfo",
-    "PhaseOrder",
-    "PhaseReport",
-    "Probe",
-    "ProbeAnswer",
-    "Probed",
-    "Produced",
-    "RefusedReport",
-    "Report",
-    "ReportBody",
-    "Resend",
-    "ServerMessage",
-    "StreamPosition",
-    "Welcome",
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
+
+PROTOCOL_VERSION = 1
+SUBPROTOCOL = "reembody.v1"
+REPORT_STREAM = "reports"
+MAX_SEQ = 2**53
+
+Seconds = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1e9)]
+Seq = Annotated[int, Field(ge=0, lt=MAX_SEQ)]
+Epoch = Annotated[int, Field(ge=1, lt=2**31)]
+Count = Annotated[int, Field(ge=0, lt=2**31)]
+Nanoseconds = Annotated[int, Field(ge=0, lt=2**63)]
+# Not every database takes a NUL in a text.
+Name = Annotated[str, Field(pattern=r"^[^\x00]*$")]
+
+
+class Message(BaseModel):
+    """Base of all messages: frozen, nothing unknown."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Hello(Message):
+    """Opens a connection. `epoch` is null for a new run of the client.
+
+    `avatars`: what the client can show. One that cannot show the session's avatar is refused: the
+    record would name another than the participant saw.
+    """
+
+    type: Literal["hello"] = "hello"
+    protocol: int
+    client: Name = Field(max_length=120)
+    epoch: Epoch | None = None
+    avatars: tuple[Annotated[Name, Field(max_length=40)], ...] = Field(
+        default=("delayed_copy",), max_length=10
+    )
+
+
+class PhaseReport(Message):
+    """What the headset did to the clock of a phase, at its own monotonic time."""
+
+    kind: Literal["phase"] = "phase"
+    phase_id: Count
+    what: Literal[
+        "started",
+        "paused",
+        "resumed",
+        "walk_back_started",
+        "walk_back_ended",
+        "time_up",
+        "ended",
+    ]
+    t_s: Seconds
+    active_s: Seconds
+    cause: Name = Field(default="headset", max_length=40)
+
+
+class MaterialisedReport(Message):
+    """The participant pressed the grips and the avatar appeared."""
+
+    kind: Literal["materialised"] = "materialised"
+    t_s: Seconds
+
+
+class ContactReport(Message):
+    """A finished contact of one body part with one surface, inside one active interval."""
+
+    kind: Literal["contact"] = "contact"
+    phase_id: Count
+    surface: Name = Field(max_length=40)
+    surface_kind: Literal["panel", "side", "target", "start"]
+    box: Count | None = None
+    side: Name | None = Field(default=None, max_length=20)
+    body_part: Name = Field(max_length=40)
+    begin_s: Seconds
+    end_s: Seconds
+    begin_active_s: Seconds
+    end_active_s: Seconds
+    effect: Name = Field(max_length=20)
+
+
+class CompletionReport(Message):
+    """A completed task."""
+
+    kind: Literal["completion"] = "completion"
+    phase_id: Count
+    number: int = Field(ge=1, le=10_000)
+    t_s: Seconds
+    active_s: Seconds
+    duration_s: Seconds
+    order: tuple[Count, ...] = Field(max_length=16)
+    out_of_order_touches: Count
+
+
+ReportBody = Annotated[
+    PhaseReport | MaterialisedReport | ContactReport | CompletionReport,
+    Field(discriminator="kind"),
 ]
+
+
+class Report(Message):
+    """A numbered report: journaled by the client until it is acknowledged, like a batch."""
+
+    type: Literal["report"] = "report"
+    epoch: Epoch
+    seq: Seq
+    body: ReportBody
+
+
+class Probe(Message):
+    """Asks for the server's clock."""
+
+    type: Literal["probe"] = "probe"
+    client_sent_s: Seconds
+
+
+class Probed(Message):
+    """The client's raw reading of one exchange; all null where no answer came in time."""
+
+    type: Literal["probed"] = "probed"
+    client_sent_s: Seconds
+    server_received_ns: Nanoseconds | None
+    server_sent_ns: Nanoseconds | None
+    client_received_s: Seconds | None
+
+    @model_validator(mode="after")
+    def _whole_or_null(self) -> Self:
+        times = (self.server_received_ns, self.server_sent_ns, self.client_received_s)
+        if len({time is None for time in times}) > 1:
+            raise ValueError("give all three times of an answer, or null for all three")
+        return self
+
+
+class Produced(Message):
+    """How far the client itself has come in an epoch: its next seqs, sent or not.
+
+    What the server holds is compared with this, so that nothing can be missing unnoticed.
+    """
+
+    type: Literal["produced"] = "produced"
+    epoch: Epoch
+    streams: dict[Literal["target", "actual", "reports"], Seq] = Field(max_length=3)
+
+
+ClientMessages = Hello | Report | Probe | Probed | Produced
+ClientMessage = Annotated[ClientMessages, Field(discriminator="type")]
+CLIENT_MESSAGE: TypeAdapter[ClientMessages] = TypeAdapter(ClientMessage)
+
+
+class StreamPosition(Message):
+    """All of `seq < next_seq` of a stream is on disk."""
+
+    stream: str
+    epoch: int
+    next_seq: int
+
+
+class PhaseOrder(Message):
+    """The phase to run; the headset converges to it. Latency is known here and nowhere else.
+
+    `until_completions`: a practice ends once so many tasks are completed, before its time is up;
+    null everywhere else.
+    """
+
+    phase_id: int
+    kind: str
+    limb: str | None
+    status: str
+    latency_ms: float
+    preparation_s: float
+    duration_s: float
+    freeze_s: float
+    active_s: float
+    completions: int
+    pausing: bool
+    resuming: bool
+    until_completions: int | None = None
+
+
+class ParticipantInfo(Message):
+    """What the task needs to know of the participant; null until it was answered."""
+
+    handedness: str | None = None
+    footedness: str | None = None
+    stature_m: float | None = None
+
+
+class HeadsetState(Message):
+    """Where the session stands, as the headset needs it."""
+
+    type: Literal["state"] = "state"
+    version: int
+    status: str
+    step_index: int | None
+    step_kind: str | None
+    materialised: bool
+    recording: bool
+    phase: PhaseOrder | None
+    participant: ParticipantInfo
+
+
+class Welcome(Message):
+    """Answers a hello: the client's epoch, where each stream stands, the study's tasks."""
+
+    type: Literal["welcome"] = "welcome"
+    protocol: int
+    session_id: str
+    epoch: int
+    time_scale: float
+    language: str
+    avatar: str
+    on_disconnect: str
+    undelayed_parts: tuple[str, ...]
+    tasks: dict[str, Any]
+    texts: dict[str, Any]
+    positions: tuple[StreamPosition, ...]
+    state: HeadsetState
+
+
+class Ack(Message):
+    """These positions are on disk."""
+
+    type: Literal["ack"] = "ack"
+    positions: tuple[StreamPosition, ...]
+
+
+class Resend(Message):
+    """A seq was skipped: send again from `next_seq`."""
+
+    type: Literal["resend"] = "resend"
+    stream: str
+    epoch: int
+    next_seq: int
+
+
+class Flag(Message):
+    """Samples were stored as they came, and are flagged."""
+
+    type: Literal["flag"] = "flag"
+    code: Literal["non_finite", "non_unit"]
+    stream: str
+    epoch: int
+    seq: int
+    frames: int
+    message: str
+
+
+class RefusedReport(Message):
+    """A report was stored and does not count, because it did not fit the session's state."""
+
+    type: Literal["refused"] = "refused"
+    epoch: int
+    seq: int
+    message: str
+    remedy: str
+
+
+class Failure(Message):
+    """Why the server closes the connection."""
+
+    type: Literal["error"] = "error"
+    code: str
+    message: str
+    remedy: str
+
+
+class ProbeAnswer(Message):
+    """The server's clock around a probe."""
+
+    type: Literal["probe"] = "probe"
+    client_sent_s: float
+    server_received_ns: int
+    server_sent_ns: int
+
+
+ServerMessage = Annotated[
+    Welcome | HeadsetState | Ack | Resend | Flag | RefusedReport | Failure | ProbeAnswer,
+    Field(discriminator="type"),
+]
+SERVER_MESSAGE: TypeAdapter[
+    Welcome | HeadsetState | Ack | Resend | Flag | RefusedReport | Failure | ProbeAnswer
+] = TypeAdapter(ServerMessage)

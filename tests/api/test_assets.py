@@ -7,7 +7,7 @@ import pytest
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
 
-from app.api.assets import Assets
+from app.api.pages import Assets
 
 SCRIPT = "export const words = 'a script of some length';\n" * 100
 

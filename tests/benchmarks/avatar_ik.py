@@ -17,7 +17,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from app.rehearsal.captured import captured_movement
+from app.rehearsal.body import captured_movement
 from app.science.avatar.body.parts import PARENT_OF
 from app.science.avatar.ik import GOAL_PARTS, Goals, InverseKinematics
 from app.science.avatar.ik.chain import Chain

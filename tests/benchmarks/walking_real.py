@@ -20,8 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from app.adapters.captures.capture import Reading
-from app.adapters.captures.files import read_capture_file
-from app.adapters.walks.short_walks import DISTANCES_M, read_foot_walk, read_short_walk_table
+from app.adapters.captures.reader import read_capture_file
 from app.science.walking.evaluation.evaluation import Evaluation, evaluate
 from app.science.walking.evaluation.synthetic_walks import straight_path
 from app.science.walking.maps.maps import MapMaker
@@ -36,6 +35,7 @@ from app.science.walking.records.model import LENGTH, TURNING, PlannedWalk, Walk
 from app.science.walking.scene.scene import open_scene
 from tests.benchmarks.walking_cells import FOLLOWER, made
 from tests.conftest import SHARED_DATA_VARIABLE
+from tests.support.short_walks import DISTANCES_M, read_foot_walk, read_short_walk_table
 
 METRES_PER_CMU_UNIT = 0.056444
 FITTED_CAPTURES = ("12_02.bvh",)

@@ -7,7 +7,7 @@ from typing import Any
 from typer.testing import CliRunner, Result
 
 from app.cli.commands import app
-from app.cli.failing import UNUSABLE
+from app.cli.errors import UNUSABLE
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from app.cli.commands import app
-from app.cli.failing import UNUSABLE
+from app.cli.errors import UNUSABLE
 from app.science.walking.evaluation.populations import POPULATIONS, person_of, walk_along
 from app.science.walking.evaluation.synthetic_walks import straight_path
 

@@ -4,7 +4,7 @@ import asyncio
 from dataclasses import dataclass, field
 from typing import Any, cast
 
-from app.client.probing import Prober
+from app.client.telemetry import Prober
 from app.wire.messages import CLIENT_MESSAGE, Probe, ProbeAnswer, Probed
 
 

@@ -12,8 +12,7 @@ import numpy as np
 from app.client.telemetry import TelemetryClient
 from app.protocol import Tasks
 from app.rehearsal.body import make_person
-from app.rehearsal.frame_clock import FrameClock
-from app.rehearsal.headset import Headset
+from app.rehearsal.headset import FrameClock, Headset
 
 
 class Wearer:

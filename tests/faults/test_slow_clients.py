@@ -10,14 +10,14 @@ import httpx2
 import numpy as np
 import pytest
 
-from app.lan.deadlines import (
+from app.lan.serving.deadlines import (
     BODY_WITHIN_S,
     HEAD_WITHIN_S,
     MOST_HEAD_BYTES,
     MOST_UNFINISHED,
     PORTION_BYTES,
 )
-from app.lan.listening import HANDSHAKE_WITHIN_S
+from app.lan.serving.listening import HANDSHAKE_WITHIN_S
 from tests.faults.figures import note
 from tests.support.lan import LanServer
 from tests.support.server import ADMIN_PASSWORD, LiveServer

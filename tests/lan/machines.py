@@ -3,7 +3,7 @@
 from datetime import UTC, datetime
 from ipaddress import ip_address
 
-from app.lan.addresses import Machine
+from app.lan.serving.addresses import Machine
 
 NOW = datetime(2026, 3, 2, 9, 30, tzinfo=UTC)
 LAB_PC = Machine(

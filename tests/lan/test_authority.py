@@ -11,10 +11,10 @@ from cryptography import x509
 from cryptography.hazmat.primitives.serialization import Encoding
 from cryptography.x509.verification import PolicyBuilder, Store, VerificationError
 
-from app.lan.addresses import Address, Machine, host_names
-from app.lan.authority import Authority, authority_from_pem, fingerprint, new_authority
-from app.lan.leaf import Host, new_leaf, wanted_hosts
-from app.lan.listening import tls_context
+from app.lan.serving.addresses import Address, Machine, host_names
+from app.lan.serving.authority import Authority, authority_from_pem, fingerprint, new_authority
+from app.lan.serving.leaf import Host, new_leaf, wanted_hosts
+from app.lan.serving.listening import tls_context
 from tests.lan.machines import LAB_PC, NOW
 
 

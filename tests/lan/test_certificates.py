@@ -11,10 +11,10 @@ from cryptography.x509.oid import ExtendedKeyUsageOID
 
 from app.clock import Clock
 from app.errors import InvalidInput, NotAllowed
-from app.lan.addresses import LOOPBACK, Machine
-from app.lan.certificates import LabAuthority, OwnFiles
-from app.lan.leaf import hosts_of, new_leaf
-from app.lan.listening import tls_context
+from app.lan.serving.addresses import LOOPBACK, Machine
+from app.lan.serving.certificates import LabAuthority, OwnFiles
+from app.lan.serving.leaf import hosts_of, new_leaf
+from app.lan.serving.listening import tls_context
 from tests.lan.machines import LAB_PC, NOW
 
 ELSEWHERE = replace(LAB_PC, addresses=(ip_address("10.0.0.5"),))
@@ -154,6 +154,6 @@ class TestOwnFiles:
 
 def test_a_certificate_without_names_has_none() -> None:
     """The authority's own certificate names no host."""
-    from app.lan.authority import new_authority
+    from app.lan.serving.authority import new_authority
 
     assert hosts_of(new_authority(LAB_PC, NOW).certificate) == ()

@@ -8,11 +8,10 @@ from cryptography import x509
 from cryptography.hazmat.primitives.serialization import Encoding
 from starlette.testclient import TestClient
 
-from app.lan.authority import Authority, fingerprint, new_authority
-from app.lan.help.english import ENGLISH
-from app.lan.help.german import GERMAN
-from app.lan.help.site import HelpSite
 from app.lan.network import Network, Reach
+from app.lan.serving.authority import Authority, fingerprint, new_authority
+from app.lan.serving.help.site import HelpSite
+from app.lan.serving.help.texts import ENGLISH, GERMAN
 from tests.lan.machines import LAB_PC, NOW
 
 REACH = Reach(

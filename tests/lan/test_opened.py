@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.serve.banner import addresses
+from app.cli.serve.output import addresses
 from app.clock import Clock
 from app.lan.network import Reach
-from app.lan.plan import make_plan
+from app.lan.serving.plan import make_plan
 from app.settings import Settings
 from tests.lan.machines import LAB_PC
 

@@ -7,9 +7,9 @@ import pytest
 
 from app.clock import Clock
 from app.errors import InvalidInput, NotAllowed
-from app.lan.certificates import LabAuthority, OwnFiles
 from app.lan.network import Reach
-from app.lan.plan import EVERYWHERE, Plan, make_plan
+from app.lan.serving.certificates import LabAuthority, OwnFiles
+from app.lan.serving.plan import EVERYWHERE, Plan, make_plan
 from app.settings import Settings
 from tests.lan.machines import LAB_PC
 

@@ -12,12 +12,12 @@ from cryptography import x509
 from cryptography.hazmat.primitives.serialization import Encoding
 
 from app.clock import Clock
-from app.lan.certificates import LabAuthority
-from app.lan.leaf import hosts_of
-from app.lan.listening import tls_context
 from app.lan.network import Network
-from app.lan.plan import Plan, make_plan
-from app.lan.watch import CertificateWatch
+from app.lan.serving.certificates import LabAuthority
+from app.lan.serving.leaf import hosts_of
+from app.lan.serving.listening import tls_context
+from app.lan.serving.plan import Plan, make_plan
+from app.lan.serving.watch import CertificateWatch
 from app.settings import Settings
 from tests.lan.machines import LAB_PC
 

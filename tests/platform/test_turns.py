@@ -3,7 +3,7 @@
 import threading
 import time
 
-from app.turns import Turns
+from app.database import Turns
 
 
 def test_turns_go_to_whoever_waits_longest() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.protocol.pictures import PICTURES
+from app.protocol.cross import PICTURES
 from tests.protocol.helpers import STUDY, edited, problems, study
 
 DRAWN = Path(__file__).parents[2] / "frontend" / "src" / "shared" / "pictures.ts"

@@ -15,12 +15,10 @@ from app.client.http import call
 from app.client.telemetry import TelemetryClient
 from app.database import open_database
 from app.models import JointErrorRow
+from app.rehearsal.avatars import PhysicsBody
 from app.rehearsal.body import make_person
-from app.rehearsal.frame_clock import FrameClock
-from app.rehearsal.headset import Headset
-from app.rehearsal.physics import PhysicsBody
-from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, rehearse
-from app.rehearsal.variant import physics_variant
+from app.rehearsal.headset import FrameClock, Headset
+from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, physics_variant, rehearse
 from app.science.avatar.mjcf.defaults import default_configuration
 from app.science.avatar.mjcf.model import avatar_model
 from app.science.avatar.mjcf.scene import scene_of

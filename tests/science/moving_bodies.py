@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.rehearsal.captured import captured_movement
+from app.rehearsal.body import captured_movement
 from app.science import rotations as rot
 from app.science.achieved_latency import StreamPair
 from app.science.avatar.simulation.delay import delayed_pose

@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.adapters.captures.files import read_capture_file
-from app.rehearsal.body import make_person
-from app.rehearsal.captured import UnusableCapture, captured_movement
+from app.adapters.captures.reader import read_capture_file
+from app.rehearsal.body import UnusableCapture, captured_movement, make_person
 from app.science import rotations as rot
 from app.science.retargeting.in_place import movement_in_place
 from app.science.retargeting.joint_map import JointMapError

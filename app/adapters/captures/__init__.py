@@ -1,4 +1,7 @@
-"""Movement files of other systems, read into one form: `read_capture` tells them apart."""
+"""Movement files of other systems, read into one form: `read_capture` tells them apart.
+
+What reads a format is loaded when a file of that kind comes.
+"""
 
 from app.adapters.captures.bvh_export import to_bvh
 from app.adapters.captures.capture import (
@@ -9,8 +12,9 @@ from app.adapters.captures.capture import (
     Limits,
     Reading,
 )
-from app.adapters.captures.door import FORMATS, CaptureFormat, read_capture
+from app.adapters.captures.reader import FORMATS, CaptureFormat, read_capture, read_capture_file
 from app.adapters.captures.table_export import to_csv
+from app.adapters.captures.text import text_lines
 
 __all__ = [
     "FORMATS",
@@ -22,6 +26,8 @@ __all__ = [
     "Limits",
     "Reading",
     "read_capture",
+    "read_capture_file",
+    "text_lines",
     "to_bvh",
     "to_csv",
 ]

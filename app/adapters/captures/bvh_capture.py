@@ -20,7 +20,7 @@ from app.adapters.captures.capture import (
 )
 from app.adapters.captures.tables import FARTHEST_M
 from app.adapters.captures.text import text_lines
-from app.adapters.captures.unit_guess import chosen_axes, chosen_length, guess_length
+from app.adapters.captures.units import chosen_axes, chosen_length, guess_length
 from app.science.rig import Rig, RigMotion
 from app.science.rotations import FloatArray, geodesic_angle, identity
 

@@ -18,17 +18,16 @@ from app.adapters.captures.capture import (
     Limits,
     Reading,
 )
-from app.adapters.captures.clock import logged_rate
-from app.adapters.captures.gaps import unseen
 from app.adapters.captures.tables import (
     check_places,
     csv_rows,
     read_titles,
     unit_rotations,
+    unseen,
 )
 from app.adapters.captures.text import text_lines
-from app.adapters.captures.trackers import find_bodies, read_cells, still_notes
-from app.adapters.captures.unit_guess import chosen_axes, chosen_length
+from app.adapters.captures.trackers import find_bodies, logged_rate, read_cells, still_notes
+from app.adapters.captures.units import chosen_axes, chosen_length
 from app.science.rig import BodyMotion
 
 

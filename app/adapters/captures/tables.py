@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.adapters.captures.capture import CaptureError, Limits
+from app.science.rig import BoolArray
 from app.science.rotations import FloatArray
 
 FARTHEST_M = 1e5
@@ -171,3 +172,9 @@ def unit_rotations(
         )
     scaled: FloatArray = q / np.where(unseen, np.nan, length)[..., np.newaxis]
     return scaled
+
+
+def unseen(*values: FloatArray) -> BoolArray:
+    """Where any number of a body's, in any of the arrays (..., C), is missing: shape (...)."""
+    missing = [np.isnan(array).any(axis=-1) for array in values]
+    return np.asarray(np.logical_or.reduce(missing), dtype=np.bool_)

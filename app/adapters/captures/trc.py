@@ -25,8 +25,8 @@ from app.adapters.captures.capture import (
     Limits,
     Reading,
 )
-from app.adapters.captures.lengths import checked_rate, unit_of_markers
 from app.adapters.captures.text import text_lines
+from app.adapters.captures.units import checked_rate, unit_of_markers
 from app.adapters.captures.upright import upright
 from app.science.rig import MarkerMotion
 from app.science.rotations import FloatArray

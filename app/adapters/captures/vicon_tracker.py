@@ -27,11 +27,10 @@ from app.adapters.captures.capture import (
     Limits,
     Reading,
 )
-from app.adapters.captures.gaps import BoolArray, unseen
-from app.adapters.captures.tables import check_places, csv_rows, read_numbers
+from app.adapters.captures.tables import check_places, csv_rows, read_numbers, unseen
 from app.adapters.captures.text import text_lines
-from app.adapters.captures.unit_guess import chosen_axes, chosen_length
-from app.science.rig import BodyMotion
+from app.adapters.captures.units import chosen_axes, chosen_length
+from app.science.rig import BodyMotion, BoolArray
 from app.science.rotations import FloatArray, from_rotation_vector
 
 _COLUMNS = ("RX", "RY", "RZ", "TX", "TY", "TZ")

@@ -8,9 +8,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from app.adapters.humanoids.container import embedded
+from app.adapters.humanoids.container import HumanoidFileError, embedded
 from app.adapters.humanoids.document import Accessor, Document
-from app.adapters.humanoids.errors import HumanoidFileError
 from app.science.rotations import FloatArray
 
 _TYPES: Final[dict[int, np.dtype[Any]]] = {

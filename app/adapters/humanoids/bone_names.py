@@ -15,8 +15,8 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 
+from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document
-from app.adapters.humanoids.errors import HumanoidFileError
 from app.science.avatar.body.parts import FINGERS, PART_NAMES, SEGMENTS, SIDES
 from app.science.retargeting.joint_chains import is_below
 from app.science.retargeting.joint_map import propose_joint_map

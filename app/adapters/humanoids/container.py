@@ -9,8 +9,6 @@ import struct
 from dataclasses import dataclass
 from typing import Final
 
-from app.adapters.humanoids.errors import HumanoidFileError
-
 _MAGIC: Final = b"glTF"
 _JSON, _BIN = 0x4E4F534A, 0x004E4942
 _MOST_JSON_VALUES: Final = 2_000_000
@@ -24,6 +22,19 @@ _OTHERS = {
     b"OFF": "an OFF mesh",
     b"solid": "an STL mesh",
 }
+
+
+class HumanoidFileError(ValueError):
+    """A model's file cannot be read.
+
+    Attributes:
+        reason: what is wrong and what is valid.
+        place: where in the file, such as `accessors.3`; empty where the whole file is meant.
+    """
+
+    def __init__(self, reason: str, place: str = "") -> None:
+        self.reason, self.place = reason, place
+        super().__init__(f"{place}: {reason}" if place else reason)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from app.adapters.humanoids.errors import HumanoidFileError
+from app.adapters.humanoids.container import HumanoidFileError
 
 MOST_NODES = 5_000
 _MOST = 20_000

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document, Node
-from app.adapters.humanoids.errors import HumanoidFileError
 from app.science.rig import Rig
 from app.science.rotations import FloatArray, conjugate, multiply, normalise, rotate
 from app.science.rotations.scalars import Vector, q_from_axes

@@ -12,9 +12,8 @@ import numpy as np
 
 from app.adapters.humanoids.accessors import Tables
 from app.adapters.humanoids.bone_names import named_bones, vrm_nodes
-from app.adapters.humanoids.container import open_container
+from app.adapters.humanoids.container import HumanoidFileError, open_container
 from app.adapters.humanoids.document import Document, read_document
-from app.adapters.humanoids.errors import HumanoidFileError
 from app.adapters.humanoids.nodes import Tree, rig_of, tree_of
 from app.adapters.humanoids.skin import read_skin
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError

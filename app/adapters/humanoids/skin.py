@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.adapters.humanoids.accessors import IndexArray, Tables
+from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document, Primitive, Skin
-from app.adapters.humanoids.errors import HumanoidFileError
 from app.adapters.humanoids.nodes import Tree
 from app.science.rotations import FloatArray
 

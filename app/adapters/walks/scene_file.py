@@ -21,9 +21,7 @@ from pathlib import Path as FilePath
 from pydantic import ValidationError
 
 from app.adapters.walks.scene_schema import SceneFile, point_of
-from app.protocol.errors import ConfigError, ConfigProblem
-from app.protocol.explain import explain
-from app.protocol.source import Path, Source, path_text, read_source
+from app.protocol import ConfigError, ConfigProblem, Path, Source, explain, path_text, read_source
 from app.science.walking.scene.scene import Obstacle, Scene, SceneError, ScenePath
 
 SHIPPED = FilePath(__file__).with_name("scenes")

@@ -16,8 +16,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.adapters.captures.capture import CaptureError
-from app.adapters.captures.text import text_lines
+from app.adapters.captures import CaptureError, text_lines
 from app.science.rotations import FloatArray
 from app.science.walking.records.model import Kind, Track, WalkingError
 

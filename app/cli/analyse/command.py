@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.failing import fail
+from app.cli.errors import reported
 
 
 def analyse(
@@ -32,8 +32,6 @@ def analyse(
     from app.cli.analyse.run import AnalyseOrder, carry_out
 
     order = AnalyseOrder(table, subject, within, measure, reference, seed, art)
-    try:
+    with reported(ValueError, OSError):
         done = carry_out(order)
-    except (ValueError, OSError) as error:
-        fail(str(error))
     print(json.dumps(told(done), allow_nan=False) if as_json else texts.as_text(done))

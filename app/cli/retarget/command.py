@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.failing import fail
+from app.cli.errors import fail, reported
 
 
 def retarget(
@@ -57,10 +57,8 @@ def retarget(
         unit=unit,
         up=up,
     )
-    try:
+    with reported(ValueError, OSError):
         done = carry_out(order)
-    except (ValueError, OSError) as error:
-        fail(str(error))
     print(json.dumps(texts.as_json(done)) if as_json else texts.as_text(done))
 
 

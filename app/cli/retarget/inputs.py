@@ -1,13 +1,25 @@
-"""What `reembody retarget` reads: a clip, an avatar, and joint maps for them."""
+"""What `reembody retarget` reads: a clip, an avatar, joint maps for them, and the ground.
+
+The ground an avatar is led over is one word on the command line:
+
+    flat               level, which is usual
+    kerb:H@D           a step of H metres after D metres of the way
+    ramp:H/L@D         H metres up over L metres, beginning after D metres of the way
+
+Heights below zero go down. The way is the straight line from where the avatar's hips begin to where
+they end.
+"""
 
 import json
-from collections.abc import Mapping
+import math
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from app.adapters.captures.capture import Capture, CaptureError, Reading
-from app.adapters.captures.files import read_capture_file
+from app.adapters.captures import Capture, CaptureError, Reading, read_capture_file
+from app.science.retargeting.ground import Ground, Ramp, Steps
 from app.science.retargeting.joint_map import JointMap, propose_joint_map
 from app.science.retargeting.reference_avatars import (
     REFERENCE_JOINT_MAP,
@@ -15,9 +27,15 @@ from app.science.retargeting.reference_avatars import (
     named_stature_m,
 )
 from app.science.rig import Rig, RigMotion
+from app.science.rotations import FloatArray
 
 _LONGEST_MAP = 200_000
 _UPS: dict[str, Literal["x", "y", "z"]] = {"x": "x", "y": "y", "z": "z"}
+_NUMBER = r"([+-]?\d{1,3}(?:\.\d{1,4})?)"
+_KERB = re.compile(rf"kerb:{_NUMBER}@{_NUMBER}")
+_RAMP = re.compile(rf"ramp:{_NUMBER}/{_NUMBER}@{_NUMBER}")
+_GROUNDS = "flat, kerb:HEIGHT@DISTANCE and ramp:HEIGHT/LENGTH@DISTANCE are valid, all in metres"
+GroundAlong = Callable[[FloatArray], Ground]
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,3 +134,36 @@ def joint_map_of(rig: Rig, path: Path | None) -> JointMap:
             ' "pelvis"}'
         )
     return {str(joint): str(name) for joint, name in told.items()}
+
+
+def ground_along(told: str) -> GroundAlong | None:
+    """What makes the ground a word names, once the way of the hips (N, 3) is known; None for flat.
+
+    Raises:
+        ValueError: the word names no ground. What is returned raises it too, where hips that go
+            nowhere give the ground no direction.
+    """
+    if told == "flat":
+        return None
+    kerb, ramp = _KERB.fullmatch(told), _RAMP.fullmatch(told)
+    if kerb is not None:
+        height, distance = (float(number) for number in kerb.groups())
+        return lambda hips_m: Steps(*_way(told, hips_m), (distance,), (height,))
+    if ramp is not None and float(ramp[2]) > 0.0:
+        return lambda hips_m: _ramp(told, hips_m, *(float(number) for number in ramp.groups()))
+    raise ValueError(f"--ground {told!r}: {_GROUNDS}, such as kerb:0.12@1.5")
+
+
+def _ramp(told: str, hips_m: FloatArray, height: float, length: float, distance: float) -> Ramp:
+    (x, z), (along_x, along_z) = _way(told, hips_m)
+    foot = (x + distance * along_x, z + distance * along_z)
+    return Ramp(foot, (along_x, along_z), run_m=length, rise_m=height)
+
+
+def _way(told: str, hips_m: FloatArray) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Where the hips begin, (x, z), and the unit direction to where they end."""
+    x, _, z = (hips_m[-1] - hips_m[0]).tolist()
+    length = math.hypot(x, z)
+    if length < 1e-3:
+        raise ValueError(f"--ground {told}: this clip goes nowhere, so only flat is possible")
+    return (float(hips_m[0, 0]), float(hips_m[0, 2])), (x / length, z / length)

@@ -5,10 +5,15 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.adapters.captures.bvh_export import to_bvh
-from app.adapters.captures.table_export import to_csv
-from app.cli.retarget.ground import ground_along
-from app.cli.retarget.inputs import Clip, joint_map_of, read_avatar, read_clip, reading_of
+from app.adapters.captures import to_bvh, to_csv
+from app.cli.retarget.inputs import (
+    Clip,
+    ground_along,
+    joint_map_of,
+    read_avatar,
+    read_clip,
+    reading_of,
+)
 from app.science.retargeting.ground import Flat, Ground
 from app.science.retargeting.joint_map import check_joint_map
 from app.science.retargeting.pipeline import Retargeted, retarget_motion
@@ -26,7 +31,7 @@ class RetargetOrder:
         clip: the capture.
         to: `165cm` and the like, or a file with a skeleton.
         out: .bvh or .csv to write; None to only measure.
-        ground: see `app.cli.retarget.ground`.
+        ground: see `app.cli.retarget.inputs`.
         lock_feet: hold the feet while they stand.
         joint_map: JSON file for the clip; None to go by its joints' names.
         skeleton: ASF of an AMC; None to take the one beside it.

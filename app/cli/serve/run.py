@@ -1,4 +1,7 @@
-"""Starting the server: on this machine, and on the lab's network if asked to."""
+"""What `reembody serve` and `reembody tls` do: the server, and the certificate it shows.
+
+The server listens on this machine, and on the lab's network if asked to.
+"""
 
 import os
 import signal
@@ -6,26 +9,34 @@ import sys
 import threading
 import time
 from collections.abc import Mapping
-from typing import NoReturn
 
 import uvicorn
 from fastapi import FastAPI
 from sqlalchemy.exc import DBAPIError
 
-from app.cli.serve.banner import addresses
+from app.cli.errors import fail, reported
+from app.cli.serve.output import addresses, certificate_text
 from app.clock import Clock
 from app.collecting import settle
-from app.errors import ReembodyError
+from app.errors import InvalidInput
 from app.features.care.opening.service import prepare_database
-from app.lan.help.site import HelpSite
-from app.lan.listening import Door, LabServer, allow_open_files, bind, tls_context
-from app.lan.network import Network
-from app.lan.plan import Plan, make_plan
-from app.lan.watch import CertificateWatch
+from app.lan import Network
+from app.lan.serving import (
+    CertificateWatch,
+    Door,
+    HelpSite,
+    LabAuthority,
+    LabServer,
+    Plan,
+    allow_open_files,
+    bind,
+    look_around,
+    make_plan,
+    tls_context,
+)
 from app.main import create_app
 from app.settings import Settings
 
-UNUSABLE = 2
 ENDS_WITHIN_S = 15.0
 SWITCH_INTERVAL_S = 0.0005
 """The event loop and the telemetry writer let go of the interpreter at every call into the network
@@ -46,15 +57,13 @@ def serve_forever(
     if until_input_ends:
         threading.Thread(target=_end_with_the_input, daemon=True).start()
     settings = settings_with(given)
-    try:
+    with reported():
         plan = make_plan(settings, Clock())
         watch = CertificateWatch(
             plan, Network(), None if plan.certificates is None else tls_context()
         )
         watch.refresh()
         bound = _Bound(plan)
-    except ReembodyError as error:
-        _give_up(f"{error.message}. {error.remedy}")
     _prepare(settings, new_database=new_database)
     app = create_app(settings, network=watch.network, on_first_password=_tell_password)
     sys.setswitchinterval(SWITCH_INTERVAL_S)
@@ -73,6 +82,30 @@ def settings_with(given: Mapping[str, object]) -> Settings:
     return Settings().model_copy(
         update={name: value for name, value in given.items() if value is not None}
     )
+
+
+def show_certificate(*, as_json: bool) -> str:
+    """The certificate that `serve --lan` shows; the built-in one is made if there is none."""
+    plan = make_plan(settings_with({"lan": True, "without_tls": False}), Clock())
+    assert plan.certificates is not None  # noqa: S101 - asked for with lan
+    return certificate_text(plan.certificates.current(look_around()), as_json=as_json)
+
+
+def renew_certificate(*, new_authority: bool, as_json: bool) -> str:
+    """A new certificate of the built-in authority; a running server takes it within a minute.
+
+    With `new_authority` also a new authority: every device then has to install it.
+    """
+    plan = make_plan(settings_with({"lan": True, "without_tls": False}), Clock())
+    source, machine = plan.certificates, look_around()
+    if not isinstance(source, LabAuthority):
+        raise InvalidInput(
+            "the certificate is your own file, which only you can renew",
+            remedy="Put the new one in its place; a running server takes it within a minute",
+        )
+    if new_authority:
+        source.replace_authority(machine)
+    return certificate_text(source.renew(machine), as_json=as_json)
 
 
 class _Bound:
@@ -112,19 +145,13 @@ def _config(app: object, settings: Settings) -> uvicorn.Config:
 
 
 def _prepare(settings: Settings, *, new_database: bool) -> None:
-    try:
-        kept = prepare_database(settings, Clock(), new_database=new_database)
-    except ReembodyError as error:
-        _give_up(f"{error.message}. {error.remedy}")
-    except DBAPIError as error:
-        _give_up(f"the database cannot be opened: {error.orig}")
+    with reported():
+        try:
+            kept = prepare_database(settings, Clock(), new_database=new_database)
+        except DBAPIError as error:
+            fail(f"the database cannot be opened: {error.orig}")
     if kept is not None:
         print(f"Backup     {kept}, made before the database was migrated", flush=True)
-
-
-def _give_up(why: str) -> NoReturn:
-    print(f"reembody: {why}", file=sys.stderr)
-    raise SystemExit(UNUSABLE)
 
 
 def _end_with_the_input() -> None:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.failing import fail
+from app.cli.errors import fail, reported
 
 
 def tune(
@@ -46,7 +46,6 @@ def tune(
     """Find gains for every axis of the avatar by relay experiments, and try them."""
     from app.cli.tune import output as texts
     from app.cli.tune.run import TuneOrder, carry_out
-    from app.errors import ReembodyError
     from app.science.avatar.tuning import TuningCancelled
 
     order = TuneOrder(
@@ -62,13 +61,9 @@ def tune(
         out=out,
         save=save,
     )
-    try:
-        done = carry_out(order)
-    except ReembodyError as error:
-        valid = f"; valid: {', '.join(error.valid)}" if isinstance(error.valid, list) else ""
-        fail(f"{error.message}{valid}. {error.remedy}".strip())
-    except TuningCancelled:
-        fail("the tuning was cancelled; nothing was written or stored")
-    except (ValueError, OSError) as error:
-        fail(str(error))
+    with reported(ValueError, OSError, with_valid=True):
+        try:
+            done = carry_out(order)
+        except TuningCancelled:
+            fail("the tuning was cancelled; nothing was written or stored")
     print(json.dumps(texts.as_json(done)) if as_json else texts.as_text(done))

@@ -1,6 +1,7 @@
 """What `reembody tune` does: a configuration in, a better one out."""
 
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -8,7 +9,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.cli.tune.progress import tell_progress
 from app.cli.tune.storage import check_key, save_tuned, stored_avatar
 from app.protocol.avatar import avatar_text
 from app.science.avatar.body.figure import Figure
@@ -18,6 +18,7 @@ from app.science.avatar.tuning import (
     Assessment,
     Followed,
     TuningOptions,
+    TuningProgress,
     TuningReport,
     assess,
     follow_capture,
@@ -27,6 +28,7 @@ from app.science.skeleton import Movement, build_skeleton, resample
 
 _RATE_HZ = 90.0
 """Of a headset."""
+_PHASES = {"relay": "relay experiment", "steps": "step on the whole body"}
 
 
 @dataclass(frozen=True)
@@ -118,7 +120,7 @@ def _avatar(order: TuneOrder) -> tuple[Configuration, Figure | None]:
 
 
 def _movement(capture: Path, stature_m: float) -> Movement:
-    from app.rehearsal.captured import captured_movement
+    from app.rehearsal.body import captured_movement
 
     return resample(captured_movement(capture, build_skeleton(stature_m)), _RATE_HZ)
 
@@ -135,3 +137,27 @@ def _interruptible() -> Iterator[Callable[[], bool]]:
         yield asked.is_set
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+@contextmanager
+def tell_progress() -> Iterator[Callable[[TuningProgress], None]]:
+    """One line that is written over, on a terminal; elsewhere a line a phase."""
+    live = sys.stderr.isatty()
+    yield _tell_live if live else _tell_phases
+    if live:
+        sys.stderr.write("\r\033[K")
+        sys.stderr.flush()
+
+
+def _tell_live(at: TuningProgress) -> None:
+    sys.stderr.write(f"\r\033[K{_line(at)}  {at.axis}")
+    sys.stderr.flush()
+
+
+def _tell_phases(at: TuningProgress) -> None:
+    if at.done == at.total:
+        sys.stderr.write(f"{_line(at)}\n")
+
+
+def _line(at: TuningProgress) -> str:
+    return f"attempt {at.attempt}, {_PHASES[at.phase]}: {at.done} of {at.total} axes"

@@ -4,7 +4,7 @@ from pydantic import TypeAdapter, ValidationError
 from sqlalchemy.orm import Session
 
 from app.cli.installation import opened_database
-from app.cli.tune.output import report_json
+from app.cli.tune.output_json import report_json
 from app.clock import Clock
 from app.features.movement.avatar.schemas import AvatarKey, NewAvatar, NewAvatarVersion
 from app.features.movement.avatar.service import (

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from app.cli.failing import fail
+from app.cli.errors import reported
 
 walk = typer.Typer(
     help="Learns how people walk, and predicts how others will.", no_args_is_help=True
@@ -47,10 +47,8 @@ def fit(
     from app.cli.walk.run import FitOrder, WalksOrder, carry_out_fit
 
     order = FitOrder(WalksOrder(tuple(walks), scene, people), out, seed, k, entries, reading)
-    try:
+    with reported(ValueError, OSError):
         done = carry_out_fit(order, _tell if sys.stderr.isatty() else None)
-    except (ValueError, OSError) as error:
-        fail(str(error))
     print(json.dumps(texts.fit_json(done)) if as_json else texts.fit_text(done))
 
 
@@ -79,10 +77,8 @@ def sample(
     from app.cli.walk.run import SampleOrder, carry_out_sample
 
     order = SampleOrder(model, length, path, scene, start, goal, stature, count, which, seed)
-    try:
+    with reported(ValueError, OSError):
         done = carry_out_sample(order)
-    except (ValueError, OSError) as error:
-        fail(str(error))
     print(json.dumps(texts.sample_json(done)) if as_json else texts.sample_text(done))
 
 
@@ -104,12 +100,10 @@ def evaluate(
     from app.cli.walk.run import WalksOrder, carry_out_evaluation
 
     order = WalksOrder(tuple(walks), scene, people)
-    try:
+    with reported(ValueError, OSError):
         fit_, result = carry_out_evaluation(
             model, order, draws=draws, seed=seed, even_fitted=even_fitted
         )
-    except (ValueError, OSError) as error:
-        fail(str(error))
     print(
         json.dumps(texts.evaluation_json(fit_, result))
         if as_json

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from app.adapters.captures.capture import CaptureError
-from app.adapters.captures.files import read_capture_file
-from app.adapters.walks.scene_file import load_scene, load_shipped, shipped_scenes
+from app.adapters.captures import CaptureError, read_capture_file
+from app.adapters.walks import load_scene, load_shipped, shipped_scenes
 from app.adapters.walks.track_table import TrackReading, read_tracks
-from app.protocol.errors import ConfigError
+from app.protocol import ConfigError
 from app.science.rig import RigError
 from app.science.walking.planning.grid_planner import LazyThetaPlanner
 from app.science.walking.recording.capture_tracks import track_of_motion

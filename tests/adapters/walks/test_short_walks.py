@@ -9,7 +9,7 @@ import pytest
 from scipy.io import savemat
 
 from app.adapters.captures.capture import CaptureError
-from app.adapters.walks.short_walks import DISTANCES_M, read_foot_walk, read_short_walk_table
+from tests.support.short_walks import DISTANCES_M, read_foot_walk, read_short_walk_table
 
 MEAN_PEAKS_M_S = (0.559, 0.858, 1.037, 1.176, 1.251, 1.286, 1.353, 1.400, 1.434, 1.473)
 MEAN_DURATIONS_S = (2.29, 2.86, 3.25, 3.63, 3.97, 4.36, 5.22, 6.54, 8.19, 10.36)

@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from app.rehearsal.captured import captured_movement, skeleton_motion
+from app.rehearsal.body import captured_movement, skeleton_motion
 from app.science.retargeting.joint_map import propose_joint_map
 from app.science.retargeting.pipeline import retarget_motion
 from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, reference_avatar

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.adapters.captures import Reading
-from app.adapters.captures.door import read_capture
+from app.adapters.captures.reader import read_capture
 from app.science.fitting import FitError, Fitted, fit_skeleton
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 from app.science.rotations import FloatArray, geodesic_angle, rotate

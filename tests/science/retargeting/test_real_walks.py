@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.adapters.captures.files import read_capture_file
+from app.adapters.captures.reader import read_capture_file
 from app.science.fitting import fit_skeleton
 from app.science.retargeting.gait import walk_figures
 from app.science.retargeting.joint_map import JointMap, propose_joint_map

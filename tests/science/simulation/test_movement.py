@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.rehearsal.captured import captured_movement
+from app.rehearsal.body import captured_movement
 from app.science import rotations as rot
 from app.science.avatar import DelayBuffer
 from app.science.simulation import (

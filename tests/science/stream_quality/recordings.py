@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from app.rehearsal.captured import captured_movement
+from app.rehearsal.body import captured_movement
 from app.science import rotations as rot
 from app.science.skeleton import JOINT_COUNT, loop, resample
 from tests.science.simulation.people import (

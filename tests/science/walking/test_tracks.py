@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.adapters.captures.capture import Reading
-from app.adapters.captures.door import read_capture
+from app.adapters.captures.reader import read_capture
 from app.science.rig import BodyMotion, MarkerMotion, Rig, RigMotion
 from app.science.rotations import from_rotation_vector, identity
 from app.science.skeleton import JOINT_INDEX

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.adapters.captures.c3d.parameters import BLOCK, Parameters
-from app.adapters.captures.c3d.processors import Processor, vax_reals
+from app.adapters.captures.c3d.parameters import BLOCK, Parameters, Processor, vax_reals
 from app.adapters.captures.capture import CaptureError, Limits
 from app.science.rotations import FloatArray
 

@@ -17,7 +17,7 @@ from app.adapters.captures.capture import (
     Limits,
     Reading,
 )
-from app.adapters.captures.lengths import checked_rate, unit_of_markers
+from app.adapters.captures.units import checked_rate, unit_of_markers
 from app.adapters.captures.upright import upright
 from app.science.rig import MarkerMotion
 

@@ -12,17 +12,15 @@ from app.adapters.captures.capture import (
     Limits,
     Reading,
 )
-from app.adapters.captures.gaps import unseen
 from app.adapters.captures.motive.chosen import Chosen, choose
+from app.adapters.captures.motive.conventions import Timing, length_of, time_rows
 from app.adapters.captures.motive.head import Head, read_head
 from app.adapters.captures.motive.hierarchy import parents_first
 from app.adapters.captures.motive.skeleton import skeleton_motion
-from app.adapters.captures.motive.timing import Timing, time_rows
-from app.adapters.captures.motive.units import length_of
 from app.adapters.captures.motive.values import TakeValues, read_values
-from app.adapters.captures.tables import check_places, csv_rows
+from app.adapters.captures.tables import check_places, csv_rows, unseen
 from app.adapters.captures.text import text_lines
-from app.adapters.captures.unit_guess import chosen_axes
+from app.adapters.captures.units import chosen_axes
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 from app.science.rotations import FloatArray
 

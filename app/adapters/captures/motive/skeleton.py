@@ -2,7 +2,8 @@
 
 In Motive's T-pose every bone's axes are the world's, so the rest rotations are identities and the
 offset of a bone, in its parent's frame, is its offset in the T-pose. The solver lets bones stretch
-a little; the median over the take is the bone.
+a little; the median over the take is the bone. While a skeleton was not seen, it goes on between
+the frames around the gap.
 """
 
 from collections.abc import Sequence
@@ -11,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from app.adapters.captures.capture import CaptureError
-from app.adapters.captures.gaps import fill_places, fill_rotations, unseen
-from app.science.rig import Rig, RigMotion, place, to_local
-from app.science.rotations import FloatArray, conjugate, identity, rotate
+from app.adapters.captures.tables import unseen
+from app.science.rig import BoolArray, Rig, RigMotion, place, to_local
+from app.science.rotations import FloatArray, conjugate, identity, rotate, slerp
 
 _NOTICEABLE_M = 1e-3
 
@@ -39,8 +40,8 @@ def skeleton_motion(
     _check_seen(names, seen)
     filled_places, filled_turns = np.empty_like(places_m), np.empty_like(rotations)
     for joint in range(len(names)):
-        filled_places[:, joint] = fill_places(places_m[:, joint], seen[:, joint])
-        filled_turns[:, joint] = fill_rotations(rotations[:, joint], seen[:, joint])
+        filled_places[:, joint] = _fill_places(places_m[:, joint], seen[:, joint])
+        filled_turns[:, joint] = _fill_rotations(rotations[:, joint], seen[:, joint])
     relative = filled_places if local else _relative(parents, filled_places, filled_turns)
     offsets = np.zeros((len(names), 3))
     for joint in range(1, len(names)):
@@ -93,3 +94,28 @@ def _stretch_notes(
     return [
         f"Bones stretch in the file: with bones of one length {name} is off by up to {worst:.3f} m."
     ]
+
+
+def _fill_places(places: FloatArray, seen: BoolArray) -> FloatArray:
+    """Carry places (N, 3) over gaps in a straight line; before and after, the nearest holds."""
+    if seen.all():
+        return places
+    known, frames = np.flatnonzero(seen), np.arange(len(seen))
+    return np.stack(
+        [np.interp(frames, known, places[known, axis]) for axis in range(places.shape[1])], axis=-1
+    )
+
+
+def _fill_rotations(rotations: FloatArray, seen: BoolArray) -> FloatArray:
+    """Carry rotations (N, 4) over gaps by the shorter turn at constant speed."""
+    if seen.all():
+        return rotations
+    known, missing = np.flatnonzero(seen), np.flatnonzero(~seen)
+    after = np.searchsorted(known, missing)
+    before = known[np.clip(after - 1, 0, len(known) - 1)]
+    behind = known[np.clip(after, 0, len(known) - 1)]
+    span = np.maximum(behind - before, 1)
+    fraction = np.clip((missing - before) / span, 0.0, 1.0)
+    filled = rotations.copy()
+    filled[missing] = slerp(rotations[before], rotations[behind], fraction)
+    return filled

@@ -9,8 +9,7 @@ from app.features.care.network.schemas import (
     HelpView,
     NetworkView,
 )
-from app.lan.network import Reach, ShownCertificate
-from app.lan.qr import qr_svg
+from app.lan import Reach, ShownCertificate, qr_svg
 from app.platform.dependencies import Context, SignedIn
 
 router = APIRouter(tags=["network"])

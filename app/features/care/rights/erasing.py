@@ -13,8 +13,7 @@ from app.features.people.audit.service import record
 from app.features.record.erasure import remove_traces
 from app.features.record.sessions import EraseData, apply_command
 from app.features.results.imports.service import forget_participant
-from app.models import CopyMade, Erasure, ImportedForm, Participant, Study, StudySession
-from app.models.types import new_id
+from app.models import CopyMade, Erasure, ImportedForm, Participant, Study, StudySession, new_id
 from app.platform.context import AppContext
 
 

@@ -15,8 +15,7 @@ from app.features.design.instruments.schemas import (
 )
 from app.features.design.instruments.service import instrument_of, uses, versions_of_instrument
 from app.models import InstrumentVersion
-from app.protocol.loading import instrument_as_json
-from app.protocol.timeline import form_s
+from app.protocol import form_s, instrument_as_json
 from app.science.instruments import Instrument, Score, item_order
 
 Uses = dict[tuple[str, str], list[str]]

@@ -12,8 +12,7 @@ from app.features.design.studies.draft_schemas import DifferenceView, Instrument
 from app.features.design.studies.lifecycle import UNDER_WAY
 from app.features.design.studies.service import check_study, newest_version, version_by_number
 from app.models import Study, StudySession, StudyVersion
-from app.protocol.difference import differences
-from app.protocol.source import path_text
+from app.protocol import differences, path_text
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from app.features.design.studies.schemas import StudyFile
 from app.features.design.studies.service import study_by_key
 from app.features.design.studies.templates import templates
 from app.platform.dependencies import Reading, SignedIn
-from app.protocol.loading import study_schema
+from app.protocol import study_schema
 
 router = APIRouter(tags=["studies"])
 

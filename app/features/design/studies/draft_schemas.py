@@ -6,7 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.features.design.studies.schemas import MAX_YAML_CHARACTERS
 from app.platform.config_problems import ProblemView
-from app.protocol.plan import StepKind
+from app.protocol import StepKind
 
 MAX_CHANGES = 200
 

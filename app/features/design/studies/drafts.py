@@ -18,19 +18,26 @@ from app.features.design.studies.draft_schemas import (
 from app.features.design.studies.service import check_study
 from app.features.movement.avatar.service import newest_numbers
 from app.platform.config_problems import invalid_config, problem_views
-from app.protocol import ConfigError, LedgerRow, StudyProtocol, compile_plan, load_study, sequences
-from app.protocol.editing import Change, edit_text
-from app.protocol.orders import ledger_block
-from app.protocol.source import Plain, path_text, read_source
-from app.protocol.timeline import (
+from app.protocol import (
     BY_HAND_S,
     ITEM_S,
     OPENING_S,
     READING_WORDS_PER_S,
+    ConfigError,
+    LedgerRow,
+    Plain,
+    StudyProtocol,
     TimedStep,
+    compile_plan,
+    ledger_block,
+    load_study,
+    path_text,
+    read_source,
+    sequences,
     timeline,
     total_s,
 )
+from app.protocol.editing import Change, edit_text
 
 RULE = EstimateRule(
     reading_words_per_s=READING_WORDS_PER_S,

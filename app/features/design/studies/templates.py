@@ -4,7 +4,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from app.features.design.studies.draft_schemas import TemplateView
-from app.protocol.source import Plain, read_source
+from app.protocol import Plain, read_source
 from app.resources import study_configs_dir
 
 

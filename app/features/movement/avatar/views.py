@@ -23,9 +23,8 @@ from app.features.movement.avatar.service import (
 from app.models import Avatar, AvatarVersion, Study, StudySession
 from app.platform.access import Caller, is_theirs
 from app.platform.config_problems import problem_views
-from app.protocol import ConfigError
+from app.protocol import ConfigError, ConfigProblem
 from app.protocol.avatar import file_of, load_avatar
-from app.protocol.errors import ConfigProblem
 from app.science.avatar.configuration.configuration import Configuration
 
 

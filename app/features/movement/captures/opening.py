@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING
 from sqlalchemy import make_url
 from sqlalchemy.orm import Session
 
-from app.adapters.captures import Capture, CaptureError, Limits, Reading
-from app.adapters.captures.door import read_capture
+from app.adapters.captures import Capture, CaptureError, Limits, Reading, read_capture
 from app.database import make_engine
 from app.features.movement.captures.contents import plain_pieces
 from app.features.movement.captures.source import Cannot, Source

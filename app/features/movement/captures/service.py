@@ -23,8 +23,7 @@ from app.features.movement.captures.source import Source, source_of
 from app.features.movement.captures.uploads import Uploaded, uploaded
 from app.features.movement.captures.workbench import Workbench
 from app.features.people.audit.service import record
-from app.models import CaptureRow
-from app.models.types import new_id
+from app.models import CaptureRow, new_id
 from app.platform.access import Caller
 from app.platform.context import AppContext
 

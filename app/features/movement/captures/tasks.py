@@ -6,8 +6,7 @@ bytes.
 
 from pathlib import Path
 
-from app.adapters.captures.bvh_export import to_bvh
-from app.adapters.captures.table_export import to_csv
+from app.adapters.captures import to_bvh, to_csv
 from app.features.movement.captures.avatars import Mapped, on_avatar
 from app.features.movement.captures.opening import Store, open_stored
 from app.features.movement.captures.preview import encode, points_of, skeleton_points

@@ -7,9 +7,8 @@ from dataclasses import replace
 from sqlalchemy import make_url
 from sqlalchemy.orm import Session
 
-from app.adapters.captures import CaptureError, Limits, Reading
-from app.adapters.captures.door import read_capture
-from app.adapters.walks.scene_file import load_scene
+from app.adapters.captures import CaptureError, Limits, Reading, read_capture
+from app.adapters.walks import load_scene
 from app.adapters.walks.track_table import TrackReading, read_tracks
 from app.database import make_engine
 from app.features.movement.captures.contents import plain_pieces

@@ -6,7 +6,7 @@ from functools import lru_cache
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.adapters.walks.scene_file import load_scene, shipped_scenes
+from app.adapters.walks import load_scene, shipped_scenes
 from app.errors import Conflict, NotFound
 from app.features.movement.walking.schemas import (
     NewScene,

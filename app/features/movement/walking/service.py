@@ -22,8 +22,7 @@ from app.features.movement.walking.set_sources import source_of_set
 from app.features.movement.walking.sources import FitOrder
 from app.features.movement.walking.walk_sets import walk_set_by_id, walk_set_view
 from app.features.people.audit.service import record
-from app.models import WalkingModelRow
-from app.models.types import new_id
+from app.models import WalkingModelRow, new_id
 from app.platform.access import Caller
 from app.platform.context import AppContext
 

@@ -15,7 +15,7 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from app.models import AuditEntry, AuditHead
-from app.protocol.canonical import canonical_json, sha256_of
+from app.protocol import canonical_json, sha256_of
 
 FIRST_HASH = "0" * 64
 _HEAD = 1

@@ -5,8 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from app.features.record.alarms.alarm import Condition, WatchLimits
-from app.wire import StreamName
-from app.wire.messages import Produced, StreamPosition
+from app.wire import Produced, StreamName, StreamPosition
 
 
 @dataclass

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from app.features.record.alarms.alarm import Condition, WatchLimits
-from app.wire.messages import Probed
+from app.wire import Probed
 
 NANO = 1e-9
 

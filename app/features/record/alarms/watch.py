@@ -16,8 +16,7 @@ from app.features.record.alarms.backlog_watch import BacklogWatch
 from app.features.record.alarms.clock_watch import ClockWatch
 from app.features.record.alarms.silence_watch import SilenceWatch
 from app.features.record.alarms.stream_watch import StreamWatch
-from app.wire import Batch, StreamName
-from app.wire.messages import HeadsetState, Probed, Produced, Welcome
+from app.wire import Batch, HeadsetState, Probed, Produced, StreamName, Welcome
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from app.features.record.alarms import AlarmView
 from app.features.record.ledger import Kind
 from app.features.record.questionnaires import StoredScores
 from app.features.record.sessions import ConsentForm, PaperConsent
-from app.protocol.plan import StepKind
+from app.protocol import StepKind
 
 Status = Literal["planned", "active", "completed", "aborted", "withdrawn"]
 StepStatus = Literal["pending", "current", "done", "skipped"]

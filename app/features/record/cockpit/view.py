@@ -41,8 +41,7 @@ from app.features.record.sessions import (
 from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
 from app.platform.access import Caller, is_blind
 from app.platform.context import AppContext
-from app.protocol import StudyProtocol
-from app.protocol.plan import Step
+from app.protocol import Step, StudyProtocol
 
 
 def session_view(

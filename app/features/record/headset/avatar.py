@@ -26,8 +26,8 @@ from app.features.record.sessions import (
 )
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
+from app.protocol import Tasks
 from app.protocol.avatar import AvatarFile, file_of
-from app.protocol.tasks import Tasks
 from app.science.avatar.body.figure import Figure
 from app.science.avatar.body.proportions import BodyError
 from app.science.avatar.configuration.configuration import Configuration

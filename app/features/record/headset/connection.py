@@ -31,8 +31,7 @@ from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.platform.hub import Subscription
 from app.platform.tokens import device_of_token
-from app.wire import decode_batch
-from app.wire.messages import (
+from app.wire import (
     CLIENT_MESSAGE,
     PROTOCOL_VERSION,
     Ack,
@@ -47,6 +46,7 @@ from app.wire.messages import (
     Produced,
     Report,
     Welcome,
+    decode_batch,
 )
 
 log = logging.getLogger(__name__)

@@ -14,8 +14,7 @@ from app.features.record.telemetry import TelemetryWriter
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, PairedHeadset
 from app.platform.tokens import device_of_token
-from app.wire import MalformedBatchError
-from app.wire.messages import SUBPROTOCOL, Failure
+from app.wire import SUBPROTOCOL, Failure, MalformedBatchError
 
 router = APIRouter(prefix="/vr", tags=["headset"])
 log = logging.getLogger(__name__)

@@ -13,8 +13,7 @@ from app.features.record.alarms import Alarm, Change, Condition, Moment, Quality
 from app.features.record.headset.poses import PoseFeed
 from app.features.record.telemetry import AlarmContent, Content, LiveTelemetry, LossContent, Outcome
 from app.platform.context import AppContext
-from app.wire import Batch
-from app.wire.messages import HeadsetState, Probed, Produced, Report, Welcome
+from app.wire import Batch, HeadsetState, Probed, Produced, Report, Welcome
 
 NEWS_EVERY_S = 1.0
 

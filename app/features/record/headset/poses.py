@@ -26,8 +26,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from app.platform.hub import Hub
-from app.wire import Batch, StreamName
-from app.wire.messages import CompletionReport, ContactReport, Report
+from app.wire import Batch, CompletionReport, ContactReport, Report, StreamName
 
 MAGIC = b"RMP1"
 HEADER = struct.Struct("<4sBBHIQd")

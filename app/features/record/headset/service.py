@@ -19,8 +19,8 @@ from app.features.record.sessions import (
 from app.features.record.telemetry import certain_active_s, positions_of, take_epoch
 from app.models import Completion, StudySession, StudyVersion, Submission
 from app.platform.access import session_by_id
-from app.protocol.plan import Step
-from app.wire.messages import (
+from app.protocol import Step
+from app.wire import (
     PROTOCOL_VERSION,
     HeadsetState,
     Hello,

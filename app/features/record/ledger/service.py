@@ -26,8 +26,7 @@ from app.models import (
     StudySession,
     StudyVersion,
 )
-from app.protocol import StudyProtocol
-from app.protocol.orders import ledger_block
+from app.protocol import StudyProtocol, ledger_block
 
 HOLDING = ("open", "completed")
 

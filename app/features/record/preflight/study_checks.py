@@ -11,7 +11,7 @@ from app.features.movement.avatar.service import configuration_by_hash
 from app.features.record.preflight.schemas import Check
 from app.features.record.sessions import plan_of
 from app.models import AvatarVersion, StudySession, StudyVersion
-from app.protocol.canonical import sha256_of
+from app.protocol import sha256_of
 
 SHORT = 12
 """Hexadecimal digits of a hash that people compare."""

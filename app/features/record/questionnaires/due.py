@@ -9,7 +9,7 @@ from app.features.design.studies.service import UsedInstrument, used_instrument
 from app.features.record.questionnaires.schemas import Administration
 from app.features.record.sessions import plan_of, state_of
 from app.models import StudySession
-from app.protocol.plan import Step
+from app.protocol import Step
 from app.science.instruments import item_order
 
 FORM_KINDS = ("form", "questionnaire")

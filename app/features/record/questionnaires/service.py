@@ -20,8 +20,7 @@ from app.features.record.questionnaires.stored import newest_corrections as newe
 from app.features.record.questionnaires.stored import stored_answers as stored_answers
 from app.features.record.questionnaires.stored import stored_scores as stored_scores
 from app.features.record.sessions import SubmitForm, apply_command, canonical, require_capture_of
-from app.models import Answer, ScoreValue, StudySession, Submission
-from app.models.types import new_id
+from app.models import Answer, ScoreValue, StudySession, Submission, new_id
 from app.platform.context import AppContext
 from app.rows import insert_rows
 from app.science.instruments import Instrument, score_answers, validate_answers

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from app.features.record.sessions import canonical
 from app.features.record.telemetry import DamagedChunkError, Frames, decode_piece, iter_pieces
 from app.models import ClientReport, TelemetryStream
-from app.wire.messages import REPORT_STREAM
+from app.wire import REPORT_STREAM
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from app.features.record.ledger import close_attempt
 from app.features.record.sessions.engine import Event
 from app.features.record.sessions.engine import events as e
 from app.models import Phase, StudySession, StudyVersion
-from app.protocol.plan import Step
+from app.protocol import Step
 
 
 def project(

@@ -29,13 +29,10 @@ from app.features.record.sessions.engine import (
 )
 from app.features.record.sessions.journal import append_events
 from app.features.record.sessions.projection import project
-from app.models import SessionEvent, StudySession, StudyVersion
-from app.models.ledger import KINDS
-from app.models.types import new_id
+from app.models import KINDS, SessionEvent, StudySession, StudyVersion, new_id
 from app.platform.context import AppContext
 from app.platform.immutable_cache import Unchanging
-from app.protocol import StudyProtocol, parse_study_json
-from app.protocol.plan import Step, compile_plan
+from app.protocol import Step, StudyProtocol, compile_plan, parse_study_json
 
 _plans: Unchanging[str, tuple[Step, ...]] = Unchanging(1024)
 

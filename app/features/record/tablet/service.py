@@ -22,8 +22,7 @@ from app.features.record.sessions import (
 from app.features.record.tablet.schemas import Screen, TabletState
 from app.models import StudySession
 from app.platform.context import AppContext
-from app.protocol import StudyProtocol
-from app.protocol.plan import Step
+from app.protocol import Step, StudyProtocol
 
 CODE = "help_asked"
 _OVER = ("completed", "aborted", "withdrawn")

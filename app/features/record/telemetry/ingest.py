@@ -16,13 +16,20 @@ from sqlalchemy.orm import Session
 from app.features.record.alarms import Change, store_change
 from app.features.record.sessions import HeadsetLost, apply_command, protocol_of_session, state_of
 from app.features.record.telemetry.positions import Outcome, Positions, certain_active_s
-from app.models import ClockProbe, Phase, TelemetryBatch
-from app.models.types import new_id
+from app.models import ClockProbe, Phase, TelemetryBatch, new_id
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.rows import insert_rows
-from app.wire import BatchHeader, FrameFlags, decode_batch, encode_batch
-from app.wire.messages import Flag, Probed, Produced, Resend
+from app.wire import (
+    BatchHeader,
+    Flag,
+    FrameFlags,
+    Probed,
+    Produced,
+    Resend,
+    decode_batch,
+    encode_batch,
+)
 
 BATCHES = cast("Table", TelemetryBatch.__table__)
 PROBES = cast("Table", ClockProbe.__table__)

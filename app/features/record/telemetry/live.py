@@ -11,8 +11,7 @@ from app.science.avatar.targets.hinge_reference import HingeReference
 from app.science.rotations import identity
 from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 from app.science.tasks import side_unit
-from app.wire import Batch, StreamName
-from app.wire.messages import CompletionReport, ContactReport, Report
+from app.wire import Batch, CompletionReport, ContactReport, Report, StreamName
 
 PERIOD_S = 0.2
 

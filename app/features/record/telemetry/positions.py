@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from app.models import TelemetryStream
 from app.rows import insert_rows
-from app.wire.messages import REPORT_STREAM, Message, StreamPosition
+from app.wire import REPORT_STREAM, Message, StreamPosition
 
 Key = tuple[str, str, int]
 """Session, stream, epoch."""

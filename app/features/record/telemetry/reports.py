@@ -10,11 +10,10 @@ from app.errors import ReembodyError
 from app.features.record.sessions import Materialise, Report, apply_command
 from app.features.record.telemetry.ingest import Intake
 from app.features.record.telemetry.positions import Outcome
-from app.models import ClientReport, Completion, Contact
-from app.models.types import new_id
+from app.models import ClientReport, Completion, Contact, new_id
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
-from app.wire.messages import (
+from app.wire import (
     REPORT_STREAM,
     CompletionReport,
     ContactReport,
@@ -23,7 +22,7 @@ from app.wire.messages import (
     RefusedReport,
     Resend,
 )
-from app.wire.messages import Report as ReportMessage
+from app.wire import Report as ReportMessage
 
 REPORTS = cast("Table", ClientReport.__table__)
 CONTACTS = cast("Table", Contact.__table__)

@@ -22,8 +22,7 @@ from app.features.record.telemetry.reports import store_report
 from app.features.record.telemetry.summaries import Summariser
 from app.platform.context import AppContext, Part
 from app.platform.trouble import explain
-from app.wire import Batch, FrameFlags, flag_batches
-from app.wire.messages import Probed, Produced, Report
+from app.wire import Batch, FrameFlags, Probed, Produced, Report, flag_batches
 
 log = logging.getLogger(__name__)
 RETRY_S = 0.5

@@ -7,7 +7,7 @@ from pathlib import Path
 from app.features.results.analysis.schemas import Kind
 from app.features.results.exports.meter import Meter
 from app.features.results.exports.schemas import ExportState, ExportTrouble, ExportView
-from app.models.types import new_id
+from app.models import new_id
 from app.platform.workers import Worker
 
 KEPT = timedelta(hours=2)

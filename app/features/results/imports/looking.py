@@ -23,7 +23,7 @@ from app.features.results.imports.sheet import Sheet, read_sheet
 from app.features.results.imports.stored import import_view, imports_of, standing
 from app.features.results.imports.warnings import looks_turned, reversed_items, shift_of
 from app.models import Study
-from app.protocol.canonical import sha256_of
+from app.protocol import sha256_of
 from app.science.instruments import Instrument
 
 _EXAMPLES, _SHOWN_ROWS, _SHOWN_PROBLEMS, _SHOWN_WORDS = 6, 6, 200, 60

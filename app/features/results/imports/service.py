@@ -19,9 +19,8 @@ from app.features.results.imports.schemas import ImportRequest
 from app.features.results.imports.stored import import_files as import_files
 from app.features.results.imports.stored import standing
 from app.features.results.imports.stored import told_of as told_of
-from app.models import AnswerImport, ImportedForm, Study
-from app.models.types import new_id
-from app.protocol.canonical import sha256_of
+from app.models import AnswerImport, ImportedForm, Study, new_id
+from app.protocol import sha256_of
 
 _SHOWN_PROBLEMS = 200
 

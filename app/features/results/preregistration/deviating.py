@@ -12,7 +12,7 @@ from app.features.results.preregistration.excluding import Excluded
 from app.features.results.preregistration.schemas import DeviationCode, DeviationView
 from app.features.results.preregistration.testing import Values
 from app.models import StudyVersion
-from app.protocol.difference import differences
+from app.protocol import differences
 
 _SHOWN = 12
 

@@ -15,7 +15,7 @@ from pydantic import BaseModel
 
 from app.features.record.cockpit import LimbName, PhaseStatus
 from app.features.record.questionnaires import StoredScores
-from app.protocol.plan import StepKind
+from app.protocol import StepKind
 
 View = Literal["full", "participant"]
 """`participant`: for readers who must not learn the latency. The participant's own movement alone,

@@ -33,7 +33,7 @@ from app.features.results.replay.service import (
 )
 from app.features.results.replay.times import phase_clock, told_of
 from app.models import Completion, Contact, Phase, Submission
-from app.protocol.plan import TIMED_KINDS
+from app.protocol import TIMED_KINDS
 
 
 def replay_of(db: Session, asked: Replayable) -> Replay:

@@ -15,7 +15,7 @@ from scipy.signal import lfilter
 
 from app.features.record.telemetry.encodings.columns import Columns
 from app.rehearsal.body import FRAME_RATE_HZ
-from app.rehearsal.captured import captured_movement as on_skeleton
+from app.rehearsal.body import captured_movement as on_skeleton
 from app.science.rotations import normalise
 from app.science.skeleton import build_skeleton
 from app.science.skeleton.movement import Movement, continuous, resample

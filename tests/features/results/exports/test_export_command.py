@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.exporting import export_to_folder
+from app.cli.record import export_to_folder
 from app.database import open_database
 from app.errors import NotFound
 from tests.features.builders import STUDY, SessionSpec, build_session, build_study

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.rehearsal.captured import captured_movement
+from app.rehearsal.body import captured_movement
 from app.science.avatar.ik import GOAL_PARTS, Goals, InverseKinematics
 from app.science.avatar.ik.chain import Chain
 from app.science.rotations import FloatArray

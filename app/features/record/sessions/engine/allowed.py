@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from app.features.record.sessions.engine.state import PhaseStatus, SessionState, SessionStatus
-from app.protocol.plan import TIMED_KINDS, Step
+from app.protocol import TIMED_KINDS, Step
 
 _DONE_BY_HAND = ("consent", "instructions", "height", "debrief")
 

@@ -14,7 +14,7 @@ from app.features.record.sessions.engine.state import (
     SessionState,
     SessionStatus,
 )
-from app.protocol.plan import TIMED_KINDS, Step
+from app.protocol import TIMED_KINDS, Step
 
 FORMS = ("form", "questionnaire")
 

@@ -17,7 +17,7 @@ from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
 from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.state import PhaseState, PhaseStatus, SessionState
-from app.protocol.plan import Step
+from app.protocol import Step
 
 FRAME_TOLERANCE_S = 0.05
 """A phase may end this much off its duration: a few frames of the slowest headset."""

@@ -16,7 +16,7 @@ from app.features.record.sessions import plan_of, state_of
 from app.features.results.analysis.codebook import ColumnType, columns_of
 from app.features.results.analysis.schemas import Kind
 from app.models import Participant, Phase, Study, StudySession, StudyVersion
-from app.protocol.plan import Step
+from app.protocol import Step
 
 KINDS: tuple[Kind, ...] = get_args(Kind)
 BROKEN_OFF = ("aborted", "withdrawn")

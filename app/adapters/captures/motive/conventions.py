@@ -1,0 +1,110 @@
+"""A take's conventions: when its rows were, and its unit of length.
+
+Rows are placed by frame and rate, since the times in the file are rounded. The unit is told by the
+settings, else it is what makes the numbers a room's.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from app.adapters.captures.capture import CaptureError, Convention, Limits, Reading
+from app.adapters.captures.motive.head import Head
+from app.adapters.captures.motive.values import TakeValues
+from app.adapters.captures.units import chosen_length
+
+_AGREES = 0.02
+_TOLD = {
+    "meters": ("m", 1.0),
+    "centimeters": ("cm", 0.01),
+    "millimeters": ("mm", 0.001),
+    "inches": ("inch", 0.0254),
+    "feet": ("foot", 0.3048),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Timing:
+    """Attributes:
+    rate_hz: frames a second of the grid.
+    slots: (N,) place of each row on an even grid from 0; frames that are missing leave gaps.
+    rate: the convention.
+    notes: about rates and missing frames.
+    """
+
+    rate_hz: float
+    slots: npt.NDArray[np.int64]
+    rate: Convention
+    notes: tuple[str, ...]
+
+    @property
+    def frame_count(self) -> int:
+        """Number of frames on the grid."""
+        return int(self.slots[-1]) + 1
+
+
+def time_rows(head: Head, values: TakeValues, limits: Limits) -> Timing:
+    """Put the rows on an even grid.
+
+    The rate is the export's or the capture's, whichever the times confirm; where neither fits, the
+    times decide.
+
+    Raises:
+        CaptureError: no rate is told and the times do not tell one, or frames are missing by far.
+    """
+    steps = np.diff(values.frames)
+    step = float(np.min(steps)) if steps.size else 1.0
+    slots = np.rint((values.frames - values.frames[0]) / step).astype(np.int64)
+    size, rows = int(slots[-1]) + 1, len(slots)
+    tracks = max(values.places.shape[1], 1)
+    if size > 4 * rows + 1000 or size * tracks * 7 > limits.values:
+        raise CaptureError(f"frames {values.frames[0]:g} to {values.frames[-1]:g} in {rows} rows.")
+    rate_hz, notes = _rate(head, values, slots)
+    if size > rows:
+        notes.append(f"{size - rows} frames are missing from the numbering.")
+    return Timing(rate_hz, slots, Convention(f"{rate_hz:.6g} Hz", "file"), tuple(notes))
+
+
+def _rate(head: Head, values: TakeValues, slots: npt.NDArray[np.int64]) -> tuple[float, list[str]]:
+    export, capture = head.rate("export frame rate"), head.rate("capture frame rate")
+    told = [rate for rate in (export, capture) if rate is not None]
+    span = float(values.times_s[-1] - values.times_s[0])
+    by_times = float(slots[-1]) / span if np.isfinite(span) and span > 0.0 else None
+    notes = []
+    if export and capture and abs(export - capture) > _AGREES * capture:
+        notes.append(f"Captured at {capture:g} Hz, exported at {export:g} Hz.")
+    if by_times is None or not 0.01 <= by_times <= 1e5:
+        if not told:
+            raise CaptureError("neither the settings nor the times tell the frame rate.")
+        return told[0], notes
+    for rate in told:
+        if abs(rate - by_times) <= max(_AGREES * by_times, by_times * 2e-3 / span):
+            return rate, notes
+    if told:
+        notes.append(f"The times tell {by_times:.4g} Hz, the settings {told[0]:g} Hz.")
+    return by_times, notes
+
+
+def length_of(head: Head, values: TakeValues, reading: Reading) -> tuple[float, Convention]:
+    """Return metres per unit, and who says so.
+
+    Raises:
+        CaptureError: the settings tell a unit that does not exist.
+    """
+    said = chosen_length(reading)
+    if said is not None and reading.metres_per_unit is not None:
+        return reading.metres_per_unit, said
+    told = head.settings.get("length units", "").lower()
+    if told:
+        if told not in _TOLD:
+            raise CaptureError(f"length units {told[:40]!r}: {', '.join(_TOLD)} are valid.", line=1)
+        name, scale = _TOLD[told]
+        return scale, Convention(name, "file")
+    # People and props are seen between the floor and 3 m, so that the 90th percentile tells.
+    known = np.abs(values.places[np.isfinite(values.places)])
+    typical = float(np.percentile(known, 90)) if known.size else 1.0
+    name, scale = _TOLD[
+        "meters" if typical < 12 else "centimeters" if typical < 400 else "millimeters"
+    ]
+    return scale, Convention(name, "guessed")

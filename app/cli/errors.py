@@ -1,0 +1,45 @@
+"""How a command says that it cannot go on: why on standard error, and the exit code.
+
+A command takes what it calls into `reported`, so that no other place puts an error into words.
+Ctrl+C is Typer's ("Aborted!"), but where it ends a command well: a server stops, and a tuning says
+that nothing was kept.
+"""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import NoReturn
+
+from app.errors import ReembodyError
+
+INCOMPLETE, UNUSABLE = 1, 2
+"""Exit codes: something of a session is missing; the input or the installation cannot be used."""
+
+
+def fail(message: str) -> NoReturn:
+    """Say what is wrong and leave with the status for unusable input."""
+    warn(message)
+    raise SystemExit(UNUSABLE)
+
+
+def warn(message: str) -> None:
+    """Say what went wrong where the command can go on all the same."""
+    print(f"reembody: {message}", file=sys.stderr)
+
+
+@contextmanager
+def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[None]:
+    """Fail with the words of an error of the product, and of those `expected` of the input.
+
+    `with_valid` adds what would be valid, where an error lists it. Any other error is a fault of
+    the program, whose trace is wanted.
+    """
+    try:
+        yield
+    except ReembodyError as error:
+        valid = ""
+        if with_valid and isinstance(error.valid, list):
+            valid = f"; valid: {', '.join(error.valid)}"
+        fail(f"{error.message}{valid}. {error.remedy}".strip())
+    except expected as error:
+        fail(str(error))

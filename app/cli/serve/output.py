@@ -1,0 +1,79 @@
+"""What the terminal says about a server that is about to listen, and about its certificate."""
+
+import json
+import sys
+
+from app.lan import Reach, qr_terminal
+from app.lan.serving import Identity
+
+WITHOUT_TLS = """
+  !!  WITHOUT ENCRYPTION  !!
+  Everybody on this network can read passwords, answers and movement, and change them.
+  Headsets refuse to enter VR on these addresses. Use --lan instead.
+"""
+
+
+def addresses(reach: Reach, data: str) -> str:
+    """Where to go, line by line."""
+    public = reach.urls[0] if reach.urls else reach.local_url
+    lines = [
+        f"Reembody   {reach.local_url}",
+        f"Tablet     {public}/tablet",
+        f"Data       {data}",
+    ]
+    if reach.urls:
+        lines += ["Network    " + "\n           ".join(reach.urls)]
+    if reach.mode == "without_tls":
+        lines.append(WITHOUT_TLS)
+    if reach.certificate is not None:
+        lines += _certificate(reach)
+    return "\n".join(lines)
+
+
+def _certificate(reach: Reach) -> list[str]:
+    shown = reach.certificate
+    assert shown is not None  # noqa: S101 - asked for above
+    lines = [f"Valid      until {shown.expires_at:%Y-%m-%d}, then renewed by itself"]
+    if shown.source == "files":
+        lines = [f"Valid      until {shown.expires_at:%Y-%m-%d} (your own certificate)"]
+    if shown.uncovered:
+        lines.append(f"Careful    the certificate is not valid for {', '.join(shown.uncovered)}")
+    if reach.help_url is not None:
+        lines += [
+            "",
+            f"First time with a device?  {reach.help_url}",
+            "Compare the fingerprint there with this one before you install (SHA-256):",
+            *_halves(shown.authority_fingerprint or ""),
+        ]
+        if sys.stdout.isatty():
+            lines.append(qr_terminal(reach.help_url))
+    return lines
+
+
+def _halves(fingerprint: str) -> list[str]:
+    middle = len(fingerprint) // 2
+    return [f"  {fingerprint[:middle]}", f"  {fingerprint[middle + 1 :]}"]
+
+
+def certificate_text(identity: Identity, *, as_json: bool) -> str:
+    """What a certificate says, line by line or as JSON."""
+    facts = {
+        "source": identity.source,
+        "hosts": [str(one) for one in identity.hosts],
+        "expires_at": identity.expires_at.isoformat(),
+        "server_fingerprint_sha256": identity.server_fingerprint,
+        "authority_fingerprint_sha256": identity.authority_fingerprint,
+        "authority_expires_at": (
+            None
+            if identity.authority is None
+            else identity.authority.not_valid_after_utc.isoformat()
+        ),
+        "uncovered_addresses": [str(one) for one in identity.uncovered],
+    }
+    if as_json:
+        return json.dumps(facts, indent=2)
+    return "\n".join(
+        f"{name.replace('_', ' '):<29} {', '.join(value) if isinstance(value, list) else value}"
+        for name, value in facts.items()
+        if value
+    )

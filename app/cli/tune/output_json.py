@@ -1,0 +1,119 @@
+"""A tuning as JSON: what scripts get, and what is kept beside a tuned configuration."""
+
+from dataclasses import asdict
+from math import degrees, isnan
+from statistics import median
+from typing import Any
+
+from app.science.avatar.tuning import (
+    Assessment,
+    AxisTuning,
+    Followed,
+    Spread,
+    Tracking,
+    TuningReport,
+)
+
+
+def report_json(report: TuningReport | Assessment, tracking: Followed | None) -> dict[str, Any]:
+    """What is kept beside a tuned configuration: figures and the settings that led to them."""
+    return {
+        "axes": [_axis_json(one, tracking) for one in report.axes],
+        "summary": summary_json(report),
+        "tracking": None if tracking is None else _followed_json(tracking),
+        "stature_m": report.stature_m,
+        "total_mass_kg": report.configuration.total_mass_kg,
+        "options": asdict(report.options) if isinstance(report, TuningReport) else None,
+        "wall_s": round(report.wall_s, 3),
+    }
+
+
+def _axis_json(one: AxisTuning, tracking: Followed | None) -> dict[str, Any]:
+    step = one.step
+    return {
+        "name": one.name,
+        "kp": one.kp,
+        "kd": one.kd,
+        "overshoot_percent": None if step is None else round(step.overshoot_percent, 3),
+        "settling_s": None if step is None else _rounded(step.settling_s),
+        "status": one.status,
+        "note": one.note,
+        "rise_s": None if step is None else _rounded(step.rise_s),
+        "steady_error_deg": None if step is None else round(step.steady_error_deg, 4),
+        "step_deg": None if step is None else round(step.step_deg, 4),
+        "rms_error_deg": None if tracking is None else tracking.alone.rms_deg.get(one.name),
+        "attempts": one.attempts,
+        "mirrored_from": one.mirrored_from,
+        "relay": _relay_json(one),
+    }
+
+
+def _followed_json(followed: Followed) -> dict[str, Any]:
+    return {**_tracking_json(followed.alone), "on_floor": _tracking_json(followed.on_floor)}
+
+
+def _tracking_json(tracking: Tracking) -> dict[str, Any]:
+    """`mean_error_deg` and `p95_error_deg` are of all samples against the clamped targets."""
+    return {
+        "mean_error_deg": tracking.mean_deg,
+        "p95_error_deg": tracking.p95_deg,
+        "free": _spread_json(tracking.free),
+        "touching": _spread_json(tracking.touching),
+        "unclamped": _spread_json(tracking.unclamped),
+        "clipped_share": tracking.clipped_share,
+        "touches": dict(tracking.touches),
+        "frames": tracking.frames,
+    }
+
+
+def _spread_json(spread: Spread) -> dict[str, float | int | None]:
+    return {
+        "mean_error_deg": None if isnan(spread.mean_deg) else spread.mean_deg,
+        "p95_error_deg": None if isnan(spread.p95_deg) else spread.p95_deg,
+        "samples": spread.samples,
+    }
+
+
+def _relay_json(one: AxisTuning) -> dict[str, Any] | None:
+    if one.experiment is None:
+        return None
+    relay, found = one.experiment.relay, one.experiment.found
+    return {
+        "torque_nm": relay.torque_nm,
+        "damping_nm_s": relay.damping_nm_s,
+        "hysteresis_deg": round(degrees(relay.hysteresis_rad), 9),
+        "warm_up_cycles": relay.warm_up_cycles,
+        "cycles": relay.cycles,
+        "step_s": relay.step_s,
+        "pose": one.experiment.pose,
+        "aimed_hz": one.experiment.aimed_hz,
+        "amplitude_deg": degrees(found.amplitude_rad),
+        "period_s": found.period_s,
+        "ultimate_gain_nm_rad": found.ultimate_gain_nm_rad,
+        "inertia_kg_m2": found.inertia_kg_m2,
+        "simulated_s": round(found.simulated_s, 6),
+    }
+
+
+def summary_json(report: TuningReport | Assessment) -> dict[str, Any]:
+    """How many axes became what, and the figures over all that were tried."""
+    statuses = [one.status.partition(":")[0] for one in report.axes]
+    overshoots = [one.step.overshoot_percent for one in report.axes if one.step is not None]
+    settled = [one.step.settling_s for one in report.axes if one.step is not None]
+    times = [time for time in settled if time is not None]
+    tuned = isinstance(report, TuningReport)
+    words = (
+        ("tuned", "retried", "flagged", "locked") if tuned else ("accepted", "flagged", "locked")
+    )
+    return {
+        **{word: statuses.count(word) for word in (*words, "flagged", "locked")},
+        "tried": len(overshoots),
+        "median_overshoot_percent": round(median(overshoots), 3) if overshoots else None,
+        "worst_overshoot_percent": round(max(overshoots), 3) if overshoots else None,
+        "median_settling_s": _rounded(median(times)) if times else None,
+        "worst_settling_s": _rounded(max(times)) if times else None,
+    }
+
+
+def _rounded(seconds: float | None) -> float | None:
+    return None if seconds is None else round(seconds, 4)
