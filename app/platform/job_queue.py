@@ -12,12 +12,12 @@ from collections.abc import AsyncIterator, Callable, Hashable
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, ParamSpec, Self, TypeVar
+from typing import Any, ClassVar, ParamSpec, TypeVar
 
 from anyio.to_thread import run_sync
 
 from app.errors import InvalidInput, NotDurable
-from app.platform.context import AppContext, Part
+from app.platform.context import Part
 from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
@@ -86,11 +86,6 @@ class WorkingLine(Part, ABC):
         self._kept.move_to_end(name)
         kept: T = self._kept[name]
         return kept
-
-    @classmethod
-    def of(cls, _: AppContext) -> Self:
-        """One for a server."""
-        return cls()
 
     def stop(self) -> None:
         """Let the process go."""

@@ -179,7 +179,7 @@ def in_bytes(visit: Visit, data: bytes) -> int:
 
 def in_tables(visit: Visit, engine: Engine) -> dict[str, int]:
     """In how many rows a visit is found, by table and column: every text, JSON and byte string."""
-    found = {}
+    found: dict[str, int] = {}
     with engine.connect() as connection:
         for table in _tables(engine):
             places = [

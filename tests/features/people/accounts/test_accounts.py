@@ -170,7 +170,8 @@ def test_the_record_survives_a_restart(database_url: str) -> None:
 def test_a_running_clock_is_paused_when_the_server_was_away(database_url: str) -> None:
     """A phase that ran when the server died is paused at its start, and says why."""
     from app.features.record.sessions.engine.commands import Report
-    from app.features.record.sessions.service import apply_command, session_by_id
+    from app.features.record.sessions.service import apply_command
+    from app.platform.access import session_by_id
 
     with running_lab(database_url) as lab:
         view = lab.skip_to(lab.join(), "free_roam")
