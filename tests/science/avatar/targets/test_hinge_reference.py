@@ -20,7 +20,7 @@ from app.science.rotations import FloatArray, from_rotation_vector, geodesic_ang
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES
 from tests.science.avatar.captured import WALK, captured
 from tests.science.avatar.simulated import follow, model
-from tests.science.avatar.test_batch import FRAMES, wild_movement
+from tests.science.avatar.targets.test_batch import FRAMES, wild_movement
 
 RATE_HZ = 90.0
 
