@@ -26,13 +26,13 @@ from app.science.avatar.configuration.axis_settings import (
     AxisSettings,
     degrees_of,
 )
+from app.science.avatar.configuration.colliders import ColliderKind
 from app.science.avatar.configuration.configuration import (
-    ColliderKind,
     Configuration,
     Hips,
     TargetSpace,
+    piece_problems,
 )
-from app.science.avatar.configuration.configuration_checks import piece_problems
 from app.science.instruments import DefinitionProblem
 
 FORMAT: Final = "reembody-avatar"

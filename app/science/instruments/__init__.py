@@ -14,10 +14,10 @@ from app.science.instruments.errors import (
     InstrumentError,
     InstrumentTableError,
 )
-from app.science.instruments.model import (
+from app.science.instruments.instrument import Instrument, item_order
+from app.science.instruments.items import (
     Answer,
     Choice,
-    Instrument,
     Item,
     ItemType,
     Provenance,
@@ -25,7 +25,6 @@ from app.science.instruments.model import (
     Score,
     Text,
 )
-from app.science.instruments.order import item_order
 from app.science.instruments.scoring import score_answers
 
 __all__ = [

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from app.science.compiled import compiled
 from app.science.rotations import FloatArray
-from app.science.walking.compiling import compiled
 from app.science.walking.scene.outlines import BLOCKED, FREE, MOVED, TOUCH_M, Lattice, Outlines
 
 EDGE_CELLS = 0.75
