@@ -11,7 +11,8 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 
-from app.science.walking.following.following import SteeringFollower, course_of
+from app.science.walking.following.course import course_of
+from app.science.walking.following.following import SteeringFollower
 from app.science.walking.following.metrics import EuclideanMetric
 from app.science.walking.maps.suitability import DeviationMap
 from app.science.walking.records.model import PlannedWalk, WalkingError

@@ -3,17 +3,19 @@
 import numpy as np
 import pytest
 
-from app.science.walking.following.following import FollowingRules, SteeringFollower, course_of
+from app.science.walking.following.course import course_of
+from app.science.walking.following.following import FollowingRules, SteeringFollower
 from app.science.walking.planning.grid_planner import LazyThetaPlanner
 from app.science.walking.records.model import PlannedPath, Walk, WalkingError
 from app.science.walking.records.parameters import PAPER_GRID
 from app.science.walking.records.protocols import Course
 from app.science.walking.scene.laboratory import pole_scene
 from app.science.walking.scene.shapes import contains
+from tests.science.walking.plain_agents import PlainFollower
 from tests.science.walking.random_scenes import random_scene
 from tests.science.walking.walkers import walker
 
-FOLLOWER, PLAIN = SteeringFollower(), SteeringFollower(backend="numpy")
+FOLLOWER, PLAIN = SteeringFollower(), PlainFollower()
 DT = FOLLOWER.dt_s
 STRAIGHT = PlannedPath(np.array([[0.0, 0.0], [0.0, 4.0]]))
 BENT = PlannedPath(np.array([[0.0, 0.0], [0.0, 2.0], [2.0, 2.0]]))

@@ -22,6 +22,7 @@ from app.science.walking.records.parameters import (
 from app.science.walking.records.protocols import Course, Metric, Trajectories, reference_of
 from app.science.walking.scene.laboratory import pole_scene, straight_scene
 from app.science.walking.scene.scene import Scene
+from tests.science.walking.plain_agents import PlainFollower, PlainMetric
 from tests.science.walking.walkers import walker
 
 GRID = regular_grid(PAPER_PARAMETERS, 4)
@@ -66,14 +67,14 @@ def test_the_metric_is_equation_five() -> None:
     reference = reference_of(entry.walk, 1.0 / 60.0)
     places = reference.xy_m[None] + np.array([0.03, 0.04])
     expected = 0.05 * len(reference.xy_m) / entry.walk.length_m
-    for backend in (EuclideanMetric("compiled"), EuclideanMetric("numpy")):
+    for backend in (EuclideanMetric(), PlainMetric()):
         found = backend.deviations(reference, Trajectories(places, np.array([1.0])))
         assert found == pytest.approx([expected])
 
 
 def test_compiled_and_plain_maps_agree() -> None:
     """Deviations and travel times of both programs, straight and round the pole, to 1e-9."""
-    plain = MapMaker(GRID, SteeringFollower(backend="numpy"), EuclideanMetric("numpy"))
+    plain = MapMaker(GRID, PlainFollower(), PlainMetric())
     for scene in (LINE, POLE):
         entry = _entry(scene)
         ours, theirs = MAKER.map_of(entry), plain.map_of(entry)

@@ -1,12 +1,39 @@
-"""The agents of `following` in NumPy, all at once: what the compiled form must agree with."""
+"""Agents and the metric in NumPy, all agents at once: what the compiled forms must agree with."""
+
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from app.science.rotations import FloatArray
-from app.science.walking.following.following import Pace, Way
+from app.science.walking.following.course import Pace, Way
+from app.science.walking.following.following import SteeringFollower
+from app.science.walking.following.metrics import EuclideanMetric
+from app.science.walking.records.protocols import Reference, Trajectories
 
 IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class PlainFollower(SteeringFollower):
+    """`SteeringFollower` without the compiler."""
+
+    def _move(
+        self, way: Way, vectors: FloatArray, pace: Pace, places: FloatArray, arrival: FloatArray
+    ) -> None:
+        move_all(way, vectors, pace, places, arrival)
+
+
+@dataclass(frozen=True)
+class PlainMetric(EuclideanMetric):
+    """`EuclideanMetric` without the compiler."""
+
+    def deviations(self, reference: Reference, trajectories: Trajectories) -> FloatArray:
+        """Return (K,) deviations."""
+        apart = trajectories.xy_m - reference.xy_m
+        sums = np.sqrt((apart * apart).sum(axis=-1)).sum(axis=-1)
+        deviations: FloatArray = sums / reference.length_m
+        return deviations
 
 
 def _off(places: FloatArray, way: Way, legs: IntArray) -> tuple[FloatArray, FloatArray]:
