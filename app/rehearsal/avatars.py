@@ -5,7 +5,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from app.science.avatar.simulation.delay import DelayBuffer
+from app.science.delay import DelayBuffer
 from app.science.skeleton import Pose, Skeleton, body_part_segments, forward_kinematics
 from app.science.tasks import SurfaceArrays, TaskLayout, touching_and_near
 

@@ -17,8 +17,6 @@ from app.science.walking.evaluation.leave_one_out import (
     nodes_left_out,
     people_left_out,
 )
-from app.science.walking.evaluation.populations import POPULATIONS
-from app.science.walking.evaluation.synthetic_walks import Sample, synthetic_walks
 from app.science.walking.maps.maps import MapMaker
 from app.science.walking.maps.suitability import PAPER
 from app.science.walking.models.crps import iqr
@@ -29,6 +27,8 @@ from app.science.walking.models.submodels import holding, without_dependency
 from app.science.walking.records.model import LENGTH, STATURE
 from app.science.walking.records.parameters import PAPER_GRID, PAPER_PARAMETERS, ParameterGrid
 from app.science.walking.scene.laboratory import straight_scene
+from app.science.walking.synthetic.populations import POPULATIONS
+from app.science.walking.synthetic.synthetic_walks import Sample, synthetic_walks
 from tests.benchmarks.walking_cells import FOLLOWER, Studied, made
 
 NEIGHBOURS = (10, 20, 50, 100, 200, 500)

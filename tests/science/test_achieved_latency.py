@@ -8,11 +8,7 @@ import pytest
 from scipy import signal
 
 from app.science import rotations as rot
-from app.science.achieved_latency import (
-    StreamPair,
-    achieved_latency,
-    latency_of_runs,
-)
+from app.science.latency.achieved_latency import StreamPair, achieved_latency, latency_of_runs
 from tests.science.moving_bodies import (
     Flaws,
     delayed_copy,

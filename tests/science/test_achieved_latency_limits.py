@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.science import rotations as rot
-from app.science.achieved_latency import (
+from app.science.latency.achieved_latency import (
     AchievedLatency,
     AchievedLatencyError,
     StreamPair,

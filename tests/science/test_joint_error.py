@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.science import rotations as rot
-from app.science.joint_error import (
+from app.science.joint_error.errors import (
     ERROR_JOINTS,
     JointErrorError,
     joint_error_summary,

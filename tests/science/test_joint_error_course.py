@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.science.joint_error_course import COURSE_BIN_S, CourseError, joint_error_course
+from app.science.joint_error.course import COURSE_BIN_S, CourseError, joint_error_course
 from app.science.rotations import FloatArray
 
 RATE_HZ = 90.0

@@ -9,17 +9,17 @@ import pytest
 
 from app.science.avatar.body.parts import AXIS_NAMES
 from app.science.avatar.configuration.limits import ANATOMIC
-from app.science.avatar.simulation.delay import delayed_pose
 from app.science.avatar.targets.hinge_reference import HingeReference
 from app.science.avatar.targets.targets import TargetAngles, joint_rotations
-from app.science.joint_error import (
+from app.science.delay import delayed_pose
+from app.science.joint_error.errors import (
     ERROR_AXES,
     ERROR_JOINTS,
     JointErrorError,
     JointErrorSummary,
     joint_error_summary,
 )
-from app.science.recorded_error import Asked, Recorded, RecordedErrors, recorded_errors
+from app.science.joint_error.recorded import Asked, Recorded, RecordedErrors, recorded_errors
 from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply, normalise
 from app.science.skeleton.joints import JOINT_INDEX
 

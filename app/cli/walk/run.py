@@ -9,7 +9,6 @@ import numpy as np
 from app.adapters.walks.model_file import read_model, write_model
 from app.cli.walk.inputs import People, planned, read_people, read_scene, read_walks
 from app.science.walking.evaluation.evaluation import Evaluation, evaluate
-from app.science.walking.evaluation.synthetic_walks import straight_path
 from app.science.walking.following.following import SteeringFollower
 from app.science.walking.maps.database import check_persons, database_of
 from app.science.walking.maps.maps import MapMaker, maps_of
@@ -29,6 +28,7 @@ from app.science.walking.records.model import (
 )
 from app.science.walking.records.protocols import Point
 from app.science.walking.scene.scene import Scene
+from app.science.walking.synthetic.synthetic_walks import straight_path
 
 READINGS: dict[str, SuitabilityOptions | None] = {
     "chosen": None,

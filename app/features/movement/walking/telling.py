@@ -69,7 +69,7 @@ def way_asked(question: Question) -> PlannedPath:
 
 
 def _check_drawn(scene: Scene, points: tuple[tuple[float, float], ...]) -> None:
-    from app.science.walking.planning.planner_kernels import sees
+    from app.science.walking.planning.shortest import sees
 
     for number, point in enumerate(points, start=1):
         scene.check_point(point, f"Point {number} of the path")

@@ -6,7 +6,7 @@ from sqlalchemy.orm import Session
 
 from app.features.record.telemetry.movement import Run, phase_runs
 from app.models import Phase, PhaseLatency
-from app.science.achieved_latency import (
+from app.science.latency.achieved_latency import (
     HIGHEST_S,
     AchievedLatency,
     StreamPair,

@@ -33,9 +33,9 @@ import numpy as np
 from app.science.avatar.body.parts import AXES
 from app.science.avatar.configuration.configuration import TargetSpace
 from app.science.avatar.simulation.avatar_state import AvatarState
-from app.science.avatar.simulation.delay import DelayBuffer
 from app.science.avatar.simulation.simulation import PhysicsAvatar
 from app.science.avatar.targets.targets import TargetAngles, Targets
+from app.science.delay import DelayBuffer
 from app.science.rotations import FloatArray, conjugate, identity, multiply, slerp
 from app.science.rotations.scalars import (
     IDENTITY,

@@ -28,8 +28,8 @@ import numpy.typing as npt
 
 from app.science.avatar.body.parts import AXES, PART_NAMES
 from app.science.avatar.targets.targets import Limits, TargetAngles, joint_rotations
-from app.science.joint_error import ERROR_JOINTS, Clipping
-from app.science.recorded_error import Asked
+from app.science.joint_error.errors import ERROR_JOINTS, Clipping
+from app.science.joint_error.recorded import Asked
 from app.science.rotations import FloatArray, is_unit
 
 GAP_S = 0.25

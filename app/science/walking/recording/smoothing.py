@@ -5,7 +5,6 @@ jerks of each step matter less. At other rates sigma is the same time, 1/60 s.
 """
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from app.science.rotations import FloatArray
 from app.science.walking.records.model import Track
@@ -33,6 +32,8 @@ def smoothed(xy_m: FloatArray, rate_hz: float, sigma_s: float = SIGMA_S) -> Floa
     At its ends a track is continued by turning it about its last point: that point stays, and so
     does the speed of somebody whom the recording cuts amid a walk.
     """
+    from scipy.ndimage import gaussian_filter1d
+
     sigma = sigma_s * rate_hz
     if sigma <= 0.0 or len(xy_m) < 2:
         return xy_m

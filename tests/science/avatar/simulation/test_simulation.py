@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.science.achieved_latency import achieved_latency
 from app.science.avatar.body.parts import AXES, AXIS_NAMES
 from app.science.avatar.configuration.configuration import Hips
 from app.science.avatar.mjcf.simulation_error import SimulationError
 from app.science.avatar.simulation.simulation import PhysicsAvatar
 from app.science.avatar.targets.targets import joint_rotations
+from app.science.latency.achieved_latency import achieved_latency
 from app.science.rotations import geodesic_angle, identity
 from tests.science.avatar.captured import LONG, RATE_HZ, REACH, TURN, WALK, captured
 from tests.science.avatar.ordeals import STEP_S, WALL_FACE_M, driven_into_a_wall, thrown_about

@@ -10,7 +10,6 @@ from statistics import median
 import numpy as np
 import pytest
 
-from app.science.achieved_latency import achieved_latency
 from app.science.avatar.configuration.configuration import Configuration, Hips
 from app.science.avatar.mjcf.defaults import default_configuration
 from app.science.avatar.mjcf.model import avatar_model
@@ -18,6 +17,7 @@ from app.science.avatar.mjcf.scene import FLOOR_ONLY, Scene
 from app.science.avatar.targets.targets import joint_rotations
 from app.science.avatar.tuning import TuningReport, track, tune
 from app.science.avatar.tuning.tracking import NOTHING
+from app.science.latency.achieved_latency import achieved_latency
 from app.science.rotations import rotate
 from app.science.skeleton import Movement
 from tests.science.avatar.captured import (

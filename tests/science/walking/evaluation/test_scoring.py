@@ -10,9 +10,7 @@ from app.science.walking.evaluation.leave_one_out import (
     nodes_left_out,
     people_left_out,
 )
-from app.science.walking.evaluation.populations import POPULATIONS
 from app.science.walking.evaluation.scoring import comparison, error_summary, signed_rank_power
-from app.science.walking.evaluation.synthetic_walks import Sample, synthetic_walks
 from app.science.walking.following.following import SteeringFollower
 from app.science.walking.maps.database import database_of
 from app.science.walking.maps.maps import MapMaker, maps_of
@@ -22,6 +20,8 @@ from app.science.walking.models.fitting import FitOptions, fitted, space_of
 from app.science.walking.records.model import LENGTH, STATURE, TURNING, WalkingError
 from app.science.walking.records.parameters import PAPER_PARAMETERS, regular_grid
 from app.science.walking.scene.laboratory import straight_scene
+from app.science.walking.synthetic.populations import POPULATIONS
+from app.science.walking.synthetic.synthetic_walks import Sample, synthetic_walks
 from tests.science.walking.spaces import made_up_database, made_up_space
 
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from app.science.walking.evaluation.synthetic_walks import straight_path
 from app.science.walking.following.following import SteeringFollower
 from app.science.walking.maps.suitability import PAPER, TIME_AWARE
 from app.science.walking.models.annealing import annealed, static_fit
@@ -13,6 +12,7 @@ from app.science.walking.models.reading_choice import person_folds, ranked_readi
 from app.science.walking.models.steering_models import AdaptiveModel, ProbabilisticModel
 from app.science.walking.models.submodels import holding, without_dependency
 from app.science.walking.records.model import LENGTH, STATURE, PlannedPath, WalkingError
+from app.science.walking.synthetic.synthetic_walks import straight_path
 from tests.science.walking.spaces import GRID, PEOPLE, made_up_database, made_up_space
 
 ASKED = {LENGTH: 2.0, STATURE: 1.75}

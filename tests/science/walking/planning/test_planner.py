@@ -7,14 +7,14 @@ import pytest
 
 from app.adapters.walks.scene_file import load_shipped, shipped_scenes
 from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.planning.planner_kernels import sees
-from app.science.walking.planning.visibility import VisibilityPlanner
+from app.science.walking.planning.shortest import sees
 from app.science.walking.recording.walks import dependencies_of
 from app.science.walking.records.model import PlannedPath
 from app.science.walking.scene.laboratory import POLE_DEG, pole_scene, straight_scene
 from app.science.walking.scene.outlines import outlines_of
 from app.science.walking.scene.scene import Scene, SceneError, box, open_scene
 from tests.science.walking.random_scenes import random_scene
+from tests.science.walking.visibility import VisibilityPlanner
 
 FLOOR = (-2.0, -2.0, 2.0, 2.0)
 

@@ -19,12 +19,12 @@ from app.science.statistics import (
     StatisticsError,
     rm_anova,
 )
-from app.science.statistics.carry_over import carry_over
 from app.science.statistics.effects import Effect
-from app.science.statistics.mixed_design import build_design
-from app.science.statistics.mixed_model import fit_mixed_model
-from app.science.statistics.mixed_terms import factor
-from app.science.statistics.mixed_tests import TermTest, term_tests
+from app.science.statistics.mixed.carry_over import carry_over
+from app.science.statistics.mixed.design import build_design
+from app.science.statistics.mixed.model import fit_mixed_model
+from app.science.statistics.mixed.term_tests import TermTest, term_tests
+from app.science.statistics.mixed.terms import factor
 
 ANOVA_SOURCE = (
     "Winer, Brown and Michels 1991, ch. 7; Greenhouse and Geisser 1959, Psychometrika 24:95; "

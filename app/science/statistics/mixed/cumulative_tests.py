@@ -15,10 +15,10 @@ from dataclasses import dataclass
 import scipy.stats
 
 from app.science.statistics.arrays import IntArray
-from app.science.statistics.cumulative_links import Link
-from app.science.statistics.cumulative_model import CumulativeModel, fit_cumulative_model
-from app.science.statistics.mixed_design import Design, build_design
-from app.science.statistics.mixed_terms import Label, ModelError
+from app.science.statistics.mixed.cumulative_links import Link
+from app.science.statistics.mixed.cumulative_model import CumulativeModel, fit_cumulative_model
+from app.science.statistics.mixed.design import Design, build_design
+from app.science.statistics.mixed.terms import Label, ModelError
 
 
 @dataclass(frozen=True)

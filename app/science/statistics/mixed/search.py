@@ -15,7 +15,7 @@ import numpy as np
 import scipy.optimize
 
 from app.science.statistics.arrays import FloatArray
-from app.science.statistics.mixed_likelihood import Restricted, Rows, restricted_likelihood
+from app.science.statistics.mixed.likelihood import Restricted, Rows, restricted_likelihood
 
 _SINGULAR_SHARE = 1e-5
 """A variance below this share of the residual one is zero."""

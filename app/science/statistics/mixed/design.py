@@ -17,7 +17,7 @@ import numpy as np
 import scipy.linalg
 
 from app.science.statistics.arrays import FloatArray, IntArray
-from app.science.statistics.mixed_terms import Covariate, Factor, ModelError
+from app.science.statistics.mixed.terms import Covariate, Factor, ModelError
 
 INTERCEPT = "intercept"
 _DEPENDENT = 1e-9

@@ -31,12 +31,12 @@ from itertools import combinations
 import numpy as np
 
 from app.science.statistics.arrays import FloatArray
-from app.science.statistics.carry_over_orders import Orders, describe_orders
-from app.science.statistics.carry_over_words import Conclusion, conclude
-from app.science.statistics.mixed_design import Design, build_design
-from app.science.statistics.mixed_model import MixedModel, fit_mixed_model
-from app.science.statistics.mixed_terms import Covariate, Factor, Label, ModelError, factor
-from app.science.statistics.mixed_tests import Estimate, TermTest, estimate, term_test
+from app.science.statistics.mixed.carry_over_orders import Orders, describe_orders
+from app.science.statistics.mixed.carry_over_words import Conclusion, conclude
+from app.science.statistics.mixed.design import Design, build_design
+from app.science.statistics.mixed.model import MixedModel, fit_mixed_model
+from app.science.statistics.mixed.term_tests import Estimate, TermTest, estimate, term_test
+from app.science.statistics.mixed.terms import Covariate, Factor, Label, ModelError, factor
 
 CONDITION, PERIOD, CARRY_OVER, SEQUENCE = "condition", "period", "carry_over", "sequence"
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise, permutations
 
-from app.science.statistics.mixed_terms import Label
+from app.science.statistics.mixed.terms import Label
 from app.science.williams import williams
 
 Order = tuple[str, ...]

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.polynomial.hermite import hermgauss
 
 from app.science.statistics.arrays import FloatArray, IntArray
-from app.science.statistics.cumulative_links import Link, Slopes, log_chance, slopes
+from app.science.statistics.mixed.cumulative_links import Link, Slopes, log_chance, slopes
 
 _MODE_STEPS = 60
 _MODE_TOLERANCE = 1e-11

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.stats
 
-from app.science.statistics.cumulative_model import CumulativeEffect, CumulativeModel
 from app.science.statistics.holm import holm
-from app.science.statistics.mixed_design import marginal_weights, pairs_of
-from app.science.statistics.mixed_terms import ModelError
+from app.science.statistics.mixed.cumulative_model import CumulativeEffect, CumulativeModel
+from app.science.statistics.mixed.design import marginal_weights, pairs_of
+from app.science.statistics.mixed.terms import ModelError
 
 _LEVEL = 0.95
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.science.walking.evaluation.populations import Person, Population, person_of, walk_along
 from app.science.walking.planning.grid_planner import LazyThetaPlanner
 from app.science.walking.recording.segmentation import walks_of
 from app.science.walking.recording.walks import planned_walk
@@ -24,6 +23,7 @@ from app.science.walking.scene.laboratory import (
     straight_scene,
 )
 from app.science.walking.scene.scene import Scene, SceneError
+from app.science.walking.synthetic.populations import Person, Population, person_of, walk_along
 
 BESIDE_M = 0.02
 """How far, one sd along each axis, a person starts and ends beside a place."""

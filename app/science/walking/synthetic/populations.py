@@ -17,7 +17,6 @@ The populations differ in stated ways; none is a sample of real people.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from app.science.rotations import FloatArray
 from app.science.walking.records.model import PlannedPath, Track, arc_of
@@ -167,6 +166,8 @@ def walk_along(person: Person, path: PlannedPath, rng: np.random.Generator) -> T
 
 def _course(person: Person, path: PlannedPath, rng: np.random.Generator) -> FloatArray:
     """The line on the floor: rounded, bowed and swaying."""
+    from scipy.ndimage import gaussian_filter1d
+
     even = by_length(path.points_m, SPACING_M)
     rounded = gaussian_filter1d(even, person.rounding_m / SPACING_M, axis=0, mode="nearest")
     # The filter moves the ends inwards: the ends' shifts are faded out along the line.
@@ -187,6 +188,8 @@ def _speeds(
     person: Person, line: FloatArray, arc: FloatArray, rng: np.random.Generator
 ) -> FloatArray:
     """Speed at each point of the line."""
+    from scipy.ndimage import gaussian_filter1d
+
     p, length = person.population, float(arc[-1])
     cruising = person.speed_m_s * rng.lognormal(0.0, p.speed_within)
     ramp_s = person.ramp_s * rng.lognormal(0.0, p.ramp_within)

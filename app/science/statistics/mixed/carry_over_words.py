@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from app.science.statistics.carry_over_orders import Orders
-from app.science.statistics.mixed_tests import TermTest
+from app.science.statistics.mixed.carry_over_orders import Orders
+from app.science.statistics.mixed.term_tests import TermTest
 
 _ALPHA = 0.05
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.science.walking.evaluation.populations import POPULATIONS, person_of, walk_along
-from app.science.walking.evaluation.synthetic_walks import Sample, straight_path, synthetic_walks
 from app.science.walking.recording.segmentation import walks_of
 from app.science.walking.records.model import WalkingError
 from app.science.walking.scene.laboratory import pole_scene, straight_scene
+from app.science.walking.synthetic.populations import POPULATIONS, person_of, walk_along
+from app.science.walking.synthetic.synthetic_walks import Sample, straight_path, synthetic_walks
 
 
 def test_there_are_five_populations_or_more_and_each_says_how_it_differs() -> None:

@@ -14,8 +14,8 @@ import scipy.optimize
 from scipy.special import logit, ndtri
 
 from app.science.statistics.arrays import FloatArray
-from app.science.statistics.cumulative_likelihood import Answers, Parameters, log_likelihood
-from app.science.statistics.cumulative_links import Link
+from app.science.statistics.mixed.cumulative_likelihood import Answers, Parameters, log_likelihood
+from app.science.statistics.mixed.cumulative_links import Link
 
 _NEAR_ZERO_SD = 0.05
 _DECREMENT_LIMIT = 1e-6

@@ -30,10 +30,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.statistics.arrays import FloatArray, IntArray
-from app.science.statistics.mixed_design import Design
-from app.science.statistics.mixed_likelihood import Restricted, Rows
-from app.science.statistics.mixed_search import search
-from app.science.statistics.mixed_terms import Covariate, Label, ModelError, participant_codes
+from app.science.statistics.mixed.design import Design
+from app.science.statistics.mixed.likelihood import Restricted, Rows
+from app.science.statistics.mixed.search import search
+from app.science.statistics.mixed.terms import Covariate, Label, ModelError, participant_codes
 
 _FEWEST_PARTICIPANTS = 3
 

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.simulation.delay import delayed_pose
-from app.science.joint_error import (
+from app.science.delay import delayed_pose
+from app.science.joint_error.errors import (
     ERROR_AXES,
     Clipping,
     JointErrorError,

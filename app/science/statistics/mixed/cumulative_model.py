@@ -29,11 +29,11 @@ import numpy as np
 import scipy.stats
 
 from app.science.statistics.arrays import FloatArray, IntArray
-from app.science.statistics.cumulative_likelihood import Answers
-from app.science.statistics.cumulative_links import Link
-from app.science.statistics.cumulative_search import Found, search
-from app.science.statistics.mixed_design import Design
-from app.science.statistics.mixed_terms import Label, ModelError, participant_codes
+from app.science.statistics.mixed.cumulative_likelihood import Answers
+from app.science.statistics.mixed.cumulative_links import Link
+from app.science.statistics.mixed.cumulative_search import Found, search
+from app.science.statistics.mixed.design import Design
+from app.science.statistics.mixed.terms import Label, ModelError, participant_codes
 
 _LEVEL = 0.95
 _MOST_NODES = 50
