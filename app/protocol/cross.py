@@ -18,8 +18,7 @@ from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
 from app.protocol.study import SCREEN_TEXTS
 from app.protocol.titles import DEFAULT_LANGUAGES
-from app.science.instruments import DefinitionProblem, Instrument
-from app.science.instruments.item_checks import text_problems
+from app.science.instruments import DefinitionProblem, Instrument, text_problems
 
 
 def cross_problems(

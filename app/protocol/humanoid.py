@@ -6,10 +6,8 @@ from pydantic import Field, TypeAdapter
 
 from app.protocol.canonical import canonical_json
 from app.protocol.common import Strict
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.body.hulls import Piece
-from app.science.avatar.body.parts import PART_NAMES
-from app.science.rotations.scalars import Vector
+from app.science.avatar.body import PART_NAMES, Figure, Piece
+from app.science.rotations import Vector
 
 
 class PieceFile(Strict):

@@ -23,7 +23,7 @@ from app.protocol.procedure import (
 )
 from app.protocol.study import StudyProtocol
 from app.protocol.titles import title_of
-from app.science.tasks.layout import Limb
+from app.science.tasks import Limb
 
 StepKind = Literal[
     "consent",

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from app.protocol.common import Length, Point, Strict, refusal
-from app.science.tasks.layout import (
+from app.science.tasks import (
     BlockSpec,
     BoxSpec,
     Direction,

@@ -7,8 +7,7 @@ import numpy as np
 
 from app.rehearsal.captured import UnusableCapture, captured_movement
 from app.science.simulation import SimulatedParticipant, idle_movement
-from app.science.skeleton import Skeleton, SkeletonError, build_skeleton
-from app.science.skeleton.movement import Movement, loop, resample
+from app.science.skeleton import Movement, Skeleton, SkeletonError, build_skeleton, loop, resample
 
 FRAME_RATE_HZ = 90.0
 CROSSFADE_S, SHORTEST_CROSSFADE_S = 0.4, 0.1

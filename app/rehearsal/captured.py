@@ -4,8 +4,7 @@ from pathlib import Path
 
 from app.adapters.captures import CaptureError
 from app.adapters.captures.files import read_capture_file
-from app.science.retargeting.in_place import movement_in_place
-from app.science.retargeting.joint_map import propose_joint_map
+from app.science.retargeting import movement_in_place, propose_joint_map
 from app.science.rig import RigError, RigMotion
 from app.science.skeleton import Movement, Skeleton, SkeletonError
 

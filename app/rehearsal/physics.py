@@ -10,11 +10,9 @@ from httpx2 import AsyncClient
 from app.client.http import Json, call_again
 from app.protocol.avatar import AvatarFile, configuration_of
 from app.rehearsal.avatars import RELEASE_MARGIN_M, Bools, no_touches
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.simulation.following import Follower
-from app.science.avatar.simulation.simulation import PhysicsAvatar
-from app.science.avatar.simulation.touches import SurfaceTouches
-from app.science.avatar.targets.targets import TargetAngles
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.simulation import Follower, PhysicsAvatar, SurfaceTouches
+from app.science.avatar.targets import TargetAngles
 from app.science.skeleton import Pose, build_skeleton
 from app.science.tasks import TaskLayout
 

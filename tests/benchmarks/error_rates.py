@@ -25,13 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.science.statistics.error_rates import (
-    LEAST_COVERAGE,
-    LEVEL,
-    MOST_REJECTIONS,
-    ErrorRate,
-    ErrorRates,
-)
+from app.science.statistics import LEAST_COVERAGE, LEVEL, MOST_REJECTIONS, ErrorRate, ErrorRates
 from tests.benchmarks.null_data import NullDesign, null_data, population_alpha
 from tests.benchmarks.null_tests import ABOUT, GROUPS
 from tests.benchmarks.report import Figure, Report

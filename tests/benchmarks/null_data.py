@@ -27,7 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.statistics.arrays import FloatArray, IntArray
+from app.science.statistics import FloatArray, IntArray
 from app.science.williams import williams
 
 LATENCIES_MS = (0, 125, 350)

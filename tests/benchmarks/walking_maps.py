@@ -14,11 +14,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.maps.maps import MapMaker, maps_of
-from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.recording.walks import planned_walk
-from app.science.walking.records.model import PlannedWalk
-from app.science.walking.scene.scene import SceneError
+from app.science.walking.maps import MapMaker, maps_of
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import planned_walk
+from app.science.walking.records import PlannedWalk
+from app.science.walking.scene import SceneError
 from tests.benchmarks.report import Figure
 from tests.science.walking.plain_agents import PlainFollower, PlainMetric
 from tests.science.walking.random_scenes import random_scene

@@ -21,9 +21,7 @@ from app.rehearsal.headset import Headset
 from app.rehearsal.physics import PhysicsBody
 from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, rehearse
 from app.rehearsal.variant import physics_variant
-from app.science.avatar.mjcf.defaults import default_configuration
-from app.science.avatar.mjcf.model import avatar_model
-from app.science.avatar.mjcf.scene import scene_of
+from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.rotations import identity
 from app.science.skeleton import Pose, build_skeleton
 from app.wire.messages import CompletionReport, ContactReport

@@ -24,7 +24,7 @@ from app.adapters.walks.scene_schema import SceneFile, point_of
 from app.protocol.errors import ConfigError, ConfigProblem
 from app.protocol.explain import explain
 from app.protocol.source import Path, Source, path_text, read_source
-from app.science.walking.scene.scene import Obstacle, Scene, SceneError, ScenePath
+from app.science.walking.scene import Obstacle, Scene, SceneError, ScenePath
 
 SHIPPED = FilePath(__file__).with_name("scenes")
 """The workplaces of the paper, as scene files."""

@@ -12,7 +12,7 @@ import math
 import re
 from collections.abc import Callable
 
-from app.science.retargeting.ground import Ground, Ramp, Steps
+from app.science.retargeting import Ground, Ramp, Steps
 from app.science.rotations import FloatArray
 
 _NUMBER = r"([+-]?\d{1,3}(?:\.\d{1,4})?)"

@@ -8,11 +8,12 @@ from typing import Literal
 
 from app.adapters.captures.capture import Capture, CaptureError, Reading
 from app.adapters.captures.files import read_capture_file
-from app.science.retargeting.joint_map import JointMap, propose_joint_map
-from app.science.retargeting.reference_avatars import (
+from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
+    JointMap,
     named_avatar,
     named_stature_m,
+    propose_joint_map,
 )
 from app.science.rig import Rig, RigMotion
 

@@ -9,10 +9,14 @@ from app.adapters.captures.bvh_export import to_bvh
 from app.adapters.captures.table_export import to_csv
 from app.cli.retarget.ground import ground_along
 from app.cli.retarget.inputs import Clip, joint_map_of, read_avatar, read_clip, reading_of
-from app.science.retargeting.ground import Flat, Ground
-from app.science.retargeting.joint_map import check_joint_map
-from app.science.retargeting.pipeline import Retargeted, retarget_motion
-from app.science.retargeting.transfer import Retargeter
+from app.science.retargeting import (
+    Flat,
+    Ground,
+    Retargeted,
+    Retargeter,
+    check_joint_map,
+    retarget_motion,
+)
 from app.science.rig import RigMotion
 
 _WRITTEN = (".bvh", ".csv")

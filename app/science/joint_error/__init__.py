@@ -1,1 +1,31 @@
-"""Joint errors."""
+"""How far an avatar's joints are from what they were asked for.
+
+`joint_errors` has the definition, `joint_error_summary` its figures over a phase, `recorded_errors`
+those of two recorded streams, against the present pose and against the delayed command, and
+`joint_error_course` their course over the phase's active time.
+"""
+
+from app.science.joint_error.course import COURSE_BIN_S, joint_error_course
+from app.science.joint_error.errors import (
+    ERROR_AXES,
+    ERROR_JOINTS,
+    Clipping,
+    JointErrorSummary,
+    joint_error_summary,
+    joint_errors,
+)
+from app.science.joint_error.recorded import Asked, Recorded, recorded_errors
+
+__all__ = [
+    "COURSE_BIN_S",
+    "ERROR_AXES",
+    "ERROR_JOINTS",
+    "Asked",
+    "Clipping",
+    "JointErrorSummary",
+    "Recorded",
+    "joint_error_course",
+    "joint_error_summary",
+    "joint_errors",
+    "recorded_errors",
+]

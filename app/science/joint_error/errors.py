@@ -31,7 +31,7 @@ from app.science.rotations import (
     multiply,
     to_rotation_vector,
 )
-from app.science.skeleton.joints import JOINT_COUNT, JOINT_NAMES
+from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 
 #: The joints that have an error, in order: all but the hips.
 ERROR_JOINTS: tuple[str, ...] = JOINT_NAMES[1:]

@@ -31,7 +31,7 @@ from app.science.joint_error.errors import (
     summarise_joint_errors,
 )
 from app.science.rotations import FloatArray
-from app.science.skeleton.joints import JOINT_COUNT
+from app.science.skeleton import JOINT_COUNT
 
 Indices = npt.NDArray[np.int64]
 

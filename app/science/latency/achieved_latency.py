@@ -33,7 +33,7 @@ from app.science.latency.smoothing import BoolArray, Track, track_of
 from app.science.latency.stretches import Stretch, stretches
 from app.science.latency.uncertainty import half_width_s
 from app.science.rotations import FloatArray
-from app.science.skeleton.joints import JOINT_COUNT
+from app.science.skeleton import JOINT_COUNT
 
 LEAST_MOVEMENT_S = 5.0
 MOVING_DEG_S = 20.0

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Vector, v_cross, v_dot, v_scale
+from app.science.rotations import FloatArray, Vector, v_cross, v_dot, v_scale
 
 _TOLERANCE = 1e-9
 

@@ -18,7 +18,7 @@ from app.science.retargeting.joint_chains import (
 )
 from app.science.retargeting.joint_words import CENTRE_WORDS, SIDE_WORDS, side_and_word
 from app.science.rig import Rig, RigError
-from app.science.skeleton.joints import JOINT_NAMES, PARENTS
+from app.science.skeleton import JOINT_NAMES, PARENTS
 
 JointMap = Mapping[str, str]
 """Body joint -> joint of the rig; joints that are absent are unmapped."""

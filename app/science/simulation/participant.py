@@ -22,8 +22,7 @@ from typing import cast
 
 import numpy as np
 
-from app.science.rotations import rotate
-from app.science.rotations.scalars import Quaternion, Vector, q_blend
+from app.science.rotations import Quaternion, Vector, q_blend, rotate
 from app.science.simulation.aiming import Aim
 from app.science.simulation.base import BaseMovement
 from app.science.simulation.goal import Goal, GoalKind, SimulationError

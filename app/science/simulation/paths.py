@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import sqrt
 
-from app.science.rotations.scalars import Vector, v_length, v_subtract
+from app.science.rotations import Vector, v_length, v_subtract
 
 _OVERLAP = 0.25
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import exp, hypot, sqrt
 
-from app.science.rotations.scalars import Vector
+from app.science.rotations import Vector
 from app.science.simulation.goal import Goal
 from app.science.simulation.posture import SIDE_SIGNS, Posture
 from app.science.simulation.quickness import MOST_SINK_M_PER_S

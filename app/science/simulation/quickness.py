@@ -8,7 +8,7 @@ joint turns there as quickly as a person's can, and is where it should be some f
 from collections.abc import Sequence
 from math import acos, cos, pi, radians
 
-from app.science.rotations.scalars import Quaternion, q_slerp
+from app.science.rotations import Quaternion, q_slerp
 
 MOST_TURN_RAD_PER_S = radians(1500.0)
 """Elbows and wrists of people who hurry reach 1300 deg/s."""

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.science.skeleton.joints import JOINT_COUNT
+from app.science.skeleton import JOINT_COUNT
 from app.science.stream_quality.freezing import changes, stillness
 from app.science.stream_quality.jumping import jumps
 from app.science.stream_quality.limits import USUAL, QualityError, QualityLimits

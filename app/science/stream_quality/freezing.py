@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.science.skeleton.joints import JOINT_COUNT
+from app.science.skeleton import JOINT_COUNT
 from app.science.stream_quality.limits import QualityLimits
 from app.science.stream_quality.memory import Memory
 

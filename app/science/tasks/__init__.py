@@ -44,6 +44,7 @@ from app.science.tasks.state import (
 from app.science.tasks.summaries import (
     Completion,
     PhaseSummary,
+    Span,
     completions,
     part_side_time_s,
     red_spans,
@@ -84,6 +85,7 @@ __all__ = [
     "Limb",
     "PhaseSummary",
     "Side",
+    "Span",
     "Surface",
     "SurfaceArrays",
     "SurfaceKind",

@@ -26,7 +26,7 @@ from app.platform.config_problems import problem_views
 from app.protocol import ConfigError
 from app.protocol.avatar import file_of, load_avatar
 from app.protocol.errors import ConfigProblem
-from app.science.avatar.configuration.configuration import Configuration
+from app.science.avatar.configuration import Configuration
 
 
 def avatar_list(db: Session, caller: Caller) -> list[AvatarSummary]:

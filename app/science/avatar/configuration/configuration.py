@@ -15,8 +15,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final, Literal, cast, get_args
 
-from app.science.avatar.body.deleva import Population
-from app.science.avatar.body.parts import AXES_OF, AXIS_NAMES, PART_NAMES
+from app.science.avatar.body import AXES_OF, AXIS_NAMES, PART_NAMES, Population
 from app.science.avatar.configuration.axis_settings import (
     AvatarProblem,
     AvatarSettingsError,

@@ -8,8 +8,8 @@ if each axis that stood before one is turned back by it.
 from collections.abc import Sequence
 from math import cos, sin
 
-from app.science.avatar.body.parts import Axis
-from app.science.rotations.scalars import IDENTITY, Quaternion, Vector, q_multiply, q_rotate
+from app.science.avatar.body import Axis
+from app.science.rotations import IDENTITY, Quaternion, Vector, q_multiply, q_rotate
 
 
 def with_locks(

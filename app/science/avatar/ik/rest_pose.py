@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from math import radians
 from types import MappingProxyType
 
-from app.science.avatar.body.parts import SIDES
+from app.science.avatar.body import SIDES
 
 KNEE_DEG, ELBOW_DEG = 25.0, 30.0
 REST_POSE_RAD: Mapping[str, float] = MappingProxyType(

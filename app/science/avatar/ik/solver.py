@@ -39,15 +39,14 @@ import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import AXIS_NAMES
+from app.science.avatar.body import AXIS_NAMES
 from app.science.avatar.ik.bounded_step import bounded_step
 from app.science.avatar.ik.chain import Chain
 from app.science.avatar.ik.goals import HEAD, HIPS, LEFT_SHIN, RIGHT_SHIN, Goals, IkError
 from app.science.avatar.ik.hips import Tracked, estimated_hips
 from app.science.avatar.ik.rest_pose import REST_POSE_RAD
 from app.science.avatar.ik.turns import rotation_between, turned
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Quaternion, Vector
+from app.science.rotations import FloatArray, Quaternion, Vector
 
 CALM, DAMPING = 0.1, 0.5
 FAR_M, FAR_RAD = 0.5, pi / 2.0

@@ -2,7 +2,7 @@
 
 from math import atan2, cos, sin, sqrt
 
-from app.science.rotations.scalars import Quaternion, Vector, q_multiply
+from app.science.rotations import Quaternion, Vector, q_multiply
 
 _TINY = 1e-12
 

@@ -6,10 +6,8 @@ stature and mass. A relay tuning finds better ones for a certain body, and is sa
 
 from typing import Final
 
-from app.science.avatar.body.body import build_body
-from app.science.avatar.body.masses import body_masses
-from app.science.avatar.configuration.configuration import USUAL_MASS_KG, Configuration
-from app.science.avatar.configuration.limits import Preset
+from app.science.avatar.body import body_masses, build_body
+from app.science.avatar.configuration import USUAL_MASS_KG, Configuration, Preset
 from app.science.avatar.mjcf.gains import default_settings
 
 USUAL_STATURE_M: Final = 1.75

@@ -19,11 +19,8 @@ from collections.abc import Mapping
 from math import pi
 from types import MappingProxyType
 
-from app.science.avatar.body.body import Body
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.body.parts import FINGER_PARTS
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.limits import Preset, limits_of
+from app.science.avatar.body import FINGER_PARTS, Body, BodyMasses
+from app.science.avatar.configuration import AxisSettings, Preset, limits_of
 from app.science.avatar.mjcf.hinges import hinges_of
 
 NATURAL_HZ: Mapping[str, float] = MappingProxyType(

@@ -18,11 +18,8 @@ from dataclasses import dataclass
 from math import sqrt
 from types import MappingProxyType
 
-from app.science.avatar.body.body import Body
-from app.science.avatar.body.inertial import Inertial, combined
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.body.parts import AXES, AXES_OF
-from app.science.rotations.scalars import Quaternion, v_scale
+from app.science.avatar.body import AXES, AXES_OF, Body, BodyMasses, Inertial, combined
+from app.science.rotations import Quaternion, v_scale
 
 ARMATURE_SHARE = 0.15
 """Armature of a hinge as a fraction of the inertia of its limb; see the module."""

@@ -18,38 +18,43 @@ How the hips follow the participant is told in `model_options`.
 
 from collections.abc import Mapping
 
-from app.science.avatar.body.body import Body, BodyError, BodyPart
-from app.science.avatar.body.hulls import Piece
-from app.science.avatar.body.inertial import Inertial
-from app.science.avatar.body.layers import (
+from app.science.avatar.body import (
+    AXES_OF,
     NO_COLLISION,
     SCENE,
+    Axis,
+    Body,
+    BodyError,
+    BodyMasses,
+    BodyPart,
+    Capsule,
     CollisionBits,
+    Inertial,
+    Piece,
+    Shape,
     collision_bits,
     excluded_pairs,
 )
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.body.parts import AXES_OF, Axis
-from app.science.avatar.body.shapes import Capsule, Shape
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.colliders import SIMPLE, Colliders
-from app.science.avatar.configuration.locks import with_locks
-from app.science.avatar.configuration.model_options import (
+from app.science.avatar.configuration import (
     DEFAULT_OPTIONS,
     FRICTION,
     HIPS_TARGET,
     LIMIT_SOLREF,
+    SIMPLE,
     TIMESTEP_S,
     WALL_SOLIMP,
     WALL_SOLREF,
     WELD_SOLIMP,
     WELD_SOLREF,
+    AxisSettings,
+    Colliders,
     ModelOptions,
+    with_locks,
 )
 from app.science.avatar.mjcf.hinges import hinges_of
 from app.science.avatar.mjcf.mjcf_text import Element
 from app.science.avatar.mjcf.scene import FLOOR, FLOOR_ONLY, Scene
-from app.science.rotations.scalars import IDENTITY, Vector
+from app.science.rotations import IDENTITY, Vector
 
 PIECE = "mesh"
 """What the geom of a convex piece is called, after its part and a slash."""

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.science.avatar.mjcf.scene import FLOOR
-from app.science.avatar.mjcf.simulation_error import SimulationError
+from app.science.avatar.mjcf import FLOOR, SimulationError
 
 if TYPE_CHECKING:
     import mujoco

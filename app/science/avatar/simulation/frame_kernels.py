@@ -5,7 +5,7 @@ Importing this module loads the compiler; a simulation does so when it is made.
 
 import numpy as np
 
-from app.science.avatar.mjcf.hinge_table import IndexArray
+from app.science.avatar.mjcf import IndexArray
 from app.science.compiled import compiled_fused
 from app.science.rotations import FloatArray
 

@@ -28,9 +28,8 @@ from math import isfinite
 
 import numpy as np
 
-from app.science.avatar.body.parts import AXES
-from app.science.avatar.mjcf.hinge_table import HingeTable, hinge_table
-from app.science.avatar.mjcf.simulation_error import SimulationError
+from app.science.avatar.body import AXES
+from app.science.avatar.mjcf import HingeTable, SimulationError, hinge_table
 from app.science.avatar.simulation.avatar_state import AvatarState, Health
 from app.science.avatar.simulation.boxes import Boxes
 from app.science.avatar.simulation.contacts import Contact, read_contacts

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.layers import NO_COLLISION, SCENE_BIT, collision_bits
-from app.science.avatar.configuration.colliders import ColliderKind
-from app.science.avatar.mjcf.hinge_table import HingeTable
-from app.science.avatar.mjcf.simulation_error import SimulationError
+from app.science.avatar.body import NO_COLLISION, SCENE_BIT, collision_bits
+from app.science.avatar.configuration import ColliderKind
+from app.science.avatar.mjcf import HingeTable, SimulationError
 from app.science.rotations import FloatArray
 
 if TYPE_CHECKING:

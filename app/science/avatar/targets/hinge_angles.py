@@ -28,9 +28,8 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.compiled import compiled_fused
-from app.science.retargeting.plan import IntArray
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Quaternion, Vector
+from app.science.retargeting import IntArray
+from app.science.rotations import FloatArray, Quaternion, Vector
 
 BoolArray = npt.NDArray[np.bool_]
 _TURN = 2.0 * pi

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from app.science.avatar.configuration.axis_settings import AxisSettings
+from app.science.avatar.configuration import AxisSettings
 from app.science.avatar.tuning.experiments import natural_hz
 from app.science.avatar.tuning.heuristics import HEURISTICS, Gains
 from app.science.avatar.tuning.relay import NoOscillation

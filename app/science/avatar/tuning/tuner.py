@@ -14,11 +14,9 @@ both sides are tried. An axis whose left counterpart is locked or missing is tun
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.body.parts import mirrored_name
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.model import avatar_model
+from app.science.avatar.body import Figure, mirrored_name
+from app.science.avatar.configuration import AxisSettings, Configuration
+from app.science.avatar.mjcf import avatar_model
 from app.science.avatar.tuning.attempts import AxisAttempts
 from app.science.avatar.tuning.crew import Crew
 from app.science.avatar.tuning.evaluation import Trial

@@ -2,7 +2,8 @@
 
 The paper takes one draw and compares |dt|. That punishes honesty: where walks differ, a draw from
 their true distribution is off by about sqrt 2 times as much as the distribution's median, so a
-model that knows nothing of variety wins. `crps` has the score that is judged by. SciPy is slow to load, so only summaries load it.
+model that knows nothing of variety wins. `crps` has the score that is judged by.
+SciPy is slow to load, so only what needs it does.
 """
 
 from collections.abc import Sequence
@@ -11,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError
+from app.science.walking.records import WalkingError
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
 """As the paper prints them."""

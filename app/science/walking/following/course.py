@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import PlannedPath, Walk
-from app.science.walking.records.protocols import Course
+from app.science.walking.records import Course, PlannedPath, Walk
 
 TIMES_REFERENCE = 2.0
 EXTRA_S = 1.0

@@ -22,9 +22,13 @@ import numpy as np
 
 from app.science.rotations import FloatArray
 from app.science.walking.following.course import Pace, Way, way_of
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.parameters import PAPER_PARAMETERS, SteeringParameter
-from app.science.walking.records.protocols import Course, Trajectories
+from app.science.walking.records import (
+    PAPER_PARAMETERS,
+    Course,
+    SteeringParameter,
+    Trajectories,
+    WalkingError,
+)
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.protocols import Reference, Trajectories
+from app.science.walking.records import Reference, Trajectories, WalkingError
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.science.walking.maps.database import WalkDatabase
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.parameters import ParameterGrid
+from app.science.walking.maps import WalkDatabase
+from app.science.walking.records import ParameterGrid, WalkingError
 
 
 def without_dependency(database: WalkDatabase, name: str) -> WalkDatabase:

@@ -1,12 +1,14 @@
-"""Which points see each other, and the shortest way over them (Dijkstra on the visibility graph)."""
+"""Which points see each other, and the shortest way over them.
+
+Dijkstra on the visibility graph.
+"""
 
 import heapq
 
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.scene.outlines import IntArray, Outlines
-from app.science.walking.scene.shapes import contains
+from app.science.walking.scene import IntArray, Outlines, contains
 
 HIDDEN_M = 1e-7
 """A corner deeper than that inside another outline is never passed."""

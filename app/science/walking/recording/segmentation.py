@@ -11,8 +11,7 @@ import numpy as np
 
 from app.science.rotations import FloatArray
 from app.science.walking.recording.smoothing import SIGMA_S, evenly, smoothed
-from app.science.walking.records.model import Track, Walk, WalkingError
-from app.science.walking.records.protocols import BoolArray
+from app.science.walking.records import BoolArray, Track, Walk, WalkingError
 
 
 @dataclass(frozen=True)

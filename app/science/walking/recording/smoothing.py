@@ -7,7 +7,7 @@ jerks of each step matter less. At other rates sigma is the same time, 1/60 s.
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import Track
+from app.science.walking.records import Track
 
 SIGMA_S = 2.0 / 120.0
 REACH = 4.0

@@ -9,7 +9,7 @@ the first and last 5 cm, where a direction means little. Radians a metre.
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError, arc_of
+from app.science.walking.records import WalkingError, arc_of
 
 SPACING_M = 0.01
 SIGMA_SAMPLES = 2.0

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import PlannedPath, Track, arc_of
-from app.science.walking.scene.turning import SPACING_M, by_length
+from app.science.walking.records import PlannedPath, Track, arc_of
+from app.science.walking.scene import SPACING_M, by_length
 
 RATE_HZ, STANDING_S = 60.0, 0.75
 SLOWING_PER_M = 2.0

@@ -10,19 +10,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.recording.segmentation import walks_of
-from app.science.walking.recording.walks import planned_walk
-from app.science.walking.records.model import PlannedPath, PlannedWalk, WalkingError
-from app.science.walking.records.protocols import Point
-from app.science.walking.scene.laboratory import (
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import planned_walk, walks_of
+from app.science.walking.records import PlannedPath, PlannedWalk, Point, WalkingError
+from app.science.walking.scene import (
     POLE_DEG,
     POLE_M,
     STRAIGHT_M,
+    Scene,
+    SceneError,
     pole_scene,
     straight_scene,
 )
-from app.science.walking.scene.scene import Scene, SceneError
 from app.science.walking.synthetic.populations import Person, Population, person_of, walk_along
 
 BESIDE_M = 0.02

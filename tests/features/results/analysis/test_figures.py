@@ -16,7 +16,7 @@ from app.features.results.analysis.figures import (
 from app.features.results.analysis.figures.body_parts import BODY_PARTS, JOINTS_BY_PART
 from app.features.results.analysis.figures.drawing import Drawing, limb_note
 from app.features.results.analysis.figures.intervals import mean_interval
-from app.science.joint_error.errors import ERROR_JOINTS
+from app.science.joint_error import ERROR_JOINTS
 
 
 def _phases(completions: dict[str, dict[float, int]], limb: str = "hand") -> pd.DataFrame:

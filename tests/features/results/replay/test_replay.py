@@ -12,7 +12,7 @@ from sqlalchemy import delete, select
 from app.features.record.telemetry.frames import phase_frames
 from app.features.results.replay.placing import placed_movement
 from app.models import Phase, StudySession, TelemetryChunk, TelemetryStream
-from app.science.joint_error.errors import joint_errors
+from app.science.joint_error import joint_errors
 from app.science.skeleton import build_skeleton, forward_kinematics
 from app.wire import StreamName
 from tests.api.people import sign_in

@@ -1,6 +1,6 @@
 """The 21 joints that have an error, in six parts of the body."""
 
-from app.science.joint_error.errors import ERROR_JOINTS
+from app.science.joint_error import ERROR_JOINTS
 
 _LIMB_PARTS = {
     "arm": ("Shoulder", "UpperArm", "LowerArm", "Hand"),

@@ -10,7 +10,7 @@ from app.features.design.studies.service import study_by_key
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import finished, of_kind, phases_context, read
 from app.models import JointErrorRow, StudySession
-from app.science.joint_error.errors import ERROR_AXES, ERROR_JOINTS
+from app.science.joint_error import ERROR_AXES, ERROR_JOINTS
 
 _KEYS = ["session_id", "phase_id"]
 _FIGURES = ("mean", "rms", "p95", "max")
