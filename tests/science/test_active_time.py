@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.science.active_time import active_times
+from app.science.joint_error.course import active_times
 from app.science.rotations import FloatArray
 
 STEP_S = 0.25

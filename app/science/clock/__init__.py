@@ -16,10 +16,9 @@ The bound holds on asymmetric paths too, as long as the clocks keep to `ClockLim
 """
 
 from app.science.clock.fit import DEFAULT_LIMITS, fit_clock
-from app.science.clock.limits import ClockError, ClockLimits
 from app.science.clock.mapping import ClockMapping, ClockSegment
 from app.science.clock.placing import Stepped
-from app.science.clock.probes import ClockProbes
+from app.science.clock.probes import ClockError, ClockLimits, ClockProbes
 
 __all__ = [
     "DEFAULT_LIMITS",

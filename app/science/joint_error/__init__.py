@@ -5,7 +5,7 @@ those of two recorded streams, against the present pose and against the delayed 
 `joint_error_course` their course over the phase's active time.
 """
 
-from app.science.joint_error.course import COURSE_BIN_S, joint_error_course
+from app.science.joint_error.course import COURSE_BIN_S, active_times, joint_error_course
 from app.science.joint_error.errors import (
     ERROR_AXES,
     ERROR_JOINTS,
@@ -24,6 +24,7 @@ __all__ = [
     "Clipping",
     "JointErrorSummary",
     "Recorded",
+    "active_times",
     "joint_error_course",
     "joint_error_summary",
     "joint_errors",

@@ -3,6 +3,10 @@
 People learn a delay, or tire of it, and a mean over the whole phase shows neither. A bin's value is
 the mean over all samples that fall into it, a sample being one joint in one frame: so the mean of
 the bins, each weighted by its samples, is the mean of the phase.
+
+Active time is that in which the phase's clock ran (`active_times`). The clock of a phase stands in
+pauses and on walks back, and every frame says whether it ran when the frame was shown. So the
+frames themselves hold the active time, and it can be found again for as long as they are kept.
 """
 
 from dataclasses import dataclass
@@ -70,3 +74,28 @@ def joint_error_course(
     mean_rad = np.full(len(samples), np.nan)
     np.divide(sums_rad, samples, out=mean_rad, where=samples > 0)
     return JointErrorCourse(mean_rad, samples)
+
+
+def active_times(times_s: FloatArray, active: npt.NDArray[np.bool_]) -> FloatArray:
+    """Return the active time at each of N frames, in s since the first.
+
+    From a frame in which the clock runs, time counts up to the next frame, also over a gap; what a
+    frame that stopped the clock is late by and what one that started it is late by cancel out on
+    average. A time that is not finite, or not later than all before, adds nothing.
+
+    Args:
+        times_s: (N,) on one clock, in the order in which the frames were made; may hold anything.
+        active: (N,) whether the phase's clock ran.
+
+    Returns:
+        (N,) s, from 0 on, never falling.
+    """
+    passed_s = np.zeros(len(times_s))
+    finite = np.isfinite(times_s)
+    if not finite.any():
+        return passed_s
+    # Before the first usable time nothing has passed.
+    known_s = np.where(finite, times_s, -np.inf)
+    latest_s = np.maximum(np.maximum.accumulate(known_s), times_s[np.argmax(finite)])
+    passed_s[1:] = np.cumsum(np.diff(latest_s) * active[:-1])
+    return passed_s

@@ -26,12 +26,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.science.latency.choice import choose
+from app.science.latency.choice import choose, half_width_s
 from app.science.latency.correlation import Correlation, correlate
 from app.science.latency.refinement import prepare
 from app.science.latency.smoothing import BoolArray, Track, track_of
 from app.science.latency.stretches import Stretch, stretches
-from app.science.latency.uncertainty import half_width_s
 from app.science.rotations import FloatArray
 from app.science.skeleton import JOINT_COUNT
 

@@ -38,10 +38,9 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.science.retargeting.axes import CANONICAL, Axes
+from app.science.retargeting.axes import CANONICAL, Axes, swing, unit
 from app.science.retargeting.bones import Bone, bones_of, joints_of, rest_facing
 from app.science.retargeting.joint_map import JointMap
-from app.science.retargeting.swing import swing, unit
 from app.science.rig import Rig, to_local
 from app.science.rotations import FloatArray, Vector, conjugate, multiply, rotate
 

@@ -20,8 +20,7 @@ from app.science.rotations import (
     q_rotate,
     rotate,
 )
-from app.science.skeleton.joints import JOINT_COUNT, PARENTS
-from app.science.skeleton.model import Skeleton, SkeletonError
+from app.science.skeleton.model import JOINT_COUNT, PARENTS, Skeleton, SkeletonError
 
 
 @dataclass(frozen=True, eq=False)

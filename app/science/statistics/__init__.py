@@ -23,7 +23,6 @@ from app.science.statistics.aligned_ranks import (
 )
 from app.science.statistics.arrays import FloatArray, IntArray, complete_rows
 from app.science.statistics.bootstrap import Interval, bootstrap_interval, mean_of, median_of
-from app.science.statistics.cronbach import Cronbach, cronbach_alpha
 from app.science.statistics.effects import Effect
 from app.science.statistics.error_rates import (
     LEAST_COVERAGE,
@@ -37,16 +36,14 @@ from app.science.statistics.error_rates import (
 from app.science.statistics.errors import ConstantData, StatisticsError, TooFewData, UnusableTable
 from app.science.statistics.exploring import Explored, explore
 from app.science.statistics.friedman import Friedman, friedman
-from app.science.statistics.holm import holm
 from app.science.statistics.levels import place_of
 from app.science.statistics.mean_intervals import (
     MeanInterval,
     mean_interval,
     within_subject_intervals,
 )
-from app.science.statistics.omega import Omega, mcdonald_omega
 from app.science.statistics.page import PageTrend, page_trend
-from app.science.statistics.pairwise import Comparison, pairwise
+from app.science.statistics.pairwise import Comparison, holm, pairwise
 from app.science.statistics.planned import (
     AgainstReference,
     Direction,
@@ -55,6 +52,7 @@ from app.science.statistics.planned import (
     directional,
 )
 from app.science.statistics.power import Expected, rm_anova_power, subjects_needed
+from app.science.statistics.reliability import Cronbach, Omega, cronbach_alpha, mcdonald_omega
 from app.science.statistics.rm_anova import RmAnova, rm_anova
 from app.science.statistics.shares import ContactShares, contact_shares, share_of_maximum
 from app.science.statistics.signed_rank import SignedRank, signed_rank

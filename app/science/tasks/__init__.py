@@ -29,7 +29,7 @@ from app.science.tasks.names import (
     hand_parts,
 )
 from app.science.tasks.rules import advance
-from app.science.tasks.run import TaskRun
+from app.science.tasks.run import TaskRun, rederive, replay
 from app.science.tasks.state import (
     Command,
     CommandKind,
@@ -62,7 +62,6 @@ from app.science.tasks.surfaces import (
     side_unit,
 )
 from app.science.tasks.tracker import ContactInterval, ContactTracker
-from app.science.tasks.verification import rederive, replay
 from app.science.tasks.views import Colour, current_goal, displayed_numbers, surface_state
 
 __all__ = [

@@ -10,7 +10,6 @@ from app.science.avatar.configuration.axis_settings import (
     AxisSettings,
     degrees_of,
 )
-from app.science.avatar.configuration.colliders import SIMPLE, ColliderKind, Colliders
 from app.science.avatar.configuration.configuration import (
     USUAL_MASS_KG,
     Configuration,
@@ -20,17 +19,19 @@ from app.science.avatar.configuration.configuration import (
 )
 from app.science.avatar.configuration.editing import lock, with_axis, with_global, without_parts
 from app.science.avatar.configuration.limits import ANATOMIC, Preset, limits_of
-from app.science.avatar.configuration.locks import with_locks
 from app.science.avatar.configuration.model_options import (
     DEFAULT_OPTIONS,
     FRICTION,
     HIPS_TARGET,
     LIMIT_SOLREF,
+    SIMPLE,
     TIMESTEP_S,
     WALL_SOLIMP,
     WALL_SOLREF,
     WELD_SOLIMP,
     WELD_SOLREF,
+    ColliderKind,
+    Colliders,
     ModelOptions,
 )
 
@@ -63,6 +64,5 @@ __all__ = [
     "piece_problems",
     "with_axis",
     "with_global",
-    "with_locks",
     "without_parts",
 ]

@@ -23,8 +23,8 @@ from app.science.avatar.configuration.axis_settings import (
     degrees_of,
     settled_angle,
 )
-from app.science.avatar.configuration.colliders import ColliderKind
 from app.science.avatar.configuration.groups import AXIS_ORDER, GROUP_NAMES, PART_OF, axes_of
+from app.science.avatar.configuration.model_options import ColliderKind
 
 Hips = Literal["carried", "welded"]
 TargetSpace = Literal["local", "world"]

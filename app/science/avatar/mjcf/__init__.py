@@ -5,14 +5,12 @@ same text is loaded here and in the browser. `hinge_table` says where a loaded m
 axis.
 """
 
-from app.science.avatar.mjcf.defaults import default_configuration
-from app.science.avatar.mjcf.gains import NATURAL_HZ
-from app.science.avatar.mjcf.hinge_table import HingeTable, IndexArray, hinge_table
+from app.science.avatar.mjcf.gains import NATURAL_HZ, default_configuration
+from app.science.avatar.mjcf.hinge_table import HingeTable, IndexArray, SimulationError, hinge_table
 from app.science.avatar.mjcf.hinges import Hinge, hinges_of
 from app.science.avatar.mjcf.mjcf import build_mjcf, driven_axes
 from app.science.avatar.mjcf.model import AvatarModel, avatar_model
 from app.science.avatar.mjcf.scene import FLOOR, FLOOR_ONLY, Scene, scene_of
-from app.science.avatar.mjcf.simulation_error import SimulationError
 
 __all__ = [
     "FLOOR",

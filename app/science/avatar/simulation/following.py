@@ -32,8 +32,7 @@ import numpy as np
 
 from app.science.avatar.body import AXES
 from app.science.avatar.configuration import TargetSpace
-from app.science.avatar.simulation.avatar_state import AvatarState
-from app.science.avatar.simulation.simulation import PhysicsAvatar
+from app.science.avatar.simulation.simulation import AvatarState, PhysicsAvatar
 from app.science.avatar.targets import TargetAngles, Targets
 from app.science.delay import DelayBuffer
 from app.science.rotations import (

@@ -10,7 +10,7 @@ from app.science.avatar.tuning.crew import Crew
 from app.science.avatar.tuning.evaluation import Trial
 from app.science.avatar.tuning.plant import bare
 from app.science.avatar.tuning.results import AxisTuning, TuningOptions, TuningProgress
-from app.science.avatar.tuning.verdicts import objection
+from app.science.avatar.tuning.step_response import objection
 
 
 @dataclass(frozen=True)

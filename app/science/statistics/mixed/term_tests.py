@@ -24,9 +24,9 @@ import numpy as np
 import scipy.stats
 
 from app.science.statistics.arrays import FloatArray
-from app.science.statistics.holm import holm
 from app.science.statistics.mixed.design import marginal_weights, pairs_of, term_contrasts
 from app.science.statistics.mixed.model import MixedModel
+from app.science.statistics.pairwise import holm
 
 DF_METHOD = "Satterthwaite"
 _LEVEL = 0.95

@@ -11,7 +11,6 @@ from app.science.walking.models.prediction import Prediction, Predictor, predict
 from app.science.walking.models.reading_choice import ReadingScore, person_folds
 from app.science.walking.models.sampling import HEADROOM, MixtureSampler, density_of
 from app.science.walking.models.steering_models import ProbabilisticModel, SteeringModel
-from app.science.walking.models.submodels import holding, without_dependency
 
 __all__ = [
     "HEADROOM",
@@ -28,11 +27,9 @@ __all__ = [
     "crps_s",
     "density_of",
     "fitted",
-    "holding",
     "iqr",
     "person_folds",
     "predictor_for",
     "restored",
     "space_of",
-    "without_dependency",
 ]

@@ -17,7 +17,7 @@ from app.science.avatar.configuration.editing import (
     without_parts,
 )
 from app.science.avatar.configuration.groups import GROUP_NAMES, GROUPS, axes_of, parts_of
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.gains import default_configuration
 from tests.science.avatar.configurations import FINE_SPRING, whole_body
 
 BODY = whole_body()

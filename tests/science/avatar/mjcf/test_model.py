@@ -8,7 +8,7 @@ import pytest
 from app.science.avatar.body.body import BodyError
 from app.science.avatar.body.parts import AXIS_NAMES, PART_NAMES
 from app.science.avatar.configuration.editing import with_axis, without_parts
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.gains import default_configuration
 from app.science.avatar.mjcf.model import avatar_model
 
 SHIPPED = default_configuration()

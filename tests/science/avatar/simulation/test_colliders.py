@@ -13,12 +13,12 @@ from app.science.avatar.body.body import BodyError
 from app.science.avatar.body.figure import figure_of
 from app.science.avatar.body.humanoid import HumanoidError
 from app.science.avatar.body.parts import AXES, PART_NAMES
-from app.science.avatar.configuration.colliders import ColliderKind
 from app.science.avatar.configuration.configuration import Hips
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.configuration.model_options import ColliderKind
+from app.science.avatar.mjcf.gains import default_configuration
+from app.science.avatar.mjcf.hinge_table import SimulationError
 from app.science.avatar.mjcf.model import AvatarModel, avatar_model
 from app.science.avatar.mjcf.scene import Scene, SceneBox
-from app.science.avatar.mjcf.simulation_error import SimulationError
 from app.science.avatar.simulation.following import Follower
 from app.science.avatar.simulation.simulation import PhysicsAvatar
 from app.science.rotations import identity, normalise

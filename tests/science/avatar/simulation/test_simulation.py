@@ -8,7 +8,7 @@ import pytest
 
 from app.science.avatar.body.parts import AXES, AXIS_NAMES
 from app.science.avatar.configuration.configuration import Hips
-from app.science.avatar.mjcf.simulation_error import SimulationError
+from app.science.avatar.mjcf.hinge_table import SimulationError
 from app.science.avatar.simulation.simulation import PhysicsAvatar
 from app.science.avatar.targets.targets import joint_rotations
 from app.science.latency.achieved_latency import achieved_latency

@@ -7,8 +7,8 @@ import pytest
 
 from app.science.avatar.body.parts import AXES, AXIS_NAMES
 from app.science.avatar.configuration.groups import axes_of
+from app.science.avatar.mjcf.hinge_table import SimulationError
 from app.science.avatar.mjcf.scene import Scene, SceneBox
-from app.science.avatar.mjcf.simulation_error import SimulationError
 from tests.science.avatar.captured import RATE_HZ
 from tests.science.avatar.simulated import angle_of, angles, avatar, run
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from app.science.avatar.mjcf.hinge_table import SimulationError
 from app.science.avatar.mjcf.scene import Scene, SceneBox
-from app.science.avatar.mjcf.simulation_error import SimulationError
 from app.science.avatar.simulation.simulation import PhysicsAvatar
 from app.science.avatar.simulation.touches import SurfaceTouches
 from app.science.rotations import identity

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.science.avatar.configuration.configuration import Configuration, Hips
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.gains import default_configuration
 from app.science.avatar.mjcf.model import avatar_model
 from app.science.avatar.mjcf.scene import FLOOR_ONLY, Scene
 from app.science.avatar.targets.targets import joint_rotations

@@ -8,7 +8,7 @@ import pytest
 
 from app.science.avatar.configuration.configuration import Configuration
 from app.science.avatar.configuration.groups import axes_of
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.gains import default_configuration
 from app.science.avatar.tuning import (
     HEURISTICS,
     AxisTuning,

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.gains import default_configuration
 from app.science.avatar.tuning import AxisTuning, TuningOptions, tune
 
 _AXIS = "LeftUpperArmY"

@@ -10,8 +10,7 @@ from app.science.avatar.body.masses import body_masses
 from app.science.avatar.configuration.limits import ANATOMIC
 from app.science.avatar.tuning.evaluation import Trial, jump_of
 from app.science.avatar.tuning.plant import bare
-from app.science.avatar.tuning.step_response import StepFigures, step_figures
-from app.science.avatar.tuning.verdicts import objection
+from app.science.avatar.tuning.step_response import StepFigures, objection, step_figures
 from app.science.rotations import FloatArray
 from tests.science.avatar.bodies import settings_of
 

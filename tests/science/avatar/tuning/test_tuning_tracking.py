@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.science.avatar.body.parts import AXIS_NAMES
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.gains import default_configuration
 from app.science.avatar.tuning import TuningError, follow_capture, track
 from app.science.rotations import identity
 from app.science.skeleton import JOINT_INDEX, Movement

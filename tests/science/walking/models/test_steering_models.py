@@ -10,10 +10,10 @@ from app.science.walking.models.fitting import FitOptions, fitted, restored
 from app.science.walking.models.prediction import Predictor
 from app.science.walking.models.reading_choice import person_folds, ranked_readings
 from app.science.walking.models.steering_models import AdaptiveModel, ProbabilisticModel
-from app.science.walking.models.submodels import holding, without_dependency
 from app.science.walking.records.model import LENGTH, STATURE, PlannedPath, WalkingError
 from app.science.walking.synthetic.synthetic_walks import straight_path
 from tests.science.walking.spaces import GRID, PEOPLE, made_up_database, made_up_space
+from tests.science.walking.submodels import holding, without_dependency
 
 ASKED = {LENGTH: 2.0, STATURE: 1.75}
 QUICK = FitOptions(seed=3, k=20, entries=400, reading=TIME_AWARE)

@@ -5,8 +5,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from app.science.rotations import FloatArray
-from app.science.walking.recording.segmentation import SegmentationRules, walks_of
-from app.science.walking.recording.smoothing import smoothed
+from app.science.walking.recording.segmentation import SegmentationRules, smoothed, walks_of
 from app.science.walking.records.model import Track, WalkingError
 
 RATE_HZ = 120.0

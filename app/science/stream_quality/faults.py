@@ -1,8 +1,11 @@
-"""Joints whose rotation stays the same to the last bit while the body moves.
+"""What can be wrong with a span of frames: joints that freeze, poses that jump, times that halt.
 
-A sensor that has frozen looks like that. So does a joint that nobody tracks, or one that a solver
-lets rest between two steps; but these were still before. Only a joint that was lively so far can
-freeze.
+A frozen joint's rotation stays the same to the last bit while the body moves. A sensor that has
+frozen looks like that. So does a joint that nobody tracks, or one that a solver lets rest between
+two steps; but these were still before. Only a joint that was lively so far can freeze.
+
+A jump is a pose that no body could take so quickly after the one before. The pace of the frames has
+their intervals, gaps, and clocks that ran backwards.
 """
 
 from dataclasses import dataclass
@@ -87,3 +90,74 @@ def _lost_s(frozen: Bools, passed_s: Table, limits: QualityLimits, before: Memor
     lost_s = passed_s[:, np.newaxis] * frozen + limits.frozen_s * noticed
     lost_s[0] += before.frozen_s
     return np.cumsum(lost_s, axis=0)
+
+
+Floats = NDArray[np.floating[Any]]
+
+
+def jumps(
+    times_s: NDArray[np.float64],
+    rotations: Floats,
+    positions_m: Floats,
+    usual_s: float,
+    limits: QualityLimits,
+) -> tuple[Bools, Bools]:
+    """Which frames jump against the one before: joints (n - 1, 22), and the hips' place (n - 1,).
+
+    Times (n,), rotations (n, 22, 4) and places (n, 3) must be usable. Frames that are told to be
+    closer together than usual are a stutter of the clock rather than of the body, so an interval
+    counts as `usual_s` at least.
+    """
+    passed_s = np.fmax(times_s[1:] - times_s[:-1], usual_s)
+    cosine = np.einsum("njk,njk->nj", rotations[1:], rotations[:-1])
+    # Beyond half a turn every rotation is within reach.
+    half_turn = np.minimum(0.5 * limits.turn_rad_per_s * passed_s, 0.5 * np.pi)
+    turned = np.abs(cosine) < np.cos(half_turn)[:, np.newaxis]
+    with np.errstate(over="ignore", invalid="ignore"):  # a place may be any number
+        step_m = positions_m[1:] - positions_m[:-1]
+        moved_m = np.sqrt(np.einsum("nk,nk->n", step_m, step_m))
+        return turned, moved_m > limits.root_m_per_s * passed_s
+
+
+@dataclass(frozen=True)
+class Pacing:
+    """Per frame (n,), against the frame before it that has a time.
+
+    `interval_s` is NaN where there is none. `gap`: nothing came for too long before this frame.
+    `backwards`: the frame is not later than the one before. `watched_s`: how much of the interval
+    was covered by frames, 0 over a gap. `usual_s` is the interval frames usually have, NaN where
+    that is unknown.
+    """
+
+    interval_s: NDArray[np.float64]
+    gap: NDArray[np.bool_]
+    backwards: NDArray[np.bool_]
+    watched_s: NDArray[np.float64]
+    usual_s: float
+
+
+def is_timed(times_s: NDArray[np.float64], limits: QualityLimits) -> NDArray[np.bool_]:
+    """Frames (n,) whose time can be one."""
+    return np.asarray(np.abs(times_s) <= limits.latest_s)  # NaN is not
+
+
+def pace(
+    times_s: NDArray[np.float64], limits: QualityLimits, usual_s: float | None, before: Memory
+) -> Pacing:
+    """Judge times (n,); `usual_s` None takes the median interval of this span."""
+    interval_s = np.full(len(times_s), np.nan)
+    timed = is_timed(times_s, limits)
+    first = np.nan if before.time_s is None else before.time_s
+    interval_s[timed] = np.diff(times_s[timed], prepend=first)
+    forward = interval_s > 0.0
+    if usual_s is None:
+        usual_s = float(np.median(interval_s[forward])) if forward.any() else np.nan
+    longest_s = np.fmax(limits.gap_frames * usual_s, limits.gap_s)
+    gap = interval_s > longest_s
+    return Pacing(
+        interval_s=interval_s,
+        gap=gap,
+        backwards=interval_s <= 0.0,
+        watched_s=np.where(forward & ~gap, interval_s, 0.0),
+        usual_s=usual_s,
+    )
