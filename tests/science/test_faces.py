@@ -62,7 +62,7 @@ def _is_offered(module: str, name: str) -> bool:
     if module in PACKAGES or module in MODULES_WITH_FACES:
         return name in (_offered(module) or ())
     # A module that lies in no package but science's own is a face by itself.
-    return module.count(".") == 2
+    return module.count(".") == 2 and module in HOMES
 
 
 def _importers() -> Iterator[tuple[str, Path]]:

@@ -21,7 +21,7 @@ from app.science.joint_error.errors import (
 )
 from app.science.joint_error.recorded import Asked, Recorded, RecordedErrors, recorded_errors
 from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply, normalise
-from app.science.skeleton.model import JOINT_INDEX
+from app.science.skeleton.joints import JOINT_INDEX
 
 RATE_HZ = 90.0
 FRAMES, BEGIN = 200, 30

@@ -7,7 +7,7 @@ the one on the other:
 2. all lines between the bounds of a window of minutes are a polygon that is known exactly: what
    any of them says of a moment bounds the truth (`band`);
 3. where no line is left a clock jumped, or a single probe is wrong (`windows`);
-4. the line that is told is fitted to the probes with the shortest round trips (`line`);
+4. the line that is told is fitted to the probes with the shortest round trips (`band`);
 5. windows without a jump between them join to one unbroken course (`stretch`), and these are put on
    one time line of the server (`placing`);
 6. the mapping never falls and says how far it can be off (`mapping`).

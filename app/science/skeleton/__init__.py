@@ -1,5 +1,6 @@
 """The product's own body: joints, proportions, forward kinematics and movement."""
 
+from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
 from app.science.skeleton.kinematics import (
     BodySegments,
     Pose,
@@ -7,15 +8,7 @@ from app.science.skeleton.kinematics import (
     body_part_segments,
     forward_kinematics,
 )
-from app.science.skeleton.model import (
-    JOINT_COUNT,
-    JOINT_INDEX,
-    JOINT_NAMES,
-    PARENTS,
-    Skeleton,
-    SkeletonError,
-    build_skeleton,
-)
+from app.science.skeleton.model import Skeleton, SkeletonError, build_skeleton
 from app.science.skeleton.movement import (
     Movement,
     continuous,

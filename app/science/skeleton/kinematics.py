@@ -20,7 +20,8 @@ from app.science.rotations import (
     q_rotate,
     rotate,
 )
-from app.science.skeleton.model import JOINT_COUNT, PARENTS, Skeleton, SkeletonError
+from app.science.skeleton.joints import JOINT_COUNT, PARENTS
+from app.science.skeleton.model import Skeleton, SkeletonError
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""The 22 body joints in their one fixed order, and the skeleton of one person.
+"""The skeleton of one person, built from the stature.
 
 Rest pose: the T-pose, every local rotation the identity, world axes x right, y up, -z forward, so
 the left arm runs along -x and the feet point to -z. Lengths are fractions of the stature H.
@@ -12,9 +12,6 @@ the sockets .050 to each side (the figure's .0955 is half the outer hip breadth)
 .585, Chest .655, UpperChest .725, Neck .835, Head .875; the inner end of the collar bone .020 to
 the side at .810; the toe joint .072 before the ankle at height .014, a quarter of the foot behind
 the ankle; all radii. They shape capsules and the look of the figure, no published number of ours.
-
-Names and hierarchy of the joints are those of Unity's HumanBodyBones without fingers, eyes and jaw.
-A parent always comes before its children, so one pass in order is forward kinematics.
 """
 
 from dataclasses import dataclass
@@ -23,41 +20,7 @@ from typing import ClassVar
 import numpy as np
 
 from app.science.rotations import FloatArray
-
-_PARENT_OF: dict[str, str | None] = {
-    "Hips": None,
-    "Spine": "Hips",
-    "Chest": "Spine",
-    "UpperChest": "Chest",
-    "Neck": "UpperChest",
-    "Head": "Neck",
-    "LeftShoulder": "UpperChest",
-    "LeftUpperArm": "LeftShoulder",
-    "LeftLowerArm": "LeftUpperArm",
-    "LeftHand": "LeftLowerArm",
-    "RightShoulder": "UpperChest",
-    "RightUpperArm": "RightShoulder",
-    "RightLowerArm": "RightUpperArm",
-    "RightHand": "RightLowerArm",
-    "LeftUpperLeg": "Hips",
-    "LeftLowerLeg": "LeftUpperLeg",
-    "LeftFoot": "LeftLowerLeg",
-    "LeftToes": "LeftFoot",
-    "RightUpperLeg": "Hips",
-    "RightLowerLeg": "RightUpperLeg",
-    "RightFoot": "RightLowerLeg",
-    "RightToes": "RightFoot",
-}
-
-JOINT_NAMES: tuple[str, ...] = tuple(_PARENT_OF)
-JOINT_COUNT = len(JOINT_NAMES)
-JOINT_INDEX: dict[str, int] = {name: index for index, name in enumerate(JOINT_NAMES)}
-
-#: Index of each joint's parent; -1 for the hips.
-PARENTS: tuple[int, ...] = tuple(
-    -1 if parent is None else JOINT_INDEX[parent] for parent in _PARENT_OF.values()
-)
-
+from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
 
 _LOWEST_STATURE_M, _HIGHEST_STATURE_M = 0.5, 2.6
 

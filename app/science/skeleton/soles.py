@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.rotations import FloatArray, from_rotation_vector, multiply, rotate
-from app.science.skeleton.model import JOINT_INDEX, Skeleton
+from app.science.skeleton.joints import JOINT_INDEX
+from app.science.skeleton.model import Skeleton
 
 _STANDING_SHARE = 0.1
 # Beyond this the frames show no flat foot (dancing on the toes), and nothing is corrected.

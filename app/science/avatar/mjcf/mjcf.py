@@ -11,7 +11,7 @@ beside each other: angle, speed, angle, speed, in the order of `driven_axes`. A 
 neither hinge nor motor; the part is turned by the locked angle.
 
 A part's convex piece, where it has one, is a mesh beside its simple shapes; what a part does not
-collide with has empty masks (`colliders`).
+collide with has empty masks (`Colliders`).
 
 How the hips follow the participant is told in `model_options`.
 

@@ -3,7 +3,7 @@
 1. Every free axis is let oscillate by a relay, alone (`experiments`).
 2. A rule makes gains of it (`heuristics`).
 3. The whole body is given all the gains, and each axis must jump (`evaluation`).
-4. What `verdicts` objects to is tried again with a weaker relay, which means lower gains. After the
+4. What `objection` finds is tried again with a weaker relay, which means lower gains. After the
    last attempt the best gains are kept and the axis is flagged with the reason.
 5. If anything changed since an axis was tried, the whole body is tried once more.
 

@@ -7,7 +7,7 @@ from app.science.avatar.body.parts import AXES, AXIS_NAMES, PART_NAMES
 from app.science.avatar.configuration.limits import ANATOMIC
 from app.science.avatar.targets.targets import TargetAngles, Targets
 from app.science.rotations import FloatArray, from_rotation_vector, multiply, normalise
-from app.science.skeleton.model import JOINT_COUNT, JOINT_INDEX
+from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX
 
 FRAMES = 1300
 """More than two blocks of what is followed in a row."""

@@ -17,7 +17,7 @@ from app.science.avatar.targets.targets import TargetAngles, joint_rotations
 from app.science.joint_error.errors import ERROR_JOINTS, joint_error_summary
 from app.science.joint_error.recorded import Asked, Recorded, recorded_errors
 from app.science.rotations import FloatArray, from_rotation_vector, geodesic_angle, identity
-from app.science.skeleton.model import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES
+from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES
 from tests.science.avatar.captured import WALK, captured
 from tests.science.avatar.simulated import follow, model
 from tests.science.avatar.targets.test_batch import FRAMES, wild_movement

@@ -1,0 +1,40 @@
+"""The 22 body joints that every part of the product speaks about, in their one fixed order.
+
+Names and hierarchy are those of Unity's HumanBodyBones without fingers, eyes and jaw. A parent
+always comes before its children, so one pass in order is forward kinematics. The pages' tests read
+this file.
+"""
+
+_PARENT_OF: dict[str, str | None] = {
+    "Hips": None,
+    "Spine": "Hips",
+    "Chest": "Spine",
+    "UpperChest": "Chest",
+    "Neck": "UpperChest",
+    "Head": "Neck",
+    "LeftShoulder": "UpperChest",
+    "LeftUpperArm": "LeftShoulder",
+    "LeftLowerArm": "LeftUpperArm",
+    "LeftHand": "LeftLowerArm",
+    "RightShoulder": "UpperChest",
+    "RightUpperArm": "RightShoulder",
+    "RightLowerArm": "RightUpperArm",
+    "RightHand": "RightLowerArm",
+    "LeftUpperLeg": "Hips",
+    "LeftLowerLeg": "LeftUpperLeg",
+    "LeftFoot": "LeftLowerLeg",
+    "LeftToes": "LeftFoot",
+    "RightUpperLeg": "Hips",
+    "RightLowerLeg": "RightUpperLeg",
+    "RightFoot": "RightLowerLeg",
+    "RightToes": "RightFoot",
+}
+
+JOINT_NAMES: tuple[str, ...] = tuple(_PARENT_OF)
+JOINT_COUNT = len(JOINT_NAMES)
+JOINT_INDEX: dict[str, int] = {name: index for index, name in enumerate(JOINT_NAMES)}
+
+#: Index of each joint's parent; -1 for the hips.
+PARENTS: tuple[int, ...] = tuple(
+    -1 if parent is None else JOINT_INDEX[parent] for parent in _PARENT_OF.values()
+)
