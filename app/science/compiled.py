@@ -12,7 +12,7 @@ compiler (half a second), so kernels are kept in modules of their own, imported 
 """
 
 from collections.abc import Callable
-from typing import TypeVar
+from typing import TypeVar, cast
 
 _F = TypeVar("_F", bound=Callable[..., object])
 
@@ -27,11 +27,14 @@ def compiled_fused(function: _F) -> _F:
     return _cached(function, fastmath={"contract"})
 
 
-def _cached(function: _F, **flags: object) -> _F:
+def _cached(function: _F, *, nogil: bool = False, fastmath: bool | set[str] = False) -> _F:
     import numba
 
+    def made(*, cache: bool) -> _F:
+        compile_ = numba.njit(cache=cache, nogil=nogil, error_model="numpy", fastmath=fastmath)
+        return cast("_F", compile_(function))
+
     try:
-        made: _F = numba.njit(cache=True, error_model="numpy", **flags)(function)
+        return made(cache=True)
     except RuntimeError:  # there is no folder that this user may write to
-        made = numba.njit(cache=False, error_model="numpy", **flags)(function)
-    return made
+        return made(cache=False)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.science import rotations as rot
-from app.science.avatar import DelayBuffer, DelayError, delayed_pose
+from app.science.delay import DelayBuffer, DelayError, delayed_pose
 
 
 @pytest.fixture
