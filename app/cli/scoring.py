@@ -4,7 +4,7 @@ from pathlib import Path
 
 from app.protocol import load_instrument
 from app.resources import study_configs_dir
-from app.science.instruments.csv_table import score_csv
+from app.science.instruments.table import score_csv
 
 
 def score_file(answers: Path, instrument_key: str) -> str:

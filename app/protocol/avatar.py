@@ -17,21 +17,18 @@ from app.protocol.common import Strict, canonical_json, sha256_of
 from app.protocol.errors import ConfigError, ConfigProblem
 from app.protocol.explanations import explain, locate
 from app.protocol.source import Path, Source, read_source
-from app.science.avatar.body.deleva import Population
-from app.science.avatar.body.parts import AXIS_NAMES, PART_NAMES
-from app.science.avatar.configuration.axis_settings import (
+from app.science.avatar.body import AXIS_NAMES, PART_NAMES, Population
+from app.science.avatar.configuration import (
     AvatarProblem,
     AvatarSettingsError,
     AxisSettings,
-    degrees_of,
-)
-from app.science.avatar.configuration.configuration import (
     ColliderKind,
     Configuration,
     Hips,
     TargetSpace,
+    degrees_of,
+    piece_problems,
 )
-from app.science.avatar.configuration.configuration_checks import piece_problems
 from app.science.instruments import DefinitionProblem
 
 FORMAT: Final = "reembody-avatar"

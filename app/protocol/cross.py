@@ -18,8 +18,7 @@ from app.protocol.safety import practice_problems, safety_problems
 from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
 from app.protocol.study import SCREEN_TEXTS
-from app.science.instruments import DefinitionProblem, Instrument
-from app.science.instruments.texts import text_problems
+from app.science.instruments import DefinitionProblem, Instrument, text_problems
 
 _AVATAR_KEY = "avatar_configuration"
 _AVATAR_AT: Path = (_AVATAR_KEY,)

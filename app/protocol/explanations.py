@@ -9,8 +9,7 @@ from pydantic_core import ErrorDetails
 from app.protocol.errors import ConfigProblem
 from app.protocol.schema import Schema, schema_at
 from app.protocol.source import Path, Plain, Source, path_text
-from app.science.instruments import DefinitionProblem, InstrumentDefinitionError
-from app.science.instruments.errors import shortened
+from app.science.instruments import DefinitionProblem, InstrumentDefinitionError, shortened
 
 UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 """What pydantic calls a key that a model, or a dataclass, does not have."""

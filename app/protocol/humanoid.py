@@ -5,10 +5,8 @@ from typing import Annotated, Literal
 from pydantic import Field, TypeAdapter
 
 from app.protocol.common import Strict, canonical_json
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.body.hulls import Piece
-from app.science.avatar.body.parts import PART_NAMES
-from app.science.rotations.scalars import Vector
+from app.science.avatar.body import PART_NAMES, Figure, Piece
+from app.science.rotations import Vector
 
 
 class PieceFile(Strict):

@@ -22,7 +22,7 @@ from app.protocol.procedure import (
     TaskPhase,
 )
 from app.protocol.study import StudyProtocol
-from app.science.tasks.layout import Limb
+from app.science.tasks import Limb
 
 DEFAULT_TITLES: dict[str, dict[str, str]] = {
     "consent": {"en": "Consent", "de": "Einwilligung"},

@@ -10,7 +10,7 @@ from pydantic import AfterValidator, Field
 
 from app.protocol.common import Duration, Key, Pause, Strict, Text, refusal
 from app.protocol.conditions import LatencyMs
-from app.science.tasks.layout import Limb
+from app.science.tasks import Limb
 
 
 class Statement(Strict):

@@ -10,7 +10,7 @@ from app.protocol.preregistration import Preregistration
 from app.protocol.procedure import FormStep, Procedure
 from app.protocol.safety import Safety
 from app.protocol.tasks import Appearance, Tasks
-from app.science.skeleton.joints import JOINT_NAMES
+from app.science.skeleton import JOINT_NAMES
 
 SCREEN_TEXTS = ("waiting", "freeze", "walk_back")
 """Texts that every study needs, because devices show them outside of any step."""

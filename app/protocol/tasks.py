@@ -11,7 +11,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, StringConstraints, model_validator
 
 from app.protocol.common import Key, Length, Point, Strict, Text, refusal
-from app.science.tasks.layout import (
+from app.science.tasks import (
     BlockSpec,
     BoxSpec,
     Direction,

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from app.rehearsal.body import Person
-from app.science.simulation.answers import Aspect, SimulatedItem, simulated_answers
+from app.science.simulation import Aspect, SimulatedItem, simulated_answers
 
 OPEN_PROMPT = "Simulated answer of a rehearsal."
 SIGNATURE = "M80 150L120 60L160 150M100 115L145 115M200 150L200 60L260 150L260 60"

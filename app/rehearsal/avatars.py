@@ -10,12 +10,10 @@ from numpy.typing import NDArray
 
 from app.client import Json, call_again
 from app.protocol.avatar import AvatarFile, configuration_of
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.simulation.delay import DelayBuffer
-from app.science.avatar.simulation.following import Follower
-from app.science.avatar.simulation.simulation import PhysicsAvatar
-from app.science.avatar.simulation.touches import SurfaceTouches
-from app.science.avatar.targets.targets import TargetAngles
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.simulation import Follower, PhysicsAvatar, SurfaceTouches
+from app.science.delay import DelayBuffer
+from app.science.avatar.targets import TargetAngles
 from app.science.skeleton import (
     Pose,
     Skeleton,

@@ -6,12 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from app.adapters.captures import CaptureError, read_capture_file
-from app.science.retargeting.in_place import movement_in_place
-from app.science.retargeting.joint_map import propose_joint_map
+from app.science.retargeting import movement_in_place, propose_joint_map
 from app.science.rig import RigError, RigMotion
 from app.science.simulation import SimulatedParticipant, idle_movement
-from app.science.skeleton import Skeleton, SkeletonError, build_skeleton
-from app.science.skeleton.movement import Movement, loop, resample
+from app.science.skeleton import Movement, Skeleton, SkeletonError, build_skeleton, loop, resample
 
 FRAME_RATE_HZ = 90.0
 CROSSFADE_S, SHORTEST_CROSSFADE_S = 0.4, 0.1

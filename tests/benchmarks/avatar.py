@@ -23,10 +23,9 @@ from functools import cache
 import mujoco
 import numpy as np
 
-from app.science.avatar.body.parts import AXIS_NAMES
-from app.science.avatar.mjcf.model import AvatarModel
-from app.science.avatar.simulation.following import Follower
-from app.science.avatar.simulation.simulation import PhysicsAvatar
+from app.science.avatar.body import AXIS_NAMES
+from app.science.avatar.mjcf import AvatarModel
+from app.science.avatar.simulation import Follower, PhysicsAvatar
 from app.science.rotations import FloatArray, from_rotation_vector
 from app.science.skeleton import JOINT_COUNT
 from tests.benchmarks.clips import shared_file

@@ -18,9 +18,8 @@ import mujoco
 import numpy as np
 
 from app.rehearsal.body import captured_movement
-from app.science.avatar.body.parts import PARENT_OF
-from app.science.avatar.ik import GOAL_PARTS, Goals, InverseKinematics
-from app.science.avatar.ik.chain import Chain
+from app.science.avatar.body import PARENT_OF
+from app.science.avatar.ik import GOAL_PARTS, Chain, Goals, InverseKinematics
 from app.science.rotations import FloatArray, conjugate, geodesic_angle, multiply
 from app.science.skeleton import (
     JOINT_INDEX,

@@ -17,7 +17,7 @@ from typing import Any, get_args
 import mujoco
 import numpy as np
 
-from app.science.avatar.configuration.configuration import Hips
+from app.science.avatar.configuration import Hips
 from app.science.avatar.ik import InverseKinematics
 from tests.benchmarks.report import Figure, Report
 from tests.science.avatar.captured import RATE_HZ

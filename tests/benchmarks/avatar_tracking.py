@@ -19,15 +19,12 @@ from functools import cache
 
 import numpy as np
 
-from app.science.achieved_latency import achieved_latency
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.defaults import default_configuration
-from app.science.avatar.mjcf.model import avatar_model
-from app.science.avatar.mjcf.scene import FLOOR_ONLY, Scene
-from app.science.avatar.simulation.simulation import MAX_SPEED_RAD_S
-from app.science.avatar.targets.targets import TargetAngles, joint_rotations
-from app.science.avatar.tuning import Spread, follow_capture, track, tune
-from app.science.avatar.tuning.tracking import NOTHING
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.mjcf import FLOOR_ONLY, Scene, avatar_model, default_configuration
+from app.science.avatar.simulation import MAX_SPEED_RAD_S
+from app.science.avatar.targets import TargetAngles, joint_rotations
+from app.science.avatar.tuning import NOTHING, Spread, follow_capture, track, tune
+from app.science.latency import achieved_latency
 from app.science.skeleton import Movement
 from tests.benchmarks.clips import CLIPS, LONG_WALK, movement, movements
 from tests.benchmarks.report import Figure, Report

@@ -1,6 +1,6 @@
 """How often every test of the product rejects where nothing is, and how often intervals hold.
 
-On simulated data sets of the study's design (`app.science.statistics.error_rates`): 12, 18 and 24
+On simulated data sets of the study's design (`tests.benchmarks.null_data`): 12, 18 and 24
 participants in equal parts; participants differ in level, or also in how they react to latency.
 2,004 sets of the first kind and 504 of the second, thrice as many for what is quick to compute.
 Every set has its own seed, so the figures are the same with any number of processes. Two processes,
@@ -25,14 +25,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.science.statistics.error_rates import NullDesign, null_data, population_alpha
-from app.science.statistics.error_rates_table import (
-    LEAST_COVERAGE,
-    LEVEL,
-    MOST_REJECTIONS,
-    ErrorRate,
-    ErrorRates,
-)
+from app.science.statistics import LEAST_COVERAGE, LEVEL, MOST_REJECTIONS, ErrorRate, ErrorRates
+from tests.benchmarks.null_data import NullDesign, null_data, population_alpha
 from tests.benchmarks.null_tests import ABOUT, GROUPS
 from tests.benchmarks.report import Figure, Report
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from app.science.achieved_latency import StreamPair, latency_of_runs
+from app.science.latency import StreamPair, latency_of_runs
 from app.science.rotations import FloatArray
-from app.science.skeleton.movement import continuous
+from app.science.skeleton import continuous
 from tests.benchmarks.report import Figure, Report
 from tests.science.moving_bodies import (
     Flaws,

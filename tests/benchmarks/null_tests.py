@@ -10,22 +10,31 @@ from itertools import product
 
 import numpy as np
 
-from app.science.statistics.aligned_contrasts import aligned_contrasts
-from app.science.statistics.aligned_ranks import aligned_ranks_within
-from app.science.statistics.bootstrap import bootstrap_interval, mean_of, median_of
-from app.science.statistics.carry_over import carry_over
-from app.science.statistics.cronbach import cronbach_alpha
-from app.science.statistics.cumulative_tests import cumulative_term_tests
-from app.science.statistics.error_rates import LATENCIES_MS, LIMBS, NullData
-from app.science.statistics.error_rates_table import LEVEL, Kind
-from app.science.statistics.friedman import friedman
-from app.science.statistics.mixed_design import build_design
-from app.science.statistics.mixed_model import fit_mixed_model
-from app.science.statistics.mixed_terms import covariate, factor
-from app.science.statistics.mixed_tests import contrasts, term_test
-from app.science.statistics.page import page_trend
-from app.science.statistics.pairwise import pairwise
-from app.science.statistics.rm_anova import rm_anova
+from app.science.statistics import (
+    LEVEL,
+    Kind,
+    aligned_contrasts,
+    aligned_ranks_within,
+    bootstrap_interval,
+    cronbach_alpha,
+    friedman,
+    mean_of,
+    median_of,
+    page_trend,
+    pairwise,
+    rm_anova,
+)
+from app.science.statistics.mixed import (
+    build_design,
+    carry_over,
+    contrasts,
+    covariate,
+    cumulative_term_tests,
+    factor,
+    fit_mixed_model,
+    term_test,
+)
+from tests.benchmarks.null_data import LATENCIES_MS, LIMBS, NullData
 
 Outcomes = Iterator[tuple[str, bool | None]]
 NAMES = tuple(str(one) for one in LATENCIES_MS)

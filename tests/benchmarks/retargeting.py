@@ -18,8 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.adapters.bvh import read_bvh
-from app.science.retargeting.joint_map import propose_joint_map
-from app.science.retargeting.transfer import Retargeter
+from app.science.retargeting import Retargeter, propose_joint_map
 from app.science.rig import Rig, RigMotion
 from app.science.rotations import FloatArray, geodesic_angle, identity
 from tests.benchmarks import retargeting_peers as peers

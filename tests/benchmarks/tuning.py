@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from functools import cache
 from statistics import median
 
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.mjcf import default_configuration
 from app.science.avatar.tuning import AxisTuning, TuningOptions, assess, track, tune
 from tests.benchmarks.clips import movements
 from tests.benchmarks.report import Figure, Report

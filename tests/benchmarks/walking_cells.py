@@ -19,19 +19,18 @@ from functools import cache
 import numpy as np
 
 from app.adapters.walks.scene_file import load_shipped
-from app.science.walking.evaluation.evaluation import Evaluation, evaluate, pooled
-from app.science.walking.evaluation.populations import POPULATIONS, Population
-from app.science.walking.evaluation.synthetic_walks import (
+from app.science.walking.evaluation import Evaluation, evaluate, pooled
+from app.science.walking.following import SteeringFollower
+from app.science.walking.maps import MapMaker, WalkDatabase, database_of, maps_of
+from app.science.walking.models import FitOptions, FittedWalking, fitted, person_folds
+from app.science.walking.records import LENGTH, STATURE, TURNING, PlannedWalk
+from app.science.walking.synthetic import (
+    POPULATIONS,
+    Population,
     Sample,
     laboratory_scenes,
     synthetic_walks,
 )
-from app.science.walking.following.following import SteeringFollower
-from app.science.walking.maps.database import WalkDatabase, database_of
-from app.science.walking.maps.maps import MapMaker, maps_of
-from app.science.walking.models.fitting import FitOptions, FittedWalking, fitted
-from app.science.walking.models.reading_choice import person_folds
-from app.science.walking.records.model import LENGTH, STATURE, TURNING, PlannedWalk
 
 NAMES = (LENGTH, TURNING, STATURE)
 PEOPLE, FOLDS, OTHERS, REPETITIONS = 24, 4, 10, 2

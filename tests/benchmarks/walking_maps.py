@@ -14,16 +14,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.following.following import SteeringFollower
-from app.science.walking.following.metrics import EuclideanMetric
-from app.science.walking.maps.maps import MapMaker, maps_of
-from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.planning.visibility import VisibilityPlanner
-from app.science.walking.recording.walks import planned_walk
-from app.science.walking.records.model import PlannedWalk
-from app.science.walking.scene.scene import SceneError
+from app.science.walking.maps import MapMaker, maps_of
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import planned_walk
+from app.science.walking.records import PlannedWalk
+from app.science.walking.scene import SceneError
 from tests.benchmarks.report import Figure
+from tests.science.walking.plain_agents import PlainFollower, PlainMetric
 from tests.science.walking.random_scenes import random_scene
+from tests.science.walking.visibility import VisibilityPlanner
 from tests.science.walking.walkers import population
 
 WALKS, SUBJECTS, SCENES, CHECKED = 1848, 30, 1000, 8
@@ -94,7 +93,7 @@ def _one_map_ms(maker: MapMaker, entries: list[PlannedWalk]) -> float:
 
 
 def _apart(entries: list[PlannedWalk]) -> float:
-    plain = MapMaker(follower=SteeringFollower(backend="numpy"), metric=EuclideanMetric("numpy"))
+    plain = MapMaker(follower=PlainFollower(), metric=PlainMetric())
     apart = 0.0
     for entry in entries[:: len(entries) // CHECKED]:
         ours, theirs = MapMaker().map_of(entry), plain.map_of(entry)

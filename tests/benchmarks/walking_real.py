@@ -21,18 +21,20 @@ import numpy as np
 
 from app.adapters.captures.capture import Reading
 from app.adapters.captures.reader import read_capture_file
-from app.science.walking.evaluation.evaluation import Evaluation, evaluate
-from app.science.walking.evaluation.synthetic_walks import straight_path
-from app.science.walking.maps.maps import MapMaker
-from app.science.walking.models.fitting import FitOptions, FittedWalking, fitted
-from app.science.walking.models.prediction import Predictor
-from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.recording.capture_tracks import track_of_motion
-from app.science.walking.recording.segmentation import walks_of
-from app.science.walking.recording.tracks import Walker
-from app.science.walking.recording.walks import dependencies_of, planned_walk
-from app.science.walking.records.model import LENGTH, TURNING, PlannedWalk, Walk
-from app.science.walking.scene.scene import open_scene
+from app.science.walking.evaluation import Evaluation, evaluate
+from app.science.walking.maps import MapMaker
+from app.science.walking.models import FitOptions, FittedWalking, Predictor, fitted
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import (
+    Walker,
+    dependencies_of,
+    planned_walk,
+    track_of_motion,
+    walks_of,
+)
+from app.science.walking.records import LENGTH, TURNING, PlannedWalk, Walk
+from app.science.walking.scene import open_scene
+from app.science.walking.synthetic import straight_path
 from tests.benchmarks.walking_cells import FOLLOWER, made
 from tests.conftest import SHARED_DATA_VARIABLE
 from tests.support.short_walks import DISTANCES_M, read_foot_walk, read_short_walk_table

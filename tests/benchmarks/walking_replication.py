@@ -10,26 +10,29 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from app.science.walking.evaluation.evaluation import Evaluation, evaluate
-from app.science.walking.evaluation.leave_one_out import (
+from app.science.walking.evaluation import (
+    Evaluation,
     LeftOut,
+    evaluate,
     neighbours_left_out,
     nodes_left_out,
     people_left_out,
 )
-from app.science.walking.evaluation.populations import POPULATIONS
-from app.science.walking.evaluation.synthetic_walks import Sample, synthetic_walks
-from app.science.walking.maps.maps import MapMaker
-from app.science.walking.maps.suitability import PAPER
-from app.science.walking.models.crps import iqr
-from app.science.walking.models.fitting import FitOptions, FittedWalking, fitted, space_of
-from app.science.walking.models.sampling import density_of
-from app.science.walking.models.steering_models import ProbabilisticModel
-from app.science.walking.models.submodels import holding, without_dependency
-from app.science.walking.records.model import LENGTH, STATURE
-from app.science.walking.records.parameters import PAPER_GRID, PAPER_PARAMETERS, ParameterGrid
-from app.science.walking.scene.laboratory import straight_scene
+from app.science.walking.maps import PAPER, MapMaker
+from app.science.walking.models import (
+    FitOptions,
+    FittedWalking,
+    ProbabilisticModel,
+    density_of,
+    fitted,
+    iqr,
+    space_of,
+)
+from app.science.walking.records import LENGTH, PAPER_GRID, PAPER_PARAMETERS, STATURE, ParameterGrid
+from app.science.walking.scene import straight_scene
+from app.science.walking.synthetic import POPULATIONS, Sample, synthetic_walks
 from tests.benchmarks.walking_cells import FOLLOWER, Studied, made
+from tests.science.walking.submodels import holding, without_dependency
 
 NEIGHBOURS = (10, 20, 50, 100, 200, 500)
 DISTANCES_M, LONG_PEOPLE, LONG_TIMES = (10.0, 25.0, 50.0), 16, 4

@@ -4,9 +4,9 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from app.science.walking.evaluation.evaluation import Evaluation
-from app.science.walking.maps.suitability import SuitabilityOptions
-from app.science.walking.models.fitting import FittedWalking
+from app.science.walking.evaluation import Evaluation
+from app.science.walking.maps import SuitabilityOptions
+from app.science.walking.models import FittedWalking
 from tests.benchmarks.walking_cells import OTHERS, PEOPLE, REPETITIONS, Studied
 from tests.benchmarks.walking_paper import (
     PAPER_LONG,

@@ -15,11 +15,9 @@ from scipy.interpolate import Rbf
 from sklearn.neighbors import KDTree
 
 from app.science.rotations import FloatArray
-from app.science.walking.maps.blending import BlendingSpace, blending_space
-from app.science.walking.maps.densifying import MAP_FLOATS
-from app.science.walking.models.sampling import HEADROOM, MixtureSampler, density_of
-from app.science.walking.records.dependencies import scaling_of
-from app.science.walking.records.parameters import PAPER_GRID
+from app.science.walking.maps import MAP_FLOATS, BlendingSpace, blending_space
+from app.science.walking.models import HEADROOM, MixtureSampler, density_of
+from app.science.walking.records import PAPER_GRID, scaling_of
 from tests.benchmarks.report import Figure
 
 WALKS, PEOPLE, QUESTIONS, LITERAL, CACHED = 1848, 30, 3000, 40, 20_000

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from app.science.walking.evaluation.evaluation import Evaluation
+from app.science.walking.evaluation import Evaluation
 from tests.benchmarks.walking_cells import Studied
 from tests.benchmarks.walking_replication import Replication
 

@@ -10,7 +10,7 @@ import pytest
 from app.adapters.bvh import read_bvh
 from app.adapters.captures.bvh_export import to_bvh
 from app.cli.retarget.inputs import ground_along
-from app.science.retargeting.reference_avatars import reference_avatar
+from app.science.retargeting import reference_avatar
 from app.science.rig import Rig, RigMotion
 from tests.cli.invoked import Invoked
 from tests.science.retargeting.bodies import scaled

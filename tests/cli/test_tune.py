@@ -12,8 +12,8 @@ from app.features.movement.avatar.service import avatar_by_key, create_avatar, n
 from app.features.movement.humanoids.tasks import measured
 from app.models import CaptureContent, HumanoidRow
 from app.protocol.avatar import file_of, load_avatar
-from app.science.avatar.body.parts import AXIS_NAMES
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.body import AXIS_NAMES
+from app.science.avatar.mjcf import default_configuration
 from tests.cli.invoked import Invoked
 from tests.science.avatar.figures import HASH, figure
 

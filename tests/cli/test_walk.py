@@ -10,8 +10,7 @@ from typer.testing import CliRunner, Result
 
 from app.cli.commands import app
 from app.cli.errors import UNUSABLE
-from app.science.walking.evaluation.populations import POPULATIONS, person_of, walk_along
-from app.science.walking.evaluation.synthetic_walks import straight_path
+from app.science.walking.synthetic import POPULATIONS, person_of, straight_path, walk_along
 
 OPEN = """
 key: hall

@@ -24,8 +24,7 @@ from app.models import (
 )
 from app.protocol.plan import Step
 from app.science.instruments import Instrument, item_order, score_answers
-from app.science.joint_error import ERROR_AXES, ERROR_JOINTS
-from app.science.joint_error_course import COURSE_BIN_S
+from app.science.joint_error import COURSE_BIN_S, ERROR_AXES, ERROR_JOINTS
 from tests.features.clock_filler import steady_probes, store_probes
 
 NOW = datetime(2026, 3, 2, 9, 30, tzinfo=UTC)

@@ -9,9 +9,7 @@ from hypothesis import given, settings
 
 from app.protocol import ConfigError
 from app.protocol.avatar import avatar_text, load_avatar, loaded, parse_avatar_json
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.configuration.editing import lock, with_axis
+from app.science.avatar.configuration import AxisSettings, Configuration, lock, with_axis
 from tests.science.avatar.configurations import configurations, whole_body
 
 BODY = lock(whole_body(), "head", {"HeadX": math.radians(10.0)})

@@ -3,7 +3,7 @@
 import pytest
 
 from app.protocol import PlanError, compile_plan
-from app.science.tasks.layout import Limb
+from app.science.tasks import Limb
 from tests.protocol.helpers import edited, loaded, problems, study
 
 STUDY = study()

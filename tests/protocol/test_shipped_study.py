@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.science.tasks.layout import Side, SurfaceKind
+from app.science.tasks import Side, SurfaceKind
 from tests.protocol.helpers import instruments, study
 
 STUDY = study()

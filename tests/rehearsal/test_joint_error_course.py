@@ -6,7 +6,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.models import JointErrorCourseRow, JointErrorRow, Phase
-from app.science.joint_error_course import COURSE_BIN_S
+from app.science.joint_error import COURSE_BIN_S
 from tests.rehearsal.performed import TASK_PHASES, Performed
 
 RATE_HZ = 90.0

@@ -19,9 +19,7 @@ from app.rehearsal.avatars import PhysicsBody
 from app.rehearsal.body import make_person
 from app.rehearsal.headset import FrameClock, Headset
 from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, physics_variant, rehearse
-from app.science.avatar.mjcf.defaults import default_configuration
-from app.science.avatar.mjcf.model import avatar_model
-from app.science.avatar.mjcf.scene import scene_of
+from app.science.avatar.mjcf import avatar_model, default_configuration, scene_of
 from app.science.rotations import identity
 from app.science.skeleton import Pose, build_skeleton
 from app.wire.messages import CompletionReport, ContactReport

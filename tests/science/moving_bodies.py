@@ -8,8 +8,8 @@ import numpy as np
 
 from app.rehearsal.body import captured_movement
 from app.science import rotations as rot
-from app.science.achieved_latency import StreamPair
-from app.science.avatar.simulation.delay import delayed_pose
+from app.science.delay import delayed_pose
+from app.science.latency.achieved_latency import StreamPair
 from app.science.rotations import FloatArray
 from app.science.skeleton import build_skeleton
 from app.science.skeleton.movement import loop, resample

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import PARENT_OF, PART_NAMES
+from app.science.avatar.body import PARENT_OF, PART_NAMES
 from app.science.rotations import from_rotation_vector, rotate
 from tests.support.humanoid_model import Array, Model, is_arm, places, skin_of
 

@@ -11,8 +11,7 @@ from typing import Any, Literal
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import FINGER_PARTS, PART_NAMES
-from app.science.avatar.body.proportions import proportions
+from app.science.avatar.body import FINGER_PARTS, PART_NAMES, proportions
 
 Array = npt.NDArray[np.float64]
 STATURE_M = 1.7

@@ -21,7 +21,7 @@ from scipy.io import loadmat
 
 from app.adapters.captures.capture import CaptureError
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import Walk
+from app.science.walking.records import Walk
 
 RATE_HZ = 128.0
 DISTANCES_M = (1.1, 1.7, 2.2, 2.8, 3.3, 3.8, 5.1, 7.0, 9.1, 12.7)

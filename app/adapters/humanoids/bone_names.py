@@ -17,9 +17,8 @@ from dataclasses import replace
 
 from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document
-from app.science.avatar.body.parts import FINGERS, PART_NAMES, SEGMENTS, SIDES
-from app.science.retargeting.joint_chains import is_below
-from app.science.retargeting.joint_map import propose_joint_map
+from app.science.avatar.body import FINGERS, PART_NAMES, SEGMENTS, SIDES
+from app.science.retargeting import is_below, propose_joint_map
 from app.science.rig import Rig
 
 _WORDS = {

@@ -12,8 +12,15 @@ import numpy.typing as npt
 from app.adapters.humanoids.container import HumanoidFileError
 from app.adapters.humanoids.document import Document, Node
 from app.science.rig import Rig
-from app.science.rotations import FloatArray, conjugate, multiply, normalise, rotate
-from app.science.rotations.scalars import Vector, q_from_axes
+from app.science.rotations import (
+    FloatArray,
+    Vector,
+    conjugate,
+    multiply,
+    normalise,
+    q_from_axes,
+    rotate,
+)
 
 _FARTHEST = 1e9
 _ROOT = "(file)"

@@ -16,8 +16,7 @@ from app.adapters.humanoids.container import HumanoidFileError, open_container
 from app.adapters.humanoids.document import Document, read_document
 from app.adapters.humanoids.nodes import Tree, rig_of, tree_of
 from app.adapters.humanoids.skin import read_skin
-from app.science.avatar.body.humanoid import Humanoid, HumanoidError
-from app.science.avatar.body.humanoid_pose import RiggedMesh, humanoid_of
+from app.science.avatar.body import Humanoid, HumanoidError, RiggedMesh, humanoid_of
 from app.science.rig import RigError
 
 MapSource = Literal["vrm", "names"]

@@ -16,14 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from app.science.walking.following.following import FollowingRules
-from app.science.walking.maps.database import WalkDatabase
-from app.science.walking.maps.suitability import SuitabilityOptions
-from app.science.walking.models.annealing import StaticFit
-from app.science.walking.models.fitting import FitOptions, FittedWalking, restored
-from app.science.walking.models.reading_choice import ReadingScore
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.parameters import ParameterGrid, SteeringParameter
+from app.science.walking.following import FollowingRules
+from app.science.walking.maps import SuitabilityOptions, WalkDatabase
+from app.science.walking.models import FitOptions, FittedWalking, ReadingScore, StaticFit, restored
+from app.science.walking.records import ParameterGrid, SteeringParameter, WalkingError
 
 FORMAT, VERSION = "reembody-walking-model", 1
 MOST_BYTES = 2_000_000_000

@@ -22,7 +22,7 @@ from pydantic import ValidationError
 
 from app.adapters.walks.scene_schema import SceneFile, point_of
 from app.protocol import ConfigError, ConfigProblem, Path, Source, explain, path_text, read_source
-from app.science.walking.scene.scene import Obstacle, Scene, SceneError, ScenePath
+from app.science.walking.scene import Obstacle, Scene, SceneError, ScenePath
 
 SHIPPED = FilePath(__file__).with_name("scenes")
 """The workplaces of the paper, as scene files."""

@@ -6,9 +6,8 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.protocols import Point
-from app.science.walking.scene.scene import CLEARANCE_M, Obstacle
-from app.science.walking.scene.shapes import box_corners, disc_corners, wall_corners
+from app.science.walking.records import Point
+from app.science.walking.scene import CLEARANCE_M, Obstacle, box_corners, disc_corners, wall_corners
 
 FARTHEST_M = 1000.0
 MOST_OBSTACLES, MOST_PLACES, MOST_PATHS, MOST_CORNERS = 200, 200, 500, 64

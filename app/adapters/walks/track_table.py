@@ -18,7 +18,7 @@ import numpy as np
 
 from app.adapters.captures import CaptureError, text_lines
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import Kind, Track, WalkingError
+from app.science.walking.records import Kind, Track, WalkingError
 
 MOST_ROWS, MOST_PEOPLE = 5_000_000, 20_000
 LONGEST_GAP_S = 0.5

@@ -11,19 +11,20 @@ from app.science.statistics import (
     AgainstReference,
     Cells,
     Comparison,
+    FloatArray,
     Friedman,
     Interval,
     PageTrend,
     StatisticsError,
     against_reference,
     bootstrap_interval,
+    complete_rows,
     friedman,
     mean_of,
     page_trend,
     pairwise,
+    place_of,
 )
-from app.science.statistics.arrays import FloatArray, complete_rows
-from app.science.statistics.levels import place_of
 
 T = TypeVar("T")
 _MOST_FACTORS = 2

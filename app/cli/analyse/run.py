@@ -10,6 +10,7 @@ from app.cli.analyse.inputs import read_tidy
 from app.science.statistics import (
     AlignedRanks,
     Cells,
+    Complete,
     ConstantData,
     Interval,
     RmAnova,
@@ -17,10 +18,9 @@ from app.science.statistics import (
     TooFewData,
     aligned_ranks_within,
     cells_of,
+    complete_rows,
     rm_anova,
 )
-from app.science.statistics.arrays import complete_rows
-from app.science.statistics.tidy import Complete
 
 _MOST_FACTORS = 2
 _SHOWN = 8

@@ -67,7 +67,7 @@ def _check(what: str, *, as_json: bool) -> None:
     if what != "table1":
         fail(f"--check {what!r}: table1 is valid")
     from app.cli.retarget import output as texts
-    from app.science.retargeting.table1 import check_table1
+    from app.science.retargeting import check_table1
 
     rows = check_table1()
     print(json.dumps(texts.table1_json(rows)) if as_json else texts.table1_text(rows))

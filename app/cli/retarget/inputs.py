@@ -19,12 +19,15 @@ from pathlib import Path
 from typing import Literal
 
 from app.adapters.captures import Capture, CaptureError, Reading, read_capture_file
-from app.science.retargeting.ground import Ground, Ramp, Steps
-from app.science.retargeting.joint_map import JointMap, propose_joint_map
-from app.science.retargeting.reference_avatars import (
+from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
+    Ground,
+    JointMap,
+    Ramp,
+    Steps,
     named_avatar,
     named_stature_m,
+    propose_joint_map,
 )
 from app.science.rig import Rig, RigMotion
 from app.science.rotations import FloatArray

@@ -1,9 +1,7 @@
 """What `reembody retarget` says: JSON for scripts, a table for people."""
 
 from app.cli.retarget.run import Done
-from app.science.retargeting.gait import Walk
-from app.science.retargeting.pipeline import Walks
-from app.science.retargeting.table1 import TOLERANCE_DEG, Table1Row
+from app.science.retargeting import TOLERANCE_DEG, Table1Row, Walk, Walks
 
 _NONE = "-"
 

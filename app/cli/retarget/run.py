@@ -14,10 +14,14 @@ from app.cli.retarget.inputs import (
     read_clip,
     reading_of,
 )
-from app.science.retargeting.ground import Flat, Ground
-from app.science.retargeting.joint_map import check_joint_map
-from app.science.retargeting.pipeline import Retargeted, retarget_motion
-from app.science.retargeting.transfer import Retargeter
+from app.science.retargeting import (
+    Flat,
+    Ground,
+    Retargeted,
+    Retargeter,
+    check_joint_map,
+    retarget_motion,
+)
 from app.science.rig import RigMotion
 
 _WRITTEN = (".bvh", ".csv")

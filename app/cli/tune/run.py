@@ -11,9 +11,9 @@ from pathlib import Path
 
 from app.cli.tune.storage import check_key, save_tuned, stored_avatar
 from app.protocol.avatar import avatar_text
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.body import Figure
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.mjcf import default_configuration
 from app.science.avatar.tuning import (
     Assessment,
     Followed,

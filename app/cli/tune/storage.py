@@ -21,9 +21,8 @@ from app.features.movement.humanoids.service import figure_by_hash
 from app.features.people.audit.copies import COMMAND_LINE
 from app.models import AvatarVersion
 from app.protocol.avatar import file_of
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.configuration.editing import without_parts
+from app.science.avatar.body import Figure
+from app.science.avatar.configuration import Configuration, without_parts
 from app.science.avatar.tuning import Followed, TuningReport
 
 _KEY: TypeAdapter[str] = TypeAdapter(AvatarKey)

@@ -11,14 +11,10 @@ from app.adapters.walks import load_scene, load_shipped, shipped_scenes
 from app.adapters.walks.track_table import TrackReading, read_tracks
 from app.protocol import ConfigError
 from app.science.rig import RigError
-from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.recording.capture_tracks import track_of_motion
-from app.science.walking.recording.segmentation import walks_of
-from app.science.walking.recording.tracks import Walker
-from app.science.walking.recording.walks import planned_walk
-from app.science.walking.records.model import PlannedWalk, Track, Walk, WalkingError
-from app.science.walking.records.protocols import Planner
-from app.science.walking.scene.scene import Scene, open_scene
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import Walker, planned_walk, track_of_motion, walks_of
+from app.science.walking.records import PlannedWalk, Planner, Track, Walk, WalkingError
+from app.science.walking.scene import Scene, open_scene
 
 MOST_BYTES = 500_000_000
 _PERSON_COLUMNS = {"id", "subject", "person", "participant", "ped", "pers_id", "agent"}

@@ -5,10 +5,9 @@ from dataclasses import asdict
 import numpy as np
 
 from app.cli.walk.run import Fitted, Sampled
-from app.science.walking.evaluation.evaluation import Evaluation
-from app.science.walking.evaluation.scoring import COVERAGES, PERCENTILES
-from app.science.walking.maps.suitability import SuitabilityOptions
-from app.science.walking.models.fitting import FittedWalking
+from app.science.walking.evaluation import COVERAGES, PERCENTILES, Evaluation
+from app.science.walking.maps import SuitabilityOptions
+from app.science.walking.models import FittedWalking
 
 
 def fit_json(done: Fitted) -> dict[str, object]:

@@ -8,27 +8,32 @@ import numpy as np
 
 from app.adapters.walks.model_file import read_model, write_model
 from app.cli.walk.inputs import People, planned, read_people, read_scene, read_walks
-from app.science.walking.evaluation.evaluation import Evaluation, evaluate
-from app.science.walking.evaluation.synthetic_walks import straight_path
-from app.science.walking.following.following import SteeringFollower
-from app.science.walking.maps.database import check_persons, database_of
-from app.science.walking.maps.maps import MapMaker, maps_of
-from app.science.walking.maps.suitability import PAPER, TIME_AWARE, SuitabilityOptions
-from app.science.walking.models.fitting import FitOptions, FittedWalking, fitted
-from app.science.walking.models.prediction import Prediction, Predictor
-from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.recording.walks import dependencies_of
-from app.science.walking.records.model import (
+from app.science.walking.evaluation import Evaluation, evaluate
+from app.science.walking.following import SteeringFollower
+from app.science.walking.maps import (
+    PAPER,
+    TIME_AWARE,
+    MapMaker,
+    SuitabilityOptions,
+    check_persons,
+    database_of,
+    maps_of,
+)
+from app.science.walking.models import FitOptions, FittedWalking, Prediction, Predictor, fitted
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import dependencies_of
+from app.science.walking.records import (
     LENGTH,
     STATURE,
     TURNING,
     PlannedPath,
     PlannedWalk,
+    Point,
     Walk,
     WalkingError,
 )
-from app.science.walking.records.protocols import Point
-from app.science.walking.scene.scene import Scene
+from app.science.walking.scene import Scene
+from app.science.walking.synthetic import straight_path
 
 READINGS: dict[str, SuitabilityOptions | None] = {
     "chosen": None,

@@ -1,5 +1,5 @@
-"""The avatars: a body that follows the participant's with a chosen delay."""
+"""The avatars: bodies that follow the participant's, driven by motors.
 
-from app.science.avatar.simulation.delay import DelayBuffer, DelayError, delayed_pose
-
-__all__ = ["DelayBuffer", "DelayError", "delayed_pose"]
+Each folder is a face of its own, so that importing one loads what it needs and no more. From the
+bottom: `body`, `configuration`, `mjcf`, `targets`, `ik`, `simulation`, `tuning`.
+"""

@@ -7,7 +7,7 @@ the one on the other:
 2. all lines between the bounds of a window of minutes are a polygon that is known exactly: what
    any of them says of a moment bounds the truth (`band`);
 3. where no line is left a clock jumped, or a single probe is wrong (`windows`);
-4. the line that is told is fitted to the probes with the shortest round trips (`line`);
+4. the line that is told is fitted to the probes with the shortest round trips (`band`);
 5. windows without a jump between them join to one unbroken course (`stretch`), and these are put on
    one time line of the server (`placing`);
 6. the mapping never falls and says how far it can be off (`mapping`).
@@ -16,10 +16,9 @@ The bound holds on asymmetric paths too, as long as the clocks keep to `ClockLim
 """
 
 from app.science.clock.fit import DEFAULT_LIMITS, fit_clock
-from app.science.clock.limits import ClockError, ClockLimits
 from app.science.clock.mapping import ClockMapping, ClockSegment
 from app.science.clock.placing import Stepped
-from app.science.clock.probes import ClockProbes
+from app.science.clock.probes import ClockError, ClockLimits, ClockProbes
 
 __all__ = [
     "DEFAULT_LIMITS",

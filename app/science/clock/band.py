@@ -1,4 +1,4 @@
-"""All straight lines that lie between bounds from above and from below.
+"""All straight lines that lie between bounds from above and from below, and the best of them.
 
 A line a + b (t - ref) lies under all upper bounds and over all lower ones if
 
@@ -8,13 +8,23 @@ A line a + b (t - ref) lies under all upper bounds and over all lower ones if
 the upper bounds, `low` likewise convex with those of the upper hull of the lower bounds. So the
 lines form a convex polygon in (a, b) whose corners are known exactly, and the largest and the
 smallest value that any of them takes at a time t is found among the corners. No solver is needed.
+
+One line of a band is reported as the offset (`best_line`). Half the round trip is the best guess
+for each way, and the better the shorter the round trip was: what a probe lost in queues it mostly
+lost on one way. So the lines' middle is a least-squares fit to the probes' offsets with weights
+that fall with the time in queues,
+
+    sigma_i = slack + (round_trip_i - shortest) / 2,
+
+and the drift is held by its limit where the probes are too few to tell (a Gaussian prior with that
+standard deviation). The line is then brought into the band, which no true clock leaves.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.clock.probes import Bounds, FloatArray
+from app.science.clock.probes import Bounds, ClockLimits, ClockProbes, FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,3 +115,18 @@ def _slopes(hull: FloatArray) -> FloatArray:
     steps = np.diff(hull, axis=0)
     slopes: FloatArray = steps[:, 1] / steps[:, 0]
     return slopes
+
+
+def best_line(probes: ClockProbes, band: Band, limits: ClockLimits) -> tuple[float, float]:
+    """Offset at `band.ref_s` in s and drift in s/s."""
+    t_s = probes.middle_s - band.ref_s
+    offset_s = probes.offset_s - band.offset_s
+    round_trip_s = probes.round_trip_s
+    sigma_s = limits.slack_s + 0.5 * (round_trip_s - round_trip_s.min())
+    weight = sigma_s**-2
+    centre_s = np.average(t_s, weights=weight)
+    mean_s = np.average(offset_s, weights=weight)
+    spread = np.sum(weight * (t_s - centre_s) ** 2) + limits.drift**-2
+    drift = float(np.sum(weight * (t_s - centre_s) * (offset_s - mean_s)) / spread)
+    a_s, drift = band.nearest(float(mean_s - drift * centre_s), drift)
+    return band.offset_s + a_s, drift

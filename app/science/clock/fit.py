@@ -5,10 +5,15 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from app.science.clock.limits import ClockLimits
 from app.science.clock.mapping import ClockMapping
 from app.science.clock.placing import place
-from app.science.clock.probes import ClockProbes, bounds_of, is_possible, reading_step_s
+from app.science.clock.probes import (
+    ClockLimits,
+    ClockProbes,
+    bounds_of,
+    is_possible,
+    reading_step_s,
+)
 from app.science.clock.stretch import make_stretch
 from app.science.clock.windows import Window, cut_windows, stretches
 

@@ -6,10 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.science.clock.band import Band
-from app.science.clock.limits import ClockLimits
-from app.science.clock.line import best_line
-from app.science.clock.probes import Bounds, ClockProbes, FloatArray
+from app.science.clock.band import Band, best_line
+from app.science.clock.probes import Bounds, ClockLimits, ClockProbes, FloatArray
 from app.science.clock.windows import Window, boundary_s
 
 _WALL_READINGS = 16

@@ -13,8 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.clock.band import Band, band_of
-from app.science.clock.limits import ClockError, ClockLimits
-from app.science.clock.probes import Bounds, FloatArray
+from app.science.clock.probes import Bounds, ClockError, ClockLimits, FloatArray
 
 Index = npt.NDArray[np.intp]
 _AGREEING = 2

@@ -4,10 +4,10 @@ import numpy as np
 
 from app.science.fitting.assembly import assemble
 from app.science.fitting.bodies import parts_of_bodies
-from app.science.fitting.gaps import longest_run
 from app.science.fitting.landmarks import landmarks_of
 from app.science.fitting.lower_body import legs_of, pelvis_of
 from app.science.fitting.model import FitError, Fitted, Part, Parts
+from app.science.fitting.resampling import longest_run
 from app.science.fitting.upper_body import arms_of, head_of, trunk_of
 from app.science.rig import BodyMotion, BoolArray, MarkerMotion
 from app.science.skeleton import JOINT_NAMES

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.fitting.gaps import bridged
 from app.science.fitting.marker_sets import MARKER_SETS, MarkerSet
+from app.science.fitting.resampling import bridged
 from app.science.rig import BoolArray, MarkerMotion
 from app.science.rotations import FloatArray
 

@@ -1,11 +1,10 @@
-"""Questionnaires with their scoring: what is asked, which answers fit, what they add up to."""
+"""Questionnaires with their scoring: what is asked, which answers fit, what they add up to.
 
-from app.science.instruments.answers import (
-    AnswerProblem,
-    fits,
-    valid_answers,
-    validate_answers,
-)
+An `Instrument` that exists is consistent. Tables of answers are read by `instruments.table`, which
+loads pandas.
+"""
+
+from app.science.instruments.answers import AnswerProblem, fits, valid_answers, validate_answers
 from app.science.instruments.errors import (
     AnswerError,
     DefinitionProblem,
@@ -13,11 +12,15 @@ from app.science.instruments.errors import (
     InstrumentDefinitionError,
     InstrumentError,
     InstrumentTableError,
+    shortened,
 )
-from app.science.instruments.model import (
+from app.science.instruments.explained import ExplainedScore, explain_scoring
+from app.science.instruments.formula import names_in
+from app.science.instruments.instrument import Instrument, item_order
+from app.science.instruments.item_checks import text_problems
+from app.science.instruments.items import (
     Answer,
     Choice,
-    Instrument,
     Item,
     ItemType,
     Provenance,
@@ -25,8 +28,7 @@ from app.science.instruments.model import (
     Score,
     Text,
 )
-from app.science.instruments.order import item_order
-from app.science.instruments.scoring import score_answers
+from app.science.instruments.scoring import score_answers, scores_of_columns
 
 __all__ = [
     "Answer",
@@ -34,6 +36,7 @@ __all__ = [
     "AnswerProblem",
     "Choice",
     "DefinitionProblem",
+    "ExplainedScore",
     "FormulaError",
     "Instrument",
     "InstrumentDefinitionError",
@@ -45,9 +48,14 @@ __all__ = [
     "Scale",
     "Score",
     "Text",
+    "explain_scoring",
     "fits",
     "item_order",
+    "names_in",
     "score_answers",
+    "scores_of_columns",
+    "shortened",
+    "text_problems",
     "valid_answers",
     "validate_answers",
 ]

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.instruments.errors import AnswerError, shortened
-from app.science.instruments.item_definition import DEFAULT_TEXT_LENGTH
-from app.science.instruments.model import Instrument, Item
+from app.science.instruments.instrument import Instrument
+from app.science.instruments.item_checks import DEFAULT_TEXT_LENGTH
+from app.science.instruments.items import Item
 
 _NUMBERS = (int, float, np.integer, np.floating)
 

@@ -8,7 +8,7 @@ import numpy as np
 from app.science.instruments.answers import as_number
 from app.science.instruments.errors import AnswerError
 from app.science.instruments.evaluation import FloatArray, evaluate
-from app.science.instruments.model import Instrument
+from app.science.instruments.instrument import Instrument
 
 
 def score_answers(instrument: Instrument, answers: Mapping[str, object]) -> dict[str, float | None]:

@@ -1,6 +1,23 @@
-"""The steps by which `app.science.achieved_latency` finds a lag.
+"""The latency that a participant really got, found from the two recorded streams.
 
-`smoothing` makes curves of frames, `stretches` says what is compared, `correlation` looks at all
-lags coarsely, `refinement` goes to the best one nearby, `choice` decides between several where the
-movement repeats itself, and `uncertainty` says how sure the result is.
+`latency_of_runs` says how late the avatar was, how sure that is, and why it is not known where it
+is not; `is_off` compares it with the ordered one.
 """
+
+from app.science.latency.achieved_latency import (
+    HIGHEST_S,
+    AchievedLatency,
+    StreamPair,
+    achieved_latency,
+    is_off,
+    latency_of_runs,
+)
+
+__all__ = [
+    "HIGHEST_S",
+    "AchievedLatency",
+    "StreamPair",
+    "achieved_latency",
+    "is_off",
+    "latency_of_runs",
+]

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.rotations import FloatArray, identity, is_unit
-from app.science.skeleton.movement import continuous
+from app.science.skeleton import continuous
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

@@ -1,16 +1,26 @@
-"""Which way is up, and where the left arm of a T-pose points: the frame a pose is described in.
+"""Directions: the frame a pose is described in, and the shortest turn from one to another.
 
-A T-pose has its torso along `up`, its legs along `-up`, its left arm along `left` and its right arm
-along `-left`. Quaternion algebra is the same in left-handed frames; only the way a person faces
-depends on the hand.
+The frame says which way is up, and where the left arm of a T-pose points: the T-pose has its torso
+along `up`, its legs along `-up`, its left arm along `left` and its right arm along `-left`.
+Quaternion algebra is the same in left-handed frames; only the way a person faces depends on the
+hand.
+
+The shortest turn (`swing`) is exact to rounding at every angle. The half-vector form q ~ (1 + v.k,
+v x k) loses digits as v and k become opposite: 1 + v.k is then a difference of almost equal
+numbers. Its sine and cosine of half the angle are here the lengths
+
+    cos(a/2) = |v + k| / 2,   sin(a/2) = |v - k| / 2,
+
+which are exact to rounding, and the axis v x k, made square to v. So v lands on k within a few
+units of rounding also next to opposite, where arccos(v.k) is off by 5e-4 in single precision.
+For v and k exactly opposite any axis across v would do; the caller may name one.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Vector, v_cross, v_dot, v_scale
+from app.science.rotations import FloatArray, Vector, v_cross, v_dot, v_scale
 
 _TOLERANCE = 1e-9
 
@@ -63,3 +73,35 @@ CANONICAL = Axes(up=(0.0, 1.0, 0.0), left=(-1.0, 0.0, 0.0))
 
 UNREAL = Axes(up=(0.0, 0.0, 1.0), left=(1.0, 0.0, 0.0), left_handed=True)
 """A mesh in Unreal Engine: z up, left arm along +x, facing +y, left-handed."""
+
+
+def swing(start: FloatArray, end: FloatArray, across: FloatArray | None = None) -> FloatArray:
+    """Return the rotation (4,) that brings the direction `start` onto `end`, both (3,).
+
+    It computes in the precision it is given (float64 or float32). Directions need no unit length,
+    only a length above zero. `across` is the axis of a half turn, at a right angle to `start`.
+    """
+    v, k = unit(start), unit(end)
+    cosine = np.linalg.norm(v + k)
+    sine = np.linalg.norm(v - k)
+    return unit(np.concatenate(([cosine], sine * _axis(v, k, across))).astype(v.dtype))
+
+
+def unit(vector: FloatArray) -> FloatArray:
+    """Return the vector at length one, in its own precision."""
+    scaled: FloatArray = vector / np.linalg.norm(vector)
+    return scaled
+
+
+def _axis(v: FloatArray, k: FloatArray, otherwise: FloatArray | None) -> FloatArray:
+    across = np.cross(v, k)
+    length = np.linalg.norm(across)
+    square = across - v * np.dot(v, across)
+    # Rounding alone may have made the product: half of it along v says so.
+    if float(np.linalg.norm(square)) > 0.5 * float(length) > 0.0:
+        return unit(square)
+    if otherwise is not None:
+        return unit(otherwise)
+    least = np.zeros_like(v)
+    least[np.argmin(np.abs(v))] = 1.0
+    return unit(np.cross(v, least))

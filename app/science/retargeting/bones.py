@@ -9,8 +9,7 @@ from app.science.retargeting.axes import Axes
 from app.science.retargeting.joint_chains import is_below
 from app.science.retargeting.joint_map import JointMap, check_joint_map
 from app.science.rig import Rig
-from app.science.rotations import FloatArray, conjugate, identity, rotate
-from app.science.rotations.scalars import Vector
+from app.science.rotations import FloatArray, Vector, conjugate, identity, rotate
 from app.science.skeleton import JOINT_NAMES
 
 _TORSO = ("Hips", "Spine", "Chest", "UpperChest", "Neck", "Head")

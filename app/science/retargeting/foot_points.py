@@ -7,8 +7,7 @@ import numpy as np
 from app.science.retargeting.joint_chains import is_below
 from app.science.retargeting.joint_map import JointMap
 from app.science.rig import Rig
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Quaternion, Vector, q_multiply, q_rotate, v_add
+from app.science.rotations import FloatArray, Quaternion, Vector, q_multiply, q_rotate, v_add
 
 _FOOT_PARTS = ("LeftFoot", "LeftToes", "RightFoot", "RightToes")
 

@@ -13,10 +13,15 @@ from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, refer
 from app.science.retargeting.transfer import Retargeter
 from app.science.rig import RigMotion, place, to_local
 from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply, rotate
-from app.science.skeleton.joints import JOINT_INDEX
-from app.science.skeleton.model import Skeleton, SkeletonError
-from app.science.skeleton.movement import Movement, continuous
-from app.science.skeleton.soles import flat_soles, ground_height
+from app.science.skeleton import (
+    JOINT_INDEX,
+    Movement,
+    Skeleton,
+    SkeletonError,
+    continuous,
+    flat_soles,
+    ground_height,
+)
 
 # Slower than a stride, faster than a turn of the walk.
 _PATH_SMOOTHING_S = 0.6

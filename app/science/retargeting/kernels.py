@@ -6,37 +6,17 @@ frames. Importing this module loads the compiler (half a second); `transfer` doe
 retargeter is made.
 """
 
-from collections.abc import Callable
-from typing import TypeVar, cast
-
-import numba
 import numpy as np
 
+from app.science.compiled import compiled_fused
 from app.science.retargeting.plan import Body, IntArray
 from app.science.rotations import FloatArray
 
 BLOCK = 16
 """Frames worked on at once: two bodies of 22 joints then fill half of a core's nearest cache."""
-_F = TypeVar("_F", bound=Callable[..., object])
 
 
-def compiled(function: _F) -> _F:
-    """Compile at the first call, or read what an earlier process compiled.
-
-    Fused multiply-add is allowed; sums keep their order, so that equal frames come out equal.
-    """
-    try:
-        return _njit(function, cache=True)
-    except RuntimeError:  # there is no folder that this user may write to
-        return _njit(function, cache=False)
-
-
-def _njit(function: _F, *, cache: bool) -> _F:
-    compile_ = numba.njit(cache=cache, error_model="numpy", fastmath={"contract"})
-    return cast("_F", compile_(function))
-
-
-@compiled
+@compiled_fused
 def transfer(
     roots: FloatArray,
     rotations: FloatArray,
@@ -74,7 +54,7 @@ def transfer(
             roots_out[first + b, 2] = scale * (z + dz) - az
 
 
-@compiled
+@compiled_fused
 def _walk_source(rotations: FloatArray, source: Body, world: FloatArray) -> None:
     """World rotations of one block: world_from_joint = world_from_parent parent_from_joint."""
     n = len(rotations)
@@ -96,7 +76,7 @@ def _walk_source(rotations: FloatArray, source: Body, world: FloatArray) -> None
             inner[3, b] = aw * bz + ax * by - ay * bx + az * bw
 
 
-@compiled
+@compiled_fused
 def _turn_avatar(
     source_world: FloatArray,
     avatar: Body,
@@ -125,7 +105,7 @@ def _turn_avatar(
             inner[2, b], inner[3, b] = y * shrink, z * shrink
 
 
-@compiled
+@compiled_fused
 def _write_local(world: FloatArray, avatar: Body, rotations_out: FloatArray) -> None:
     """parent_from_joint = world_from_parent^-1 world_from_joint."""
     n = len(rotations_out)
@@ -146,7 +126,7 @@ def _write_local(world: FloatArray, avatar: Body, rotations_out: FloatArray) -> 
             rotations_out[b, joint, 3] = aw * bz - ax * by + ay * bx - az * bw
 
 
-@compiled
+@compiled_fused
 def _root_to_hips(body: Body, world: FloatArray, b: int) -> tuple[float, float, float]:
     """Where the hips lie from the root, in the world."""
     sx, sy, sz = 0.0, 0.0, 0.0
@@ -161,7 +141,7 @@ def _root_to_hips(body: Body, world: FloatArray, b: int) -> tuple[float, float, 
     return sx, sy, sz
 
 
-@compiled
+@compiled_fused
 def _filled(row: IntArray) -> IntArray:
     """The joints of a row before its filling."""
     count = 0
@@ -170,7 +150,7 @@ def _filled(row: IntArray) -> IntArray:
     return row[:count]
 
 
-@compiled
+@compiled_fused
 def transfer_frame(
     root: FloatArray,
     rotations: FloatArray,

@@ -15,7 +15,7 @@ import numpy as np
 
 from app.science.retargeting.coordinates import from_rotator
 from app.science.rig import Rig
-from app.science.rotations.scalars import Vector
+from app.science.rotations import Vector
 
 _CM_PER_M = 100.0
 

@@ -38,13 +38,11 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
-from app.science.retargeting.axes import CANONICAL, Axes
+from app.science.retargeting.axes import CANONICAL, Axes, swing, unit
 from app.science.retargeting.bones import Bone, bones_of, joints_of, rest_facing
 from app.science.retargeting.joint_map import JointMap
-from app.science.retargeting.swing import swing, unit
 from app.science.rig import Rig, to_local
-from app.science.rotations import FloatArray, conjugate, multiply, rotate
-from app.science.rotations.scalars import Vector
+from app.science.rotations import FloatArray, Vector, conjugate, multiply, rotate
 
 UNREAL_LOCAL_AXES: Mapping[str, Vector] = MappingProxyType(
     {"Head": (1.0, 0.0, 0.0), "LeftHand": (1.0, 0.0, 0.0), "RightHand": (-1.0, 0.0, 0.0)}

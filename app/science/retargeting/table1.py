@@ -20,8 +20,7 @@ from app.science.retargeting.axes import UNREAL
 from app.science.retargeting.coordinates import from_rotator, to_rotator
 from app.science.retargeting.mannequin import INITIAL_DEG, MANNEQUIN_MAP, mannequin
 from app.science.retargeting.t_pose import UNREAL_LOCAL_AXES, t_pose
-from app.science.rotations import FloatArray, geodesic_angle
-from app.science.rotations.scalars import Vector
+from app.science.rotations import FloatArray, Vector, geodesic_angle
 
 TOLERANCE_DEG = 0.01
 _PRINTED: dict[str, Vector] = {

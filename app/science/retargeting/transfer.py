@@ -33,8 +33,7 @@ from app.science.retargeting.plan import body_of, constant_factors, plan_of
 from app.science.retargeting.proportions import ScaledBy, scale_between
 from app.science.retargeting.t_pose import t_pose
 from app.science.rig import Rig, RigError, RigMotion, place
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Vector
+from app.science.rotations import FloatArray, Vector
 
 _FLAT = Flat()
 _FLOAT64 = np.dtype(np.float64)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.rotations.scalars import Vector, v_add, v_dot, v_length, v_scale, v_subtract
+from app.science.rotations import Vector, v_add, v_dot, v_length, v_scale, v_subtract
 from app.science.simulation.goal import Goal
 from app.science.simulation.paths import SmoothPath, path_length, path_through
 from app.science.simulation.traits import MovementTraits

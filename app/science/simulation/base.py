@@ -4,11 +4,9 @@ from typing import cast
 
 import numpy as np
 
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Quaternion, Vector
+from app.science.rotations import FloatArray, Quaternion, Vector
 from app.science.simulation.goal import SimulationError
-from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, Movement
-from app.science.skeleton.movement import mean_rotations
+from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, Movement, mean_rotations
 
 # How much of the base movement remains around its mean while a task is done. A walk must not stride
 # in front of the boxes, yet a body does not freeze: legs are placed by the steps instead.

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from app.science.rotations.scalars import Vector
+from app.science.rotations import Vector
 
 _HANDS = ("LeftHand", "RightHand")
 _FEET = ("LeftFoot", "RightFoot")

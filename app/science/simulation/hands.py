@@ -4,7 +4,7 @@ from math import inf
 
 import numpy as np
 
-from app.science.rotations.scalars import Vector, v_add, v_length, v_scale
+from app.science.rotations import Vector, v_add, v_length, v_scale
 from app.science.simulation.aiming import Aim
 from app.science.simulation.goal import Goal
 from app.science.simulation.paths import SmoothPath, minimum_jerk

@@ -9,8 +9,7 @@ ours: small enough to look alive, no model of balance.
 import numpy as np
 
 from app.science.rotations import FloatArray, from_rotation_vector, multiply
-from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, Movement, Skeleton
-from app.science.skeleton.movement import continuous
+from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, Movement, Skeleton, continuous
 
 _SWAY_HZ = (0.11, 0.23, 0.41)
 _BREATH_HZ = 0.25

@@ -22,16 +22,14 @@ from typing import cast
 
 import numpy as np
 
-from app.science.rotations import rotate
-from app.science.rotations.scalars import Quaternion, Vector, q_blend
+from app.science.rotations import Quaternion, Vector, q_blend, rotate
 from app.science.simulation.aiming import Aim
 from app.science.simulation.base import BaseMovement
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
 from app.science.simulation.hands import Hand
-from app.science.simulation.paths import minimum_jerk
+from app.science.simulation.paths import minimum_jerk, no_quicker
 from app.science.simulation.placement import Placement, ReachPlan
 from app.science.simulation.posture import SIDE_NAMES, Posture
-from app.science.simulation.quickness import no_quicker
 from app.science.simulation.stance import Stance
 from app.science.simulation.traits import MovementTraits, drawn_traits
 from app.science.skeleton import JOINT_INDEX, Movement, Pose, Skeleton, forward_kinematics

@@ -1,4 +1,4 @@
-"""Smooth paths through way-points.
+"""Smooth paths through way-points, and how quickly a body can move along them.
 
 One movement from a to b in the time d follows the minimum-jerk profile (Flash and Hogan 1985,
 J. Neuroscience 5:1688-1703)
@@ -7,13 +7,19 @@ J. Neuroscience 5:1688-1703)
 
 Several movements overlap a little and add up, which rounds the corners at the way-points
 (superposition of submovements: Flash and Henis 1991, J. Cognitive Neuroscience 3:220-230).
+
+Joints turn no quicker than muscles can (`no_quicker`), whatever is asked of the limbs. Inverse
+kinematics has places where a small change of what is asked turns a joint by any angle at once: an
+elbow or a knee that becomes straight, fingers along the arm's own axis. Muscles do not: a joint
+turns there as quickly as a person's can, and is where it should be some frames later.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import sqrt
+from math import acos, cos, pi, radians, sqrt
 
-from app.science.rotations.scalars import Vector, v_length, v_subtract
+from app.science.rotations import Quaternion, Vector, q_slerp, v_length, v_subtract
 
 _OVERLAP = 0.25
 
@@ -74,3 +80,28 @@ def path_through(points: list[Vector], start_s: float, duration_s: float) -> Smo
         moves.append((begins, lasts, leg))
         begins += lasts * (1.0 - _OVERLAP)
     return SmoothPath(points[0], tuple(moves))
+
+
+MOST_TURN_RAD_PER_S = radians(1500.0)
+"""Elbows and wrists of people who hurry reach 1300 deg/s."""
+MOST_SINK_M_PER_S = 2.5
+"""Hips that sink freely for a third of a second fall 3 m/s."""
+
+
+def no_quicker(
+    before: Sequence[Quaternion], wanted: Sequence[Quaternion], step_s: float
+) -> list[Quaternion]:
+    """Return the wanted local rotations, each only as far from the one before as it can have come.
+
+    All quaternions have length 1. The shorter way is taken.
+    """
+    half_turn = 0.5 * MOST_TURN_RAD_PER_S * step_s
+    near = cos(min(half_turn, 0.5 * pi))
+    return [
+        b if abs(cosine := _dot(a, b)) >= near else q_slerp(a, b, half_turn / acos(abs(cosine)))
+        for a, b in zip(before, wanted, strict=True)
+    ]
+
+
+def _dot(a: Quaternion, b: Quaternion) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from math import exp, hypot, sqrt
 
-from app.science.rotations.scalars import Vector
+from app.science.rotations import Vector
 from app.science.simulation.goal import Goal
+from app.science.simulation.paths import MOST_SINK_M_PER_S
 from app.science.simulation.posture import SIDE_SIGNS, Posture
-from app.science.simulation.quickness import MOST_SINK_M_PER_S
 from app.science.simulation.stance import Stance
 
 _BODY_RATE, _LEAN_RATE, _HEIGHT_RATE = 7.0, 6.0, 9.0

@@ -6,7 +6,7 @@ at 90 Hz call for plain floats: the same in arrays takes five times as long.
 
 from math import exp, sqrt
 
-from app.science.rotations.scalars import (
+from app.science.rotations import (
     IDENTITY,
     Quaternion,
     Vector,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.science.rotations.scalars import Vector, v_length
+from app.science.rotations import Vector, v_length
 from app.science.simulation.aiming import Aim
 from app.science.simulation.goal import Goal, GoalKind
 from app.science.simulation.paths import SmoothPath, path_through

@@ -6,7 +6,7 @@ foot that is behind follows until the goal is within a stride of the foot that s
 
 from math import hypot, sqrt
 
-from app.science.rotations.scalars import Vector
+from app.science.rotations import Vector
 from app.science.simulation.goal import SimulationError
 
 LEFT, RIGHT = 0, 1

@@ -12,15 +12,7 @@ approached as far as the bones go: d is limited to |a - b| .. a + b, in the end'
 from dataclasses import dataclass
 from math import sqrt
 
-from app.science.rotations.scalars import (
-    Quaternion,
-    Vector,
-    q_from_axes,
-    v_cross,
-    v_dot,
-    v_length,
-    v_scale,
-)
+from app.science.rotations import Quaternion, Vector, q_from_axes, v_cross, v_dot, v_length, v_scale
 
 _TINY_M = 1e-9
 _SPARE_POLES: tuple[Vector, ...] = ((0.0, 0.0, -1.0), (0.0, -1.0, 0.0))

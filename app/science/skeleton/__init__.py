@@ -9,7 +9,15 @@ from app.science.skeleton.kinematics import (
     forward_kinematics,
 )
 from app.science.skeleton.model import Skeleton, SkeletonError, build_skeleton
-from app.science.skeleton.movement import Movement, largest_step_rad, loop, resample
+from app.science.skeleton.movement import (
+    Movement,
+    continuous,
+    largest_step_rad,
+    loop,
+    mean_rotations,
+    resample,
+)
+from app.science.skeleton.soles import flat_soles, ground_height
 
 __all__ = [
     "JOINT_COUNT",
@@ -24,8 +32,12 @@ __all__ = [
     "WorldPose",
     "body_part_segments",
     "build_skeleton",
+    "continuous",
+    "flat_soles",
     "forward_kinematics",
+    "ground_height",
     "largest_step_rad",
     "loop",
+    "mean_rotations",
     "resample",
 ]

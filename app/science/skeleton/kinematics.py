@@ -11,8 +11,15 @@ from typing import cast
 
 import numpy as np
 
-from app.science.rotations import FloatArray, multiply, rotate
-from app.science.rotations.scalars import Quaternion, Vector, q_multiply, q_rotate
+from app.science.rotations import (
+    FloatArray,
+    Quaternion,
+    Vector,
+    multiply,
+    q_multiply,
+    q_rotate,
+    rotate,
+)
 from app.science.skeleton.joints import JOINT_COUNT, PARENTS
 from app.science.skeleton.model import Skeleton, SkeletonError
 

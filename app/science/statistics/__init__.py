@@ -11,8 +11,8 @@
     against_reference, directional      what a study declares beforehand
     share_of_maximum, contact_shares, explore
 
-Every result says how many subjects it is of and what was left out. Mixed models are in modules of
-their own (`mixed_*`, `cumulative_*`, `carry_over`).
+Every result says how many subjects it is of and what was left out. Mixed models have a face of
+their own, `statistics.mixed`.
 """
 
 from app.science.statistics.aligned_contrasts import aligned_contrasts
@@ -21,54 +21,69 @@ from app.science.statistics.aligned_ranks import (
     aligned_ranks_split_plot,
     aligned_ranks_within,
 )
+from app.science.statistics.arrays import FloatArray, IntArray, complete_rows
 from app.science.statistics.bootstrap import Interval, bootstrap_interval, mean_of, median_of
-from app.science.statistics.cronbach import Cronbach, cronbach_alpha
 from app.science.statistics.effects import Effect
-from app.science.statistics.errors import (
-    ConstantData,
-    StatisticsError,
-    TooFewData,
-    UnusableTable,
+from app.science.statistics.error_rates import (
+    LEAST_COVERAGE,
+    LEVEL,
+    MOST_REJECTIONS,
+    ErrorRate,
+    ErrorRates,
+    Kind,
+    error_rates_from_json,
 )
+from app.science.statistics.errors import ConstantData, StatisticsError, TooFewData, UnusableTable
 from app.science.statistics.exploring import Explored, explore
 from app.science.statistics.friedman import Friedman, friedman
-from app.science.statistics.holm import holm
+from app.science.statistics.levels import place_of
 from app.science.statistics.mean_intervals import (
     MeanInterval,
     mean_interval,
     within_subject_intervals,
 )
-from app.science.statistics.omega import Omega, mcdonald_omega
 from app.science.statistics.page import PageTrend, page_trend
-from app.science.statistics.pairwise import Comparison, pairwise
+from app.science.statistics.pairwise import Comparison, holm, pairwise
 from app.science.statistics.planned import (
     AgainstReference,
+    Direction,
     DirectionalHypothesis,
     against_reference,
     directional,
 )
 from app.science.statistics.power import Expected, rm_anova_power, subjects_needed
+from app.science.statistics.reliability import Cronbach, Omega, cronbach_alpha, mcdonald_omega
 from app.science.statistics.rm_anova import RmAnova, rm_anova
 from app.science.statistics.shares import ContactShares, contact_shares, share_of_maximum
 from app.science.statistics.signed_rank import SignedRank, signed_rank
 from app.science.statistics.spearman import Spearman, spearman
 from app.science.statistics.split_plot import SplitPlot, split_plot_anova
-from app.science.statistics.tidy import Cells, cells_of
+from app.science.statistics.tidy import Cells, Complete, cells_of
 
 __all__ = [
+    "LEAST_COVERAGE",
+    "LEVEL",
+    "MOST_REJECTIONS",
     "AgainstReference",
     "AlignedRanks",
     "Cells",
     "Comparison",
+    "Complete",
     "ConstantData",
     "ContactShares",
     "Cronbach",
+    "Direction",
     "DirectionalHypothesis",
     "Effect",
+    "ErrorRate",
+    "ErrorRates",
     "Expected",
     "Explored",
+    "FloatArray",
     "Friedman",
+    "IntArray",
     "Interval",
+    "Kind",
     "MeanInterval",
     "Omega",
     "PageTrend",
@@ -85,9 +100,11 @@ __all__ = [
     "aligned_ranks_within",
     "bootstrap_interval",
     "cells_of",
+    "complete_rows",
     "contact_shares",
     "cronbach_alpha",
     "directional",
+    "error_rates_from_json",
     "explore",
     "friedman",
     "holm",
@@ -97,6 +114,7 @@ __all__ = [
     "median_of",
     "page_trend",
     "pairwise",
+    "place_of",
     "rm_anova",
     "rm_anova_power",
     "share_of_maximum",

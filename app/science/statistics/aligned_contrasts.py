@@ -20,7 +20,7 @@ from scipy.special import stdtr
 from app.science.statistics.aligned_ranks import CAUTION, aligned_for
 from app.science.statistics.arrays import FloatArray
 from app.science.statistics.errors import ConstantData, StatisticsError
-from app.science.statistics.holm import holm
+from app.science.statistics.pairwise import holm
 from app.science.statistics.rm_anova import checked_cells
 
 

@@ -1,115 +1,112 @@
-"""Data sets of the study in which nothing has an effect: what tests are measured on.
+"""How often each test rejects where nothing is, measured beforehand and shipped with the product.
 
-A test at 5 % should reject in 5 of 100 such data sets, and an interval of 95 % hold the truth in 95
-of them. Exact tests promise it, most others do so only for many participants; and the study has a
-dozen or two. So each is tried on data like the study's own:
+`error_rates.json` beside this file is made by `./run bench error_rates --write`, from data sets of
+`error_rates`. Each row tells of one test or interval in one scenario: on how many data sets it was
+tried, how often it could not be made, and its rate. A page that shows the test warns where the rate
+is out of bounds, which are 4 to 6.5 % for tests at 5 %, and 93.5 % for intervals of 95 %.
 
-    n participants (whole blocks of the six orders of three latencies), two limbs a period;
-    a continuous measure, participant's level + error, both normal;
-    one item of a questionnaire from 1 to 7: participant's level + logistic error cut at thresholds
-    with which most agree, as people do with agency, so that many answers are equal;
-    a scale of several such items from one administration, for its consistency.
-
-*Reactions* are what a latency does to one person and not to another. With them a participant's
-level turns towards another, independent one as the latency grows,
-
-    level(latency) = level cos(a) + other sin(a),    a = arcsin(reaction) latency / 350 ms,
-
-so that each latency has the same distribution over people, and nothing an effect, but 0 and 350 ms
-resemble each other less than 0 and 125 ms. Without reactions every order of a participant's values
-is equally likely, which is what rank tests assume; with them it is not, and a model with random
-intercepts only is wrong. Both are tried.
-
-Pure simulation: all randomness comes from the generator given.
+Rejecting too seldom is no error of the kind that reviewers fear: it costs power. An exact test of
+few distinct values does so by necessity, because no sharper threshold exists.
 """
 
+import json
+import math
 from dataclasses import dataclass
+from typing import Any, Literal
 
-import numpy as np
-
-from app.science.statistics.arrays import FloatArray, IntArray
-from app.science.williams import williams
-
-LATENCIES_MS = (0, 125, 350)
-LIMBS = ("hand", "foot")
-_TRUTH_PEOPLE = 400_000
+Kind = Literal["rejection", "coverage"]
+Warned = Literal["", "rejects_too_often", "rejects_too_seldom", "covers_too_seldom"]
+LEVEL = 0.05
+FEWEST_REJECTIONS, MOST_REJECTIONS, LEAST_COVERAGE = 0.04, 0.065, 0.935
 
 
 @dataclass(frozen=True)
-class NullDesign:
-    """A study without effects.
+class ErrorRate:
+    """One test or interval in one scenario.
 
     Attributes:
-        participants: a multiple of six.
-        level_sd: of participants' levels, in error SDs of the continuous measure and on the
-            logistic scale of items.
-        reaction: 0 to 1, how much of a participant's level at 350 ms is another one.
-        items: of the scale.
-        thresholds: six, on the logistic scale.
+        test: its name in the product, for instance `friedman_exact`.
+        scenario: `level` (participants differ in level) or `reactions` (also in their reactions).
+        measure: what it was tried on: `item`, `measure`, `scale`.
+        kind: what `rate` counts: rejections at 5 %, or intervals of 95 % that held the truth.
+        exact: whether the test promises not to exceed 5 % in this scenario.
+        participants: of each data set; 0 for all sizes together.
+        sets: data sets on which it could be made.
+        failed: on which it could not, not counted in `sets`.
+        rate: 0 to 1.
     """
 
+    test: str
+    scenario: str
+    measure: str
+    kind: Kind
+    exact: bool
     participants: int
-    level_sd: float = 1.2
-    reaction: float = 0.0
-    items: int = 5
-    thresholds: tuple[float, ...] = (-4.0, -3.0, -2.2, -1.4, -0.4, 1.0)
+    sets: int
+    failed: int
+    rate: float
+
+    @property
+    def standard_error(self) -> float:
+        """Of the rate, by the number of data sets."""
+        return math.sqrt(self.rate * (1.0 - self.rate) / self.sets) if self.sets else math.nan
+
+    @property
+    def warning(self) -> Warned:
+        """What a page must say beside the test; empty if nothing."""
+        if not self.sets:
+            return ""
+        if self.kind == "coverage":
+            return "covers_too_seldom" if self.rate < LEAST_COVERAGE else ""
+        if self.rate > MOST_REJECTIONS:
+            return "rejects_too_often"
+        return "rejects_too_seldom" if self.rate < FEWEST_REJECTIONS else ""
+
+    @property
+    def keeps_its_promise(self) -> bool:
+        """Not above 5 % by more than three standard errors, if it is exact."""
+        tolerance = 3.0 * math.sqrt(LEVEL * (1.0 - LEVEL) / max(self.sets, 1))
+        return not self.exact or self.rate <= LEVEL + tolerance
 
 
-@dataclass(frozen=True, eq=False)
-class NullData:
-    """One data set of n participants.
+@dataclass(frozen=True)
+class ErrorRates:
+    """The table.
 
     Attributes:
-        measure: (n, latencies, limbs) continuous.
-        item: (n, latencies, limbs) answers 1 to 7.
-        scale: (n, items) answers 1 to 7.
-        periods: (n, latencies) in which period, from 1, the participant had each latency.
+        seed: of all data sets.
+        design: what they were like, as in `NullDesign`.
+        rows: one a test, scenario and number of participants.
     """
 
-    measure: FloatArray
-    item: IntArray
-    scale: IntArray
-    periods: IntArray
+    seed: int
+    design: dict[str, Any]
+    rows: tuple[ErrorRate, ...]
+
+    def of(self, test: str, scenario: str = "level", participants: int = 0) -> ErrorRate | None:
+        """The row of a test; None if it was not measured."""
+        asked = (test, scenario, participants)
+        for row in self.rows:
+            if (row.test, row.scenario, row.participants) == asked:
+                return row
+        return None
+
+    def near(self, test: str, participants: int, scenario: str = "level") -> ErrorRate | None:
+        """The row of a test with the number of participants nearest to the study's.
+
+        Which is the one to warn by: what fails with 12 may hold with 24. None if it was not
+        measured.
+        """
+        rows = [
+            row
+            for row in self.rows
+            if (row.test, row.scenario) == (test, scenario) and row.participants
+        ]
+        return min(rows, key=lambda row: abs(row.participants - participants), default=None)
 
 
-def null_data(design: NullDesign, rng: np.random.Generator) -> NullData:
-    """Draw a data set.
-
-    Raises:
-        ValueError: the number of participants is not a multiple of six.
-    """
-    orders = np.array(williams(len(LATENCIES_MS)))
-    if design.participants < 1 or design.participants % len(orders):
-        raise ValueError(f"{design.participants} participants are no blocks of {len(orders)}.")
-    n, shape = design.participants, (design.participants, len(LATENCIES_MS), len(LIMBS))
-    share = np.array(LATENCIES_MS)[:, np.newaxis] / max(LATENCIES_MS)
-    angle = np.arcsin(design.reaction) * share
-
-    def levels() -> FloatArray:
-        level, other = rng.normal(size=(n, 1, 1)), rng.normal(size=(n, 1, 1))
-        turned: FloatArray = np.cos(angle) * level + np.sin(angle) * other
-        return design.level_sd * turned
-
-    return NullData(
-        measure=levels() + rng.normal(size=shape),
-        item=answers(design, levels() + rng.logistic(size=shape)),
-        scale=_scale(design, n, rng),
-        periods=np.argsort(np.tile(orders, (n // len(orders), 1)), axis=1) + 1,
-    )
-
-
-def answers(design: NullDesign, hidden: FloatArray) -> IntArray:
-    """Cut hidden values, of any shape, into answers from 1 on."""
-    return np.searchsorted(design.thresholds, hidden).astype(np.int64) + 1
-
-
-def population_alpha(design: NullDesign, rng: np.random.Generator) -> float:
-    """Cronbach's alpha of the scale in a population of 400,000: the truth of its interval."""
-    covariance = np.cov(_scale(design, _TRUTH_PEOPLE, rng), rowvar=False)
-    share = float(np.trace(covariance)) / float(covariance.sum())
-    return design.items / (design.items - 1) * (1.0 - share)
-
-
-def _scale(design: NullDesign, people: int, rng: np.random.Generator) -> IntArray:
-    level = design.level_sd * rng.normal(size=(people, 1))
-    return answers(design, level + rng.logistic(size=(people, design.items)))
+def error_rates_from_json(text: str) -> ErrorRates:
+    """Read `error_rates.json`."""
+    stored = json.loads(text)
+    rows = tuple(ErrorRate(**row) for row in stored["rows"])
+    return ErrorRates(stored["seed"], stored["design"], rows)

@@ -16,7 +16,7 @@ from scipy.special import chdtrc
 
 from app.science.statistics.arrays import midranks
 from app.science.statistics.errors import StatisticsError
-from app.science.statistics.holm import holm
+from app.science.statistics.pairwise import holm
 from app.science.statistics.spearman import spearman
 
 LABEL = "exploratory"

@@ -6,12 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.science.skeleton.joints import JOINT_COUNT
-from app.science.stream_quality.freezing import changes, stillness
-from app.science.stream_quality.jumping import jumps
+from app.science.skeleton import JOINT_COUNT
+from app.science.stream_quality.faults import Pacing, changes, is_timed, jumps, pace, stillness
 from app.science.stream_quality.limits import USUAL, QualityError, QualityLimits
 from app.science.stream_quality.memory import LastPose, Memory
-from app.science.stream_quality.pacing import Pacing, is_timed, pace
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.floating[Any]]

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from app.science.skeleton.joints import JOINT_INDEX
+from app.science.skeleton import JOINT_INDEX
 
 TOES = (JOINT_INDEX["LeftToes"], JOINT_INDEX["RightToes"])
 

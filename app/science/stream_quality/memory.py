@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.science.skeleton.joints import JOINT_COUNT
+from app.science.skeleton import JOINT_COUNT
 
 
 @dataclass(frozen=True)

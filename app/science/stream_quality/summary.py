@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.science.skeleton.joints import JOINT_COUNT, JOINT_NAMES
+from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 from app.science.stream_quality.examination import Examination, examine
 from app.science.stream_quality.limits import USUAL, QualityError, QualityLimits
 

@@ -29,7 +29,7 @@ from app.science.tasks.names import (
     hand_parts,
 )
 from app.science.tasks.rules import advance
-from app.science.tasks.run import TaskRun
+from app.science.tasks.run import TaskRun, rederive, replay
 from app.science.tasks.state import (
     Command,
     CommandKind,
@@ -44,6 +44,7 @@ from app.science.tasks.state import (
 from app.science.tasks.summaries import (
     Completion,
     PhaseSummary,
+    Span,
     completions,
     part_side_time_s,
     red_spans,
@@ -61,7 +62,6 @@ from app.science.tasks.surfaces import (
     side_unit,
 )
 from app.science.tasks.tracker import ContactInterval, ContactTracker
-from app.science.tasks.verification import rederive, replay
 from app.science.tasks.views import Colour, current_goal, displayed_numbers, surface_state
 
 __all__ = [
@@ -84,6 +84,7 @@ __all__ = [
     "Limb",
     "PhaseSummary",
     "Side",
+    "Span",
     "Surface",
     "SurfaceArrays",
     "SurfaceKind",

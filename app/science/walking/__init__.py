@@ -3,17 +3,18 @@
 After Agethen, Gaisbauer and Rukzio (2018), "A Probabilistic Steering Parameter Model for
 Deterministic Motion Planning Algorithms".
 
-The lower half turns recordings into suitability maps:
+Each folder is a face of its own. From the bottom:
 
-    model        Track -> Walk, PlannedPath, PlannedWalk: the records everything here exchanges
-    tracks, capture_tracks, segmentation, walks, census     from captures to entries
-    parameters   bounded steering parameters and the grid over them
-    protocols    Planner, PathFollower, Metric: what can be exchanged
-    scene        floor, obstacles, places and the paths between them; laboratory: the paper's
-    grid_planner Lazy Theta*; visibility: the shortest paths, to check it against
+    records      Track -> Walk, PlannedPath, PlannedWalk: what everything here exchanges; bounded
+                 steering parameters and the grid over them; Planner, PathFollower, Metric
+    scene        floor, obstacles, places and the paths between them; the paper's laboratory
+    recording    from captures to entries
+    planning     Lazy Theta*
     following    the agent that is steered by velocity, acceleration, angular; metrics
-    suitability  DeviationMap and its reading as suitability
-    maps         all maps of a database, with progress, stop and resume
+    maps         suitability maps of a database, and what lies between them
+    models       distributions fitted to the maps, and predictions from them
+    synthetic    populations to try it on
+    evaluation   predictions against walks that a model has not seen
 
 All lengths are metres, all times seconds. The floor is seen from above: x to the right, y ahead
 (the world's -z), angles counter-clockwise.

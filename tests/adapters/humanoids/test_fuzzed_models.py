@@ -10,8 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
-from app.science.avatar.body.figure import figure_of
-from app.science.avatar.body.humanoid import HumanoidError
+from app.science.avatar.body import HumanoidError, figure_of
 from tests.support.humanoid_files import glb, humanoid_file, taken_apart
 from tests.support.humanoid_model import Model, without
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from app.adapters.humanoids import ReadHumanoid, read_humanoid
-from app.science.avatar.body.figure import figure_of
-from app.science.avatar.body.parts import FINGER_PARTS, FINGERS, PART_NAMES, SEGMENTS
+from app.science.avatar.body import FINGER_PARTS, FINGERS, PART_NAMES, SEGMENTS, figure_of
 from app.science.skeleton import JOINT_NAMES
 from tests.support.humanoid_files import humanoid_file
 from tests.support.humanoid_model import (

@@ -8,10 +8,7 @@ from typing import Any
 import pytest
 
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
-from app.science.avatar.body.body import REQUIRED_PARTS
-from app.science.avatar.body.figure import figure_of
-from app.science.avatar.body.humanoid import HumanoidError
-from app.science.avatar.body.parts import PART_NAMES
+from app.science.avatar.body import PART_NAMES, REQUIRED_PARTS, HumanoidError, figure_of
 from tests.support.humanoid_files import box_file, dog_file, glb, humanoid_file, taken_apart
 from tests.support.humanoid_model import Model, without
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from app.adapters.walks.scene_file import load_scene, load_shipped, shipped_scenes
 from app.protocol.errors import ConfigError
 from app.protocol.source import read_source
-from app.science.walking.scene.shapes import area_m2
+from app.science.walking.scene import area_m2
 
 SCENE = """
 key: my-lab

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from app.adapters.captures.capture import CaptureError
 from app.adapters.walks.track_table import TrackReading, read_tracks
-from app.science.walking.recording.segmentation import walks_of
+from app.science.walking.recording import walks_of
 
 SIMPLE = "t,x,y\n0,0,0\n0.5,0.1,0.2\n1,0.3,0.5\n"
 

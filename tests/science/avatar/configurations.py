@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 
 from app.science.avatar.body.parts import AXES_OF, PART_NAMES
 from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.configuration import ColliderKind, Configuration
+from app.science.avatar.configuration.configuration import Configuration
 from app.science.avatar.configuration.groups import axes_of
+from app.science.avatar.configuration.model_options import ColliderKind
 from app.science.avatar.configuration.templates import Drive, SingleJoint, primary_axis, shared_axes
 
 DRIVEN = tuple(part for part in PART_NAMES if AXES_OF[part])

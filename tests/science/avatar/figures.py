@@ -5,9 +5,9 @@ from functools import cache
 
 from app.adapters.humanoids import read_humanoid
 from app.science.avatar.body.figure import Figure, figure_of
-from app.science.avatar.configuration.colliders import ColliderKind
 from app.science.avatar.configuration.configuration import Hips
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.configuration.model_options import ColliderKind
+from app.science.avatar.mjcf.gains import default_configuration
 from app.science.avatar.mjcf.model import AvatarModel, avatar_model
 from app.science.avatar.mjcf.scene import Scene
 from tests.support.humanoid_files import humanoid_file

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.science.avatar.body.parts import AXES, AXIS_NAMES, FINGER_PARTS
 from app.science.avatar.configuration.configuration import Configuration, Hips
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.mjcf.gains import default_configuration
 from app.science.avatar.mjcf.model import AvatarModel, avatar_model
 from app.science.avatar.mjcf.scene import Scene, SceneBox
 from app.science.avatar.simulation.following import Follower

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.science.fitting import FitError, fit_skeleton
-from app.science.fitting.gaps import bridged, longest_run
+from app.science.fitting.resampling import bridged, longest_run
 from app.science.rig import BodyMotion, MarkerMotion
 from app.science.rotations import identity
 from tests.science.fitting.synthetic_body import BODIES, bodies_on, markers_on, moving

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.science.instruments import InstrumentTableError, score_answers
-from app.science.instruments.csv_table import score_csv
+from app.science.instruments.table import score_csv
 from tests.science.instruments.helpers import shipped
 
 KARAS = shipped("karas2020")

@@ -14,7 +14,7 @@ from app.science.instruments import (
     Score,
     score_answers,
 )
-from app.science.instruments.tables import score_table
+from app.science.instruments.table import score_table
 from tests.science.instruments.helpers import shipped, small
 
 KARAS = shipped("karas2020")

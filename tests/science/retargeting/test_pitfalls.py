@@ -10,11 +10,10 @@ from typing import cast
 import numpy as np
 import pytest
 
-from app.science.retargeting.axes import UNREAL
+from app.science.retargeting.axes import UNREAL, swing, unit
 from app.science.retargeting.bones import Bone
 from app.science.retargeting.coordinates import from_rotator
 from app.science.retargeting.mannequin import INITIAL_DEG, MANNEQUIN_MAP, mannequin
-from app.science.retargeting.swing import swing, unit
 from app.science.retargeting.t_pose import UNREAL_LOCAL_AXES, TPose, t_pose
 from app.science.rig import place, to_local
 from app.science.rotations import (

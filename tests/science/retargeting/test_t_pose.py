@@ -6,10 +6,9 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from app.science.retargeting.axes import CANONICAL, UNREAL, Axes, AxesError
+from app.science.retargeting.axes import CANONICAL, UNREAL, Axes, AxesError, swing
 from app.science.retargeting.joint_map import JointMapError
 from app.science.retargeting.mannequin import MANNEQUIN_MAP, mannequin
-from app.science.retargeting.swing import swing
 from app.science.retargeting.t_pose import TPose, t_pose
 from app.science.rig import Rig, place
 from app.science.rotations import FloatArray, geodesic_angle, identity, multiply, rotate

@@ -7,7 +7,7 @@ import pytest
 
 from app.rehearsal.body import captured_movement
 from app.science import rotations as rot
-from app.science.avatar import DelayBuffer
+from app.science.delay import DelayBuffer
 from app.science.simulation import (
     Goal,
     GoalKind,

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from app.science.statistics.carry_over import CarryOver, carry_over
-from app.science.statistics.mixed_terms import ModelError, factor
+from app.science.statistics.mixed.carry_over import CarryOver, carry_over
+from app.science.statistics.mixed.terms import ModelError, factor
 from app.science.williams import williams
 
 LEVELS = ("0", "125", "350")

@@ -9,13 +9,16 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import expit, ndtr
 
-from app.science.statistics.cumulative_contrasts import cumulative_contrasts
-from app.science.statistics.cumulative_likelihood import Answers, Parameters, log_likelihood
-from app.science.statistics.cumulative_links import Link
-from app.science.statistics.cumulative_model import CumulativeModel, fit_cumulative_model
-from app.science.statistics.cumulative_tests import cumulative_term_tests, likelihood_ratio
-from app.science.statistics.mixed_design import Design, build_design
-from app.science.statistics.mixed_terms import ModelError, factor
+from app.science.statistics.mixed.cumulative_likelihood import Answers, Parameters, log_likelihood
+from app.science.statistics.mixed.cumulative_links import Link
+from app.science.statistics.mixed.cumulative_model import CumulativeModel, fit_cumulative_model
+from app.science.statistics.mixed.cumulative_tests import (
+    cumulative_contrasts,
+    cumulative_term_tests,
+    likelihood_ratio,
+)
+from app.science.statistics.mixed.design import Design, build_design
+from app.science.statistics.mixed.terms import ModelError, factor
 
 
 class Wine(NamedTuple):

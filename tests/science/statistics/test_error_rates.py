@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.science.statistics.error_rates import NullDesign, null_data, population_alpha
-from app.science.statistics.error_rates_table import ErrorRate, ErrorRates, error_rates_from_json
+from app.science.statistics.error_rates import ErrorRate, ErrorRates, error_rates_from_json
 from tests.benchmarks.error_rates import PAGE, TABLE, page
+from tests.benchmarks.null_data import NullDesign, null_data, population_alpha
 from tests.benchmarks.null_tests import ABOUT, GROUPS
 
 

@@ -7,11 +7,16 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from app.science.statistics.mixed_design import Design, build_design
-from app.science.statistics.mixed_likelihood import Rows, restricted_likelihood
-from app.science.statistics.mixed_model import MixedModel, fit_mixed_model
-from app.science.statistics.mixed_terms import ModelError, covariate, factor
-from app.science.statistics.mixed_tests import contrasts, fixed_effects, marginal_means, term_tests
+from app.science.statistics.mixed.design import Design, build_design
+from app.science.statistics.mixed.likelihood import Rows, restricted_likelihood
+from app.science.statistics.mixed.model import MixedModel, fit_mixed_model
+from app.science.statistics.mixed.term_tests import (
+    contrasts,
+    fixed_effects,
+    marginal_means,
+    term_tests,
+)
+from app.science.statistics.mixed.terms import ModelError, covariate, factor
 
 LATENCIES = (0, 125, 350)
 LIMBS = ("hand", "foot")

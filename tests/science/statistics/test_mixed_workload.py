@@ -14,10 +14,10 @@ import pytest
 from scipy.stats import rankdata
 
 from app.science.statistics.friedman import friedman
-from app.science.statistics.mixed_design import build_design
-from app.science.statistics.mixed_model import MixedModel, fit_mixed_model
-from app.science.statistics.mixed_terms import factor
-from app.science.statistics.mixed_tests import contrasts, marginal_means, term_tests
+from app.science.statistics.mixed.design import build_design
+from app.science.statistics.mixed.model import MixedModel, fit_mixed_model
+from app.science.statistics.mixed.term_tests import contrasts, marginal_means, term_tests
+from app.science.statistics.mixed.terms import factor
 from app.science.statistics.pairwise import pairwise
 
 METHODS = ("Object", "Cube", "Stick", "Laser")

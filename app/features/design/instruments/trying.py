@@ -8,8 +8,7 @@ from app.features.design.instruments.schemas import (
     TriedAnswer,
     TryResult,
 )
-from app.science.instruments import Instrument, validate_answers
-from app.science.instruments.explained import ExplainedScore, explain_scoring
+from app.science.instruments import ExplainedScore, Instrument, explain_scoring, validate_answers
 
 
 def try_answers(instrument: Instrument, answers: dict[str, TriedAnswer]) -> TryResult:

@@ -8,8 +8,8 @@ from app.errors import Conflict
 from app.features.movement.avatar.service import typed, version_of
 from app.features.movement.humanoids.service import humanoid_by_hash, parsed_figure
 from app.protocol.avatar import parse_avatar_json
-from app.science.avatar.body.proportions import BodyError
-from app.science.avatar.mjcf.model import AvatarModel, avatar_model
+from app.science.avatar.body import BodyError
+from app.science.avatar.mjcf import AvatarModel, avatar_model
 
 MEDIA_TYPE = "application/xml"
 

@@ -25,9 +25,8 @@ from app.protocol.avatar import (
     loaded,
     parse_avatar_json,
 )
-from app.science.avatar.configuration.axis_settings import AvatarProblem, AvatarSettingsError
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.configuration import AvatarProblem, AvatarSettingsError, Configuration
+from app.science.avatar.mjcf import default_configuration
 
 SHIPPED = "standard"
 """The key of the configuration that comes with the product."""

@@ -25,7 +25,7 @@ from app.platform.access import Caller, is_theirs
 from app.platform.config_problems import problem_views
 from app.protocol import ConfigError, ConfigProblem
 from app.protocol.avatar import file_of, load_avatar
-from app.science.avatar.configuration.configuration import Configuration
+from app.science.avatar.configuration import Configuration
 
 
 def avatar_list(db: Session, caller: Caller) -> list[AvatarSummary]:

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 from app.features.movement.captures.opening import Store, open_stored
 from app.features.movement.captures.source import Cannot, Source
-from app.science.retargeting.pipeline import Retargeted, retarget_motion
-from app.science.retargeting.reference_avatars import (
+from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
     AvatarError,
+    Retargeted,
     named_avatar,
+    retarget_motion,
 )
 from app.science.rig import RigError, RigMotion
 

@@ -25,7 +25,7 @@ from app.features.people.audit.service import record
 from app.models import CaptureRow, SavedJointMap
 from app.platform.access import Caller
 from app.platform.context import AppContext
-from app.science.retargeting.joint_map import (
+from app.science.retargeting import (
     JointMapError,
     Proposal,
     check_joint_map,
@@ -35,7 +35,7 @@ from app.science.retargeting.joint_map import (
 )
 from app.science.rig import Rig
 from app.science.rotations import identity
-from app.science.skeleton.joints import JOINT_NAMES
+from app.science.skeleton import JOINT_NAMES
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,16 @@ from app.features.movement.captures.verification_schemas import (
     WalkerView,
     WalkStepView,
 )
-from app.science.retargeting.gait import Walk
-from app.science.retargeting.leg_angles import LegAngles
-from app.science.retargeting.pipeline import Retargeted
-from app.science.retargeting.reference_avatars import REFERENCE_JOINT_MAP, named_stature_m
-from app.science.retargeting.verification import AvatarFigures, Verification, verify
+from app.science.retargeting import (
+    REFERENCE_JOINT_MAP,
+    AvatarFigures,
+    LegAngles,
+    Retargeted,
+    Verification,
+    Walk,
+    named_stature_m,
+    verify,
+)
 from app.science.rig import RigError
 from app.science.rotations import FloatArray
 

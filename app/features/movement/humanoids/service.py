@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 from app.errors import NotFound
 from app.models import HumanoidRow
 from app.protocol.humanoid import parse_figure
-from app.science.avatar.body.figure import Figure
+from app.science.avatar.body import Figure
 
 
 def humanoid_by_hash(db: Session, content_hash: str) -> HumanoidRow:

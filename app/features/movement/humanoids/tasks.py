@@ -6,8 +6,7 @@ from pathlib import Path
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
 from app.features.movement.captures.contents import compress
 from app.protocol.humanoid import figure_json
-from app.science.avatar.body.figure import Figure, figure_of
-from app.science.avatar.body.humanoid import HumanoidError
+from app.science.avatar.body import Figure, HumanoidError, figure_of
 
 
 @dataclass(frozen=True)

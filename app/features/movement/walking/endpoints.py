@@ -81,7 +81,7 @@ def get_scene_file(scene_key: str, db: Reading, _: SignedIn) -> Response:
 def get_populations(_: SignedIn) -> list[PopulationView]:
     """The documented populations of made-up walkers."""
     # Slow to load, and hardly ever asked for.
-    from app.science.walking.evaluation.populations import POPULATIONS
+    from app.science.walking.synthetic import POPULATIONS
 
     return [PopulationView(name=one.name, about=one.about) for one in POPULATIONS]
 

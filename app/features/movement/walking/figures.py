@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from app.science.walking.evaluation.leave_one_out import (
+from app.science.walking.evaluation import (
     LeftOut,
     neighbours_left_out,
     nodes_left_out,
     people_left_out,
 )
-from app.science.walking.models.fitting import FittedWalking
-from app.science.walking.recording.census import census
-from app.science.walking.records.model import PlannedWalk
+from app.science.walking.models import FittedWalking
+from app.science.walking.recording import census
+from app.science.walking.records import PlannedWalk
 
 Json = dict[str, Any]
 

@@ -15,13 +15,28 @@ from app.features.movement.walking.figures import model_told
 from app.features.movement.walking.progress import RECORD_BYTES, FitFolder
 from app.features.movement.walking.reading import planned_walks
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
-from app.science.walking.following.following import SteeringFollower
-from app.science.walking.maps.database import PERSONS, WalkDatabase, database_of
-from app.science.walking.maps.maps import MapMaker, maps_of
-from app.science.walking.maps.suitability import PAPER, TIME_AWARE, DeviationMap
-from app.science.walking.models.fitting import FitOptions, fitted
-from app.science.walking.records.model import LENGTH, STATURE, TURNING, PlannedWalk, WalkingError
-from app.science.walking.records.parameters import PAPER_PARAMETERS, ParameterGrid, regular_grid
+from app.science.walking.following import SteeringFollower
+from app.science.walking.maps import (
+    PAPER,
+    PERSONS,
+    TIME_AWARE,
+    DeviationMap,
+    MapMaker,
+    WalkDatabase,
+    database_of,
+    maps_of,
+)
+from app.science.walking.models import FitOptions, fitted
+from app.science.walking.records import (
+    LENGTH,
+    PAPER_PARAMETERS,
+    STATURE,
+    TURNING,
+    ParameterGrid,
+    PlannedWalk,
+    WalkingError,
+    regular_grid,
+)
 
 READINGS = {"chosen": None, "paper": PAPER, "time-aware": TIME_AWARE}
 Json = dict[str, Any]

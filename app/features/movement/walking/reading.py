@@ -23,19 +23,11 @@ from app.features.movement.walking.sources import (
 )
 from app.protocol import ConfigError
 from app.science.rig import RigError
-from app.science.walking.evaluation.populations import POPULATIONS
-from app.science.walking.evaluation.synthetic_walks import (
-    Sample,
-    laboratory_scenes,
-    synthetic_walks,
-)
-from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.recording.capture_tracks import Followed, track_of_motion
-from app.science.walking.recording.segmentation import walks_of
-from app.science.walking.recording.tracks import Walker
-from app.science.walking.recording.walks import planned_walk
-from app.science.walking.records.model import PlannedWalk, Track, Walk, WalkingError
-from app.science.walking.scene.scene import Scene, open_scene
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import Followed, Walker, planned_walk, track_of_motion, walks_of
+from app.science.walking.records import PlannedWalk, Track, Walk, WalkingError
+from app.science.walking.scene import Scene, open_scene
+from app.science.walking.synthetic import POPULATIONS, Sample, laboratory_scenes, synthetic_walks
 
 MOST_WALKS = 5000
 

@@ -21,7 +21,7 @@ from app.platform.access import Caller
 from app.platform.config_problems import invalid_config
 from app.platform.context import AppContext
 from app.protocol import ConfigError
-from app.science.walking.scene.scene import Scene
+from app.science.walking.scene import Scene
 
 
 @lru_cache(maxsize=1)

@@ -6,10 +6,9 @@ import numpy as np
 
 from app.features.movement.walking.sources import Cannot, SliceQuestion, Store
 from app.features.movement.walking.telling import opened
-from app.science.walking.maps.interpolation import multilinear
-from app.science.walking.models.fitting import FittedWalking
-from app.science.walking.models.sampling import density_of
-from app.science.walking.records.model import WalkingError
+from app.science.walking.maps import multilinear
+from app.science.walking.models import FittedWalking, density_of
+from app.science.walking.records import WalkingError
 
 Json = dict[str, Any]
 

@@ -6,7 +6,7 @@ Everything here travels between processes: plain, frozen, hashable where an answ
 from dataclasses import dataclass
 from typing import Literal
 
-from app.science.walking.records.model import Kind
+from app.science.walking.records import Kind
 
 LABORATORY = "laboratory"
 """In place of a scene's text: the paper's sixteen straight and curved walks."""

@@ -14,14 +14,12 @@ import numpy as np
 from app.adapters.walks.model_file import read_model
 from app.features.movement.walking.reading import content_of, scene_of
 from app.features.movement.walking.sources import Cannot, Question, Store
-from app.science.walking.following.following import SteeringFollower
-from app.science.walking.models.fitting import FittedWalking
-from app.science.walking.models.prediction import Prediction, Predictor
-from app.science.walking.planning.grid_planner import LazyThetaPlanner
-from app.science.walking.recording.walks import dependencies_of
-from app.science.walking.records.model import STATURE, PlannedPath, WalkingError
-from app.science.walking.scene.outlines import outlines_of
-from app.science.walking.scene.scene import Scene
+from app.science.walking.following import SteeringFollower
+from app.science.walking.models import FittedWalking, Prediction, Predictor
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import dependencies_of
+from app.science.walking.records import STATURE, PlannedPath, WalkingError
+from app.science.walking.scene import Scene, outlines_of
 
 Json = dict[str, Any]
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -69,7 +67,7 @@ def way_asked(question: Question) -> PlannedPath:
 
 
 def _check_drawn(scene: Scene, points: tuple[tuple[float, float], ...]) -> None:
-    from app.science.walking.planning.planner_kernels import sees
+    from app.science.walking.planning import sees
 
     for number, point in enumerate(points, start=1):
         scene.check_point(point, f"Point {number} of the path")

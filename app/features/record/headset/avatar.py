@@ -28,12 +28,9 @@ from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.protocol import Tasks
 from app.protocol.avatar import AvatarFile, file_of
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.body.proportions import BodyError
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.configuration.model_options import DEFAULT_OPTIONS
-from app.science.avatar.mjcf.model import AvatarModel, avatar_model
-from app.science.avatar.mjcf.scene import scene_of
+from app.science.avatar.body import BodyError, Figure
+from app.science.avatar.configuration import DEFAULT_OPTIONS, Configuration
+from app.science.avatar.mjcf import AvatarModel, avatar_model, scene_of
 
 Length = Annotated[float, Field(gt=0.0, le=3.0, allow_inf_nan=False)]
 

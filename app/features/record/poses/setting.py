@@ -11,7 +11,7 @@ from app.models import StudySession
 from app.platform.access import Caller, is_blind, session_by_id
 from app.protocol import StudyProtocol
 from app.science.skeleton import JOINT_NAMES, PARENTS, SkeletonError, build_skeleton
-from app.science.tasks.names import SurfaceKind
+from app.science.tasks import SurfaceKind
 
 USUAL_STATURE_M = 1.72
 """Until the participant's is known."""

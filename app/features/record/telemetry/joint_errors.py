@@ -13,10 +13,13 @@ from numpy.typing import NDArray
 
 from app.features.record.telemetry.movement import Run
 from app.models import JointErrorCourseRow, JointErrorRow, Phase
-from app.science.active_time import active_times
-from app.science.joint_error import JointErrorSummary
-from app.science.joint_error_course import joint_error_course
-from app.science.recorded_error import Recorded, recorded_errors
+from app.science.joint_error import (
+    JointErrorSummary,
+    Recorded,
+    active_times,
+    joint_error_course,
+    recorded_errors,
+)
 from app.science.rotations import FloatArray
 
 Indices = NDArray[np.int64]

@@ -6,13 +6,7 @@ from sqlalchemy.orm import Session
 
 from app.features.record.telemetry.movement import Run, phase_runs
 from app.models import Phase, PhaseLatency
-from app.science.achieved_latency import (
-    HIGHEST_S,
-    AchievedLatency,
-    StreamPair,
-    is_off,
-    latency_of_runs,
-)
+from app.science.latency import HIGHEST_S, AchievedLatency, StreamPair, is_off, latency_of_runs
 
 MS_PER_S = 1000.0
 # Lags that are looked at beyond the ordered one, where that is long.

@@ -7,7 +7,7 @@ import numpy as np
 from sqlalchemy.orm import Session
 
 from app.features.record.telemetry.movement import hinges_of
-from app.science.avatar.targets.hinge_reference import HingeReference
+from app.science.avatar.targets import HingeReference
 from app.science.rotations import identity
 from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 from app.science.tasks import side_unit

@@ -24,8 +24,8 @@ from app.features.record.telemetry.frames import (
 )
 from app.models import TelemetryChunk
 from app.platform.access import session_by_id
-from app.science.avatar.targets.hinge_reference import HingeReference
-from app.science.recorded_error import Asked
+from app.science.avatar.targets import HingeReference
+from app.science.joint_error import Asked
 from app.wire import StreamName
 
 log = logging.getLogger(__name__)

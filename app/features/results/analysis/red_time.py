@@ -2,8 +2,7 @@
 
 from collections.abc import Iterable
 
-from app.science.tasks.summaries import Span, union
-from app.science.tasks.surfaces import side_unit
+from app.science.tasks import Span, side_unit, union
 
 
 def red_spans(contacts: Iterable[tuple[str, float, float]]) -> dict[str, tuple[Span, ...]]:

@@ -12,9 +12,7 @@ from datetime import date, datetime
 
 from app.features.results.imports.schemas import CellProblem, ColumnSet, Mapping
 from app.features.results.imports.sheet import Sheet, SheetRow
-from app.science.instruments import Instrument, score_answers
-from app.science.instruments.answers import fits, valid_answers
-from app.science.instruments.model import Item
+from app.science.instruments import Instrument, Item, fits, score_answers, valid_answers
 
 MISSING = frozenset({"", "na", "n/a", "nan", "null", ".", "-99"})
 """What stands for no answer. Not "none": on many scales that is an answer."""

@@ -9,8 +9,7 @@ import numpy as np
 
 from app.features.results.imports.applying import Form
 from app.features.results.imports.schemas import Shift
-from app.science.instruments import Instrument
-from app.science.instruments.scoring import scores_of_columns
+from app.science.instruments import Instrument, scores_of_columns
 
 _FEWEST = 8
 _AGAINST = 0.2

@@ -13,12 +13,12 @@ from app.features.results.preregistration.excluding import Tables
 from app.features.results.preregistration.schemas import PrimaryResult
 from app.protocol import Preregistration, PrimaryTest, StudyProtocol
 from app.science.statistics import (
+    FloatArray,
     against_reference,
     friedman,
     page_trend,
     rm_anova,
 )
-from app.science.statistics.arrays import FloatArray
 
 _COLUMNS = {"contact_time": "side_red_s", "completions": "completions"}
 _SIDES: dict[str, Literal["two-sided", "greater", "less"]] = {

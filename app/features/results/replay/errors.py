@@ -7,9 +7,8 @@ from numpy.typing import NDArray
 
 from app.features.record.telemetry import Frames
 from app.features.results.replay.grid import Grid, Indices, Sampling
-from app.science.avatar.targets.hinge_reference import HingeReference
-from app.science.joint_error import ERROR_JOINTS, joint_errors
-from app.science.recorded_error import Asked
+from app.science.avatar.targets import HingeReference
+from app.science.joint_error import ERROR_JOINTS, Asked, joint_errors
 from app.science.rotations import FloatArray
 
 

@@ -29,7 +29,7 @@ from sqlalchemy.orm import Session
 from app.features.record.telemetry import Frames, iter_frames
 from app.features.results.replay.errors import RunErrors, no_errors
 from app.features.results.replay.grid import Grid, Sampling, uncovered
-from app.science.avatar.targets.hinge_reference import HingeReference
+from app.science.avatar.targets import HingeReference
 from app.science.joint_error import ERROR_JOINTS
 from app.science.rotations import is_unit
 from app.science.skeleton import JOINT_COUNT, JOINT_NAMES, PARENTS, Skeleton, forward_kinematics

@@ -1,1 +1,83 @@
-"""The body: its 52 parts, proportions, masses and shapes."""
+"""The body: its parts and axes, proportions, masses and shapes.
+
+`PART_NAMES`, `AXES` and the tables beside them fix the 52 parts and the order of their axes.
+`build_body` makes a `Body` of a stature or of a model's lengths, `body_masses` shares out its mass,
+and `figure_of` takes a `Humanoid`, a rigged model, for the body it is. All places are metres in the
+T-pose, y up; nothing here knows a simulator.
+"""
+
+from app.science.avatar.body.body import REQUIRED_PARTS, Body, BodyPart, build_body
+from app.science.avatar.body.deleva import Population, mass_fractions, segments_of
+from app.science.avatar.body.figure import Figure, figure_of
+from app.science.avatar.body.hulls import Piece
+from app.science.avatar.body.humanoid import Humanoid, HumanoidError
+from app.science.avatar.body.humanoid_pose import RiggedMesh, humanoid_of
+from app.science.avatar.body.inertial import Inertial, combined
+from app.science.avatar.body.layers import (
+    NO_COLLISION,
+    SCENE,
+    SCENE_BIT,
+    CollisionBits,
+    collision_bits,
+    excluded_pairs,
+)
+from app.science.avatar.body.masses import BodyMasses, body_masses
+from app.science.avatar.body.parts import (
+    AXES,
+    AXES_OF,
+    AXIS_NAMES,
+    FINGER_PARTS,
+    FINGERS,
+    PARENT_OF,
+    PART_NAMES,
+    SEGMENTS,
+    SIDES,
+    Axis,
+    Letter,
+    mirrored_name,
+)
+from app.science.avatar.body.proportions import BodyError, proportions
+from app.science.avatar.body.shapes import Capsule, Shape
+
+__all__ = [
+    "AXES",
+    "AXES_OF",
+    "AXIS_NAMES",
+    "FINGERS",
+    "FINGER_PARTS",
+    "NO_COLLISION",
+    "PARENT_OF",
+    "PART_NAMES",
+    "REQUIRED_PARTS",
+    "SCENE",
+    "SCENE_BIT",
+    "SEGMENTS",
+    "SIDES",
+    "Axis",
+    "Body",
+    "BodyError",
+    "BodyMasses",
+    "BodyPart",
+    "Capsule",
+    "CollisionBits",
+    "Figure",
+    "Humanoid",
+    "HumanoidError",
+    "Inertial",
+    "Letter",
+    "Piece",
+    "Population",
+    "RiggedMesh",
+    "Shape",
+    "body_masses",
+    "build_body",
+    "collision_bits",
+    "combined",
+    "excluded_pairs",
+    "figure_of",
+    "humanoid_of",
+    "mass_fractions",
+    "mirrored_name",
+    "proportions",
+    "segments_of",
+]

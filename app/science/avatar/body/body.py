@@ -18,7 +18,7 @@ from app.science.avatar.body.own_bones import LIKE_A_PERSONS, own_bones, sole_li
 from app.science.avatar.body.parts import FINGER_PARTS, PARENT_OF, PART_NAMES, SIDES
 from app.science.avatar.body.proportions import BodyError, Proportions, proportions
 from app.science.avatar.body.shapes import Shape, fingers_of, mitten, shapes_of
-from app.science.rotations.scalars import Vector, v_add, v_subtract
+from app.science.rotations import Vector, v_add, v_subtract
 
 __all__ = ["REQUIRED_PARTS", "Body", "BodyError", "BodyPart", "build_body"]
 

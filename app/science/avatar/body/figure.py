@@ -18,7 +18,7 @@ from app.science.avatar.body.hulls import Piece, piece_of
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError
 from app.science.avatar.body.parts import FINGERS, PART_NAMES, SIDES
 from app.science.avatar.body.proportions import LEAST, MOST, BodyError, segment_lengths
-from app.science.rotations.scalars import Vector, v_scale
+from app.science.rotations import Vector, v_scale
 
 _SHORTEST, _LONGEST = 0.3, 3.0
 _DIGITS = 6

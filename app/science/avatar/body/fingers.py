@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from math import sqrt
 
 from app.science.avatar.body.parts import FINGERS, SEGMENTS
-from app.science.rotations.scalars import Vector, v_scale
+from app.science.rotations import Vector, v_scale
 
 HAND_BREADTH = 0.44
 """Of the palm at the knuckles, as a fraction of the length of the hand."""

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Vector
+from app.science.rotations import FloatArray, Vector
 
 if TYPE_CHECKING:
     from scipy.spatial import ConvexHull

@@ -7,8 +7,7 @@ the soles at height zero. Bones and mesh of a file become one by `humanoid_pose`
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Vector
+from app.science.rotations import FloatArray, Vector
 
 
 class HumanoidError(ValueError):

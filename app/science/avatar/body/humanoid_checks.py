@@ -7,7 +7,7 @@ import numpy as np
 from app.science.avatar.body.body import REQUIRED_PARTS
 from app.science.avatar.body.humanoid import HumanoidError, HumanoidPart
 from app.science.avatar.body.parts import PARENT_OF, PART_NAMES
-from app.science.retargeting.joint_chains import is_below
+from app.science.retargeting import is_below
 from app.science.rig import Rig
 
 _BELOW = 0.4

@@ -25,10 +25,9 @@ import numpy.typing as npt
 from app.science.avatar.body.humanoid import Humanoid, HumanoidError, HumanoidPart
 from app.science.avatar.body.humanoid_checks import check_bones, check_feet, check_standing
 from app.science.avatar.body.parts import PART_NAMES
-from app.science.retargeting.t_pose import t_pose
+from app.science.retargeting import t_pose
 from app.science.rig import Rig, RigError
-from app.science.rotations import FloatArray, conjugate, multiply, rotate, swing_between
-from app.science.rotations.scalars import Vector
+from app.science.rotations import FloatArray, Vector, conjugate, multiply, rotate, swing_between
 from app.science.skeleton import JOINT_NAMES
 
 HEAD_AT, ANKLE_AT = 0.875, 0.039

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import fsum
 
 from app.science.avatar.body.shapes import Box, Capsule, Shape
-from app.science.rotations.scalars import Quaternion, Vector, q_rotate, v_add, v_subtract
+from app.science.rotations import Quaternion, Vector, q_rotate, v_add, v_subtract
 
 Tensor = tuple[float, float, float, float, float, float]
 """A symmetric matrix as xx, yy, zz, xy, xz, yz."""

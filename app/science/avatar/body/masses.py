@@ -19,7 +19,7 @@ from app.science.avatar.body.inertial import Inertial, combined, of_shape, remai
 from app.science.avatar.body.parts import PART_NAMES, SIDES
 from app.science.avatar.body.proportions import BodyError, Proportions
 from app.science.avatar.body.shapes import fingers_of, shapes_of
-from app.science.rotations.scalars import Vector, v_add, v_subtract
+from app.science.rotations import Vector, v_add, v_subtract
 
 ESTIMATES: tuple[str, ...] = (
     ("Trunk, landmarks from the hip joints up to the head's joint: navel at .26, lower end of the"

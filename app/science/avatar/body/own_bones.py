@@ -12,7 +12,7 @@ from types import MappingProxyType
 from app.science.avatar.body.figure import Figure
 from app.science.avatar.body.parts import FINGER_PARTS, PARENT_OF, PART_NAMES
 from app.science.avatar.body.proportions import Proportions
-from app.science.rotations.scalars import Vector, v_add, v_length, v_scale, v_subtract
+from app.science.rotations import Vector, v_add, v_length, v_scale, v_subtract
 
 _SHORTEST_M = 1e-4
 LIKE_A_PERSONS = ("Hand", "Foot", "Toes", "Head")

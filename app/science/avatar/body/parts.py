@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal
 
-from app.science.rotations.scalars import Vector
+from app.science.rotations import Vector
 
 Letter = Literal["X", "Y", "Z"]
 SIDES = ("Left", "Right")

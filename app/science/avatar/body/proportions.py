@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 from app.science.avatar.body.fingers import HAND_BREADTH, finger_bones
 from app.science.avatar.body.parts import PARENT_OF, PART_NAMES, SIDES
-from app.science.rotations.scalars import Vector, v_add
+from app.science.rotations import Vector, v_add
 from app.science.skeleton import JOINT_INDEX, Skeleton, SkeletonError, build_skeleton
 
 _FOOT_LENGTH, _BEHIND_THE_ANKLE = 0.152, 0.25

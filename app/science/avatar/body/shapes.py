@@ -15,7 +15,7 @@ from math import pi
 
 from app.science.avatar.body.parts import FINGERS, SEGMENTS
 from app.science.avatar.body.proportions import Proportions
-from app.science.rotations.scalars import Vector, v_add, v_length, v_subtract
+from app.science.rotations import Vector, v_add, v_length, v_subtract
 
 _HALF_BREADTHS = {"Hips": 0.0955, "Spine": 0.082, "Chest": 0.085, "UpperChest": 0.095}
 _HALF_PALM, _HALF_FOOT_BREADTH = 0.008, 0.0275

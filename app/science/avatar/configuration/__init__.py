@@ -1,1 +1,68 @@
-"""What a laboratory sets: limits, gains, colliders and layers, joint by joint."""
+"""What a laboratory sets: limits, gains, colliders and locks, axis by axis.
+
+A `Configuration` that exists is consistent; what cannot be is refused with every `AvatarProblem` at
+once. `lock`, `with_axis` and their like return an edited copy.
+"""
+
+from app.science.avatar.configuration.axis_settings import (
+    AvatarProblem,
+    AvatarSettingsError,
+    AxisSettings,
+    degrees_of,
+)
+from app.science.avatar.configuration.configuration import (
+    USUAL_MASS_KG,
+    Configuration,
+    Hips,
+    TargetSpace,
+    piece_problems,
+)
+from app.science.avatar.configuration.editing import lock, with_axis, with_global, without_parts
+from app.science.avatar.configuration.limits import ANATOMIC, Preset, limits_of
+from app.science.avatar.configuration.model_options import (
+    DEFAULT_OPTIONS,
+    FRICTION,
+    HIPS_TARGET,
+    LIMIT_SOLREF,
+    SIMPLE,
+    TIMESTEP_S,
+    WALL_SOLIMP,
+    WALL_SOLREF,
+    WELD_SOLIMP,
+    WELD_SOLREF,
+    ColliderKind,
+    Colliders,
+    ModelOptions,
+)
+
+__all__ = [
+    "ANATOMIC",
+    "DEFAULT_OPTIONS",
+    "FRICTION",
+    "HIPS_TARGET",
+    "LIMIT_SOLREF",
+    "SIMPLE",
+    "TIMESTEP_S",
+    "USUAL_MASS_KG",
+    "WALL_SOLIMP",
+    "WALL_SOLREF",
+    "WELD_SOLIMP",
+    "WELD_SOLREF",
+    "AvatarProblem",
+    "AvatarSettingsError",
+    "AxisSettings",
+    "ColliderKind",
+    "Colliders",
+    "Configuration",
+    "Hips",
+    "ModelOptions",
+    "Preset",
+    "TargetSpace",
+    "degrees_of",
+    "limits_of",
+    "lock",
+    "piece_problems",
+    "with_axis",
+    "with_global",
+    "without_parts",
+]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from app.science.avatar.body.parts import mirrored_name
+from app.science.avatar.body import mirrored_name
 from app.science.avatar.configuration.axis_settings import AxisSettings
 from app.science.avatar.configuration.configuration import Configuration
 from app.science.avatar.configuration.groups import axes_of, parts_of

@@ -10,7 +10,7 @@ Source: Karas (2020), section 6.4.2 and figure 6.2.
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from app.science.avatar.body.parts import AXES_OF, AXIS_NAMES, FINGER_PARTS, PART_NAMES
+from app.science.avatar.body import AXES_OF, AXIS_NAMES, FINGER_PARTS, PART_NAMES
 from app.science.avatar.configuration.axis_settings import AvatarProblem, AvatarSettingsError
 
 _TRUNK = ("Hips", "Spine", "Chest", "UpperChest")

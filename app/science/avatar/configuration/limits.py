@@ -14,7 +14,7 @@ from math import pi, radians
 from types import MappingProxyType
 from typing import Literal
 
-from app.science.avatar.body.parts import AXES, FINGERS
+from app.science.avatar.body import AXES, FINGERS
 
 Preset = Literal["anatomic", "free"]
 

@@ -7,9 +7,15 @@ The hips follow the participant in one of two ways:
   acceleration, and nothing pushes them.
 - `welded`: a free body, tied to the mocap body `HipsTarget` by a stiff weld. Limbs feel the hips'
   inertia. Whoever teleports the target must also write the hips' own place and speed.
+
+Each body part touches things with a shape. A part has its simple shapes (capsules and boxes) and,
+where a humanoid model gives it a skin, a convex piece of that. Both can be in one model, of which
+one touches; so it can be changed while the avatar runs (`switches.use_collider`). A part without a
+piece keeps its simple shapes.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
 TIMESTEP_S: Final = 0.002
@@ -49,3 +55,27 @@ class ModelOptions:
 
 DEFAULT_OPTIONS: Final = ModelOptions()
 """Carried hips, gravity, self-collision, up to one second of latency."""
+
+
+ColliderKind = Literal["simple", "mesh", "none"]
+
+
+@dataclass(frozen=True)
+class Colliders:
+    """What the parts of one model collide with.
+
+    Attributes:
+        kinds: body part -> kind; `simple` for those that are not named.
+        both: whether convex pieces are in the model beside the simple shapes.
+    """
+
+    kinds: Mapping[str, ColliderKind] = field(default_factory=dict)
+    both: bool = False
+
+    def of(self, part: str) -> ColliderKind:
+        """The kind of a part."""
+        return self.kinds.get(part, "simple")
+
+
+SIMPLE: Final = Colliders()
+"""Capsules and boxes for every part."""

@@ -24,7 +24,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from app.science.avatar.body.parts import AXES_OF, PART_NAMES
+from app.science.avatar.body import AXES_OF, PART_NAMES
 from app.science.avatar.configuration.axis_settings import (
     AvatarProblem,
     AvatarSettingsError,

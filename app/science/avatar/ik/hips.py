@@ -25,7 +25,7 @@ together reach their goals best. Source: geometry; the choices named here are ou
 from dataclasses import dataclass
 from math import sqrt
 
-from app.science.rotations.scalars import (
+from app.science.rotations import (
     Quaternion,
     Vector,
     q_from_axes,

@@ -33,21 +33,59 @@ error: Sugihara (2011), IEEE Trans. Robotics 27(5), 984-991.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import pi
+from math import atan2, cos, pi, radians, sin, sqrt
+from types import MappingProxyType
 
 import mujoco
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import AXIS_NAMES
+from app.science.avatar.body import AXIS_NAMES, SIDES
 from app.science.avatar.ik.bounded_step import bounded_step
 from app.science.avatar.ik.chain import Chain
 from app.science.avatar.ik.goals import HEAD, HIPS, LEFT_SHIN, RIGHT_SHIN, Goals, IkError
 from app.science.avatar.ik.hips import Tracked, estimated_hips
-from app.science.avatar.ik.rest_pose import REST_POSE_RAD
-from app.science.avatar.ik.turns import rotation_between, turned
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Quaternion, Vector
+from app.science.rotations import FloatArray, Quaternion, Vector, q_multiply
+
+_TINY = 1e-12
+
+
+def rotation_between(current: Quaternion, goal: Quaternion) -> Vector:
+    """Return the rotation vector, in the world, that turns `current` into `goal`; at most pi long.
+
+    Both are world_from_part and need not be quite unit.
+    """
+    w, x, y, z = current
+    dw, dx, dy, dz = q_multiply(goal, (w, -x, -y, -z))
+    if dw < 0.0:
+        dw, dx, dy, dz = -dw, -dx, -dy, -dz
+    sine = sqrt(dx * dx + dy * dy + dz * dz)
+    factor = 2.0 * atan2(sine, dw) / sine if sine > _TINY else 2.0
+    return (factor * dx, factor * dy, factor * dz)
+
+
+def turned(current: Quaternion, by: Vector) -> Quaternion:
+    """Return `current` turned by a rotation vector in the world."""
+    x, y, z = by
+    angle = sqrt(x * x + y * y + z * z)
+    half = sin(angle / 2.0) / angle if angle > _TINY else 0.5
+    w, x, y, z = q_multiply((cos(angle / 2.0), half * x, half * y, half * z), current)
+    scale = 1.0 / sqrt(w * w + x * x + y * y + z * z)
+    return (w * scale, x * scale, y * scale, z * scale)
+
+
+KNEE_DEG, ELBOW_DEG = 25.0, 30.0
+# Knees and elbows are bent a little. A straight limb cannot get shorter by a small turn of its
+# joint, so from the T-pose a solver that looks at small turns only finds no way to bend it.
+REST_POSE_RAD: Mapping[str, float] = MappingProxyType(
+    {
+        axis: radians(angle)
+        for side in SIDES
+        for axis, angle in ((f"{side}LowerLegX", KNEE_DEG), (f"{side}LowerArmY", ELBOW_DEG))
+    }
+)
+"""Axis -> its angle at rest; every other axis rests at zero, as in the T-pose."""
+
 
 CALM, DAMPING = 0.1, 0.5
 FAR_M, FAR_RAD = 0.5, pi / 2.0

@@ -1,1 +1,32 @@
-"""The body and its configuration as one MuJoCo model."""
+"""The body and its configuration as one MuJoCo model.
+
+`avatar_model` writes the MJCF of a configuration for a stature or a figure, with its scene; the
+same text is loaded here and in the browser. `hinge_table` says where a loaded model keeps each
+axis.
+"""
+
+from app.science.avatar.mjcf.gains import NATURAL_HZ, default_configuration
+from app.science.avatar.mjcf.hinge_table import HingeTable, IndexArray, SimulationError, hinge_table
+from app.science.avatar.mjcf.hinges import Hinge, hinges_of
+from app.science.avatar.mjcf.mjcf import build_mjcf, driven_axes
+from app.science.avatar.mjcf.model import AvatarModel, avatar_model
+from app.science.avatar.mjcf.scene import FLOOR, FLOOR_ONLY, Scene, scene_of
+
+__all__ = [
+    "FLOOR",
+    "FLOOR_ONLY",
+    "NATURAL_HZ",
+    "AvatarModel",
+    "Hinge",
+    "HingeTable",
+    "IndexArray",
+    "Scene",
+    "SimulationError",
+    "avatar_model",
+    "build_mjcf",
+    "default_configuration",
+    "driven_axes",
+    "hinge_table",
+    "hinges_of",
+    "scene_of",
+]

@@ -13,17 +13,25 @@ The greatest torques are of the order of what strong people can exert, doubled. 
 while a person is followed, as people have no more, but they bound what a jump of the target does.
 
 Frequencies and torques are estimates. Measured tuning (relay experiments) replaces the gains.
+
+`default_configuration` comes with the product. Limits are a human body's; gains and torques follow
+from what each axis moves in a body of average stature and mass. A relay tuning finds better ones
+for a certain body, and is saved beside this.
 """
 
 from collections.abc import Mapping
 from math import pi
 from types import MappingProxyType
+from typing import Final
 
-from app.science.avatar.body.body import Body
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.body.parts import FINGER_PARTS
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.limits import Preset, limits_of
+from app.science.avatar.body import FINGER_PARTS, Body, BodyMasses, body_masses, build_body
+from app.science.avatar.configuration import (
+    USUAL_MASS_KG,
+    AxisSettings,
+    Configuration,
+    Preset,
+    limits_of,
+)
 from app.science.avatar.mjcf.hinges import hinges_of
 
 NATURAL_HZ: Mapping[str, float] = MappingProxyType(
@@ -75,3 +83,13 @@ def _kind(axis: str) -> str:
 def _settled(value: float) -> float:
     """Six digits: as many as a person may want to read."""
     return float(f"{value:.6g}")
+
+
+USUAL_STATURE_M: Final = 1.75
+
+
+def default_configuration(*, limits: Preset = "anatomic") -> Configuration:
+    """Every axis of the whole body; `free` lets the elbow turn about its third axis."""
+    body = build_body(USUAL_STATURE_M)
+    masses = body_masses(body, USUAL_MASS_KG)
+    return Configuration(default_settings(body, masses, preset=limits))

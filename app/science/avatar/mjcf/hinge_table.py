@@ -6,10 +6,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import AXIS_NAMES, PART_NAMES
-from app.science.avatar.configuration.model_options import HIPS_TARGET
-from app.science.avatar.mjcf.simulation_error import SimulationError
-from app.science.skeleton.joints import JOINT_NAMES, PARENTS
+from app.science.avatar.body import AXIS_NAMES, PART_NAMES
+from app.science.avatar.configuration import HIPS_TARGET
+from app.science.skeleton import JOINT_NAMES, PARENTS
+
+
+class SimulationError(ValueError):
+    """The model is no avatar, a name is not in it, or a value or time cannot be."""
+
 
 if TYPE_CHECKING:
     import mujoco

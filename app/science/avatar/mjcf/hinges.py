@@ -11,18 +11,20 @@ and fro at each step for ever if in one step of length h
 as each throw then asks for the greatest torque the other way. With an armature of .15 I the joint
 of a critically damped motor, kd = 2 w I, stays clear of this up to w = .15 / h = 75 rad/s, which is
 12 Hz, even where J is zero. It costs 15 % more torque to turn a limb at the same rate.
+
+Locked axes become part of a body's place, as a cast turns the hinges around it (`with_locks`). A
+part's rotation is a product of turns about its axes, R1 R2 R3. A locked axis is a constant L in
+it. As R(a, q) L = L R(L^-1 a, q), all constants can stand in front, where they turn the whole body,
+if each axis that stood before one is turned back by it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import cos, sin, sqrt
 from types import MappingProxyType
 
-from app.science.avatar.body.body import Body
-from app.science.avatar.body.inertial import Inertial, combined
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.body.parts import AXES, AXES_OF
-from app.science.rotations.scalars import Quaternion, v_scale
+from app.science.avatar.body import AXES, AXES_OF, Axis, Body, BodyMasses, Inertial, combined
+from app.science.rotations import IDENTITY, Quaternion, Vector, q_multiply, q_rotate, v_scale
 
 ARMATURE_SHARE = 0.15
 """Armature of a hinge as a fraction of the inertia of its limb; see the module."""
@@ -101,3 +103,30 @@ def _limbs(
                 else [thing.turned(turn, places[name]) for thing in hanging[name]]
             )
     return {part: combined(things) for part, things in hanging.items()}
+
+
+def with_locks(
+    axes: Sequence[Axis], locked_rad: Sequence[float | None]
+) -> tuple[Quaternion, list[tuple[Axis, Vector]]]:
+    """Return the turn of all locked axes, and each other axis with its direction behind that turn.
+
+    Args:
+        axes: of one part, outermost first.
+        locked_rad: for each, the angle it is locked at; None where it turns.
+    """
+    turn: Quaternion = IDENTITY
+    turning: list[tuple[Axis, Vector]] = []
+    for axis, angle in zip(axes, locked_rad, strict=True):
+        if angle is None:
+            turning.append((axis, axis.direction))
+        elif angle != 0.0:
+            turn = q_multiply(turn, _about(axis.direction, angle))
+            back = _about(axis.direction, -angle)
+            turning = [(before, q_rotate(back, way)) for before, way in turning]
+    return turn, turning
+
+
+def _about(direction: Vector, angle: float) -> Quaternion:
+    x, y, z = direction
+    half = sin(angle / 2.0)
+    return (cos(angle / 2.0), x * half, y * half, z * half)

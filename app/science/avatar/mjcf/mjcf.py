@@ -11,45 +11,104 @@ beside each other: angle, speed, angle, speed, in the order of `driven_axes`. A 
 neither hinge nor motor; the part is turned by the locked angle.
 
 A part's convex piece, where it has one, is a mesh beside its simple shapes; what a part does not
-collide with has empty masks (`colliders`).
+collide with has empty masks (`Colliders`).
 
 How the hips follow the participant is told in `model_options`.
+
+Every byte of the XML text is decided: element by element, attribute by attribute.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from xml.sax.saxutils import quoteattr
 
-from app.science.avatar.body.body import Body, BodyError, BodyPart
-from app.science.avatar.body.hulls import Piece
-from app.science.avatar.body.inertial import Inertial
-from app.science.avatar.body.layers import (
+from app.science.avatar.body import (
+    AXES_OF,
     NO_COLLISION,
     SCENE,
+    Axis,
+    Body,
+    BodyError,
+    BodyMasses,
+    BodyPart,
+    Capsule,
     CollisionBits,
+    Inertial,
+    Piece,
+    Shape,
     collision_bits,
     excluded_pairs,
 )
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.body.parts import AXES_OF, Axis
-from app.science.avatar.body.shapes import Capsule, Shape
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.colliders import SIMPLE, Colliders
-from app.science.avatar.configuration.locks import with_locks
-from app.science.avatar.configuration.model_options import (
+from app.science.avatar.configuration import (
     DEFAULT_OPTIONS,
     FRICTION,
     HIPS_TARGET,
     LIMIT_SOLREF,
+    SIMPLE,
     TIMESTEP_S,
     WALL_SOLIMP,
     WALL_SOLREF,
     WELD_SOLIMP,
     WELD_SOLREF,
+    AxisSettings,
+    Colliders,
     ModelOptions,
 )
-from app.science.avatar.mjcf.hinges import hinges_of
-from app.science.avatar.mjcf.mjcf_text import Element
+from app.science.avatar.mjcf.hinges import hinges_of, with_locks
 from app.science.avatar.mjcf.scene import FLOOR, FLOOR_ONLY, Scene
-from app.science.rotations.scalars import IDENTITY, Vector
+from app.science.rotations import IDENTITY, Vector
+
+Value = str | float | Iterable[float]
+_INDENT = "  "
+
+
+def number(value: float) -> str:
+    """Twelve digits, more than any measure has and fewer than machines may disagree about."""
+    text = f"{value:.12g}"
+    return "0" if text == "-0" else text
+
+
+class Element:
+    """One XML element; attributes and children stay in the order they were given."""
+
+    def __init__(self, tag: str, /, **attributes: Value | None) -> None:
+        self._tag = tag
+        self._attributes = {
+            name.rstrip("_"): _text(value)
+            for name, value in attributes.items()
+            if value is not None
+        }
+        self._children: list[Element] = []
+
+    def add(self, tag: str, /, **attributes: Value | None) -> "Element":
+        """Append a child and return it."""
+        child = Element(tag, **attributes)
+        self._children.append(child)
+        return child
+
+    def lines(self, depth: int = 0) -> Iterable[str]:
+        """The element as lines of text."""
+        pad = _INDENT * depth
+        words = "".join(f" {name}={quoteattr(text)}" for name, text in self._attributes.items())
+        if not self._children:
+            yield f"{pad}<{self._tag}{words}/>"
+            return
+        yield f"{pad}<{self._tag}{words}>"
+        for child in self._children:
+            yield from child.lines(depth + 1)
+        yield f"{pad}</{self._tag}>"
+
+    def text(self) -> str:
+        """The whole document."""
+        return "\n".join(self.lines()) + "\n"
+
+
+def _text(value: Value) -> str:
+    if isinstance(value, str):
+        return value
+    if isinstance(value, int | float):
+        return number(value)
+    return " ".join(number(part) for part in value)
+
 
 PIECE = "mesh"
 """What the geom of a convex piece is called, after its part and a slash."""

@@ -8,15 +8,23 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from app.science.avatar.body.body import Body, build_body
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.body.masses import BodyMasses, body_masses
-from app.science.avatar.body.parts import AXES_OF, PART_NAMES
-from app.science.avatar.body.proportions import BodyError
-from app.science.avatar.configuration.colliders import Colliders
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.configuration.configuration_checks import piece_problems
-from app.science.avatar.configuration.model_options import DEFAULT_OPTIONS, ModelOptions
+from app.science.avatar.body import (
+    AXES_OF,
+    PART_NAMES,
+    Body,
+    BodyError,
+    BodyMasses,
+    Figure,
+    body_masses,
+    build_body,
+)
+from app.science.avatar.configuration import (
+    DEFAULT_OPTIONS,
+    Colliders,
+    Configuration,
+    ModelOptions,
+    piece_problems,
+)
 from app.science.avatar.mjcf.mjcf import build_mjcf
 from app.science.avatar.mjcf.scene import FLOOR_ONLY, Scene
 

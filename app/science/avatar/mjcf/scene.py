@@ -6,9 +6,8 @@ World frame as everywhere: x right, y up, the participant faces -z, the floor at
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from app.science.rotations.scalars import Vector
-from app.science.tasks.names import SurfaceKind
-from app.science.tasks.surfaces import TaskLayout
+from app.science.rotations import Vector
+from app.science.tasks import SurfaceKind, TaskLayout
 
 FLOOR = "floor"
 

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.science.avatar.body.parts import PARENT_OF
-from app.science.rotations.scalars import Vector
+from app.science.avatar.body import PARENT_OF
+from app.science.rotations import Vector
 
 if TYPE_CHECKING:
     import mujoco

@@ -30,20 +30,23 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.avatar.body.parts import AXES
-from app.science.avatar.configuration.configuration import TargetSpace
-from app.science.avatar.simulation.avatar_state import AvatarState
-from app.science.avatar.simulation.delay import DelayBuffer
-from app.science.avatar.simulation.simulation import PhysicsAvatar
-from app.science.avatar.targets.targets import TargetAngles, Targets
-from app.science.rotations import FloatArray, conjugate, identity, multiply, slerp
-from app.science.rotations.scalars import (
+from app.science.avatar.body import AXES
+from app.science.avatar.configuration import TargetSpace
+from app.science.avatar.simulation.simulation import AvatarState, PhysicsAvatar
+from app.science.avatar.targets import TargetAngles, Targets
+from app.science.delay import DelayBuffer
+from app.science.rotations import (
     IDENTITY,
+    FloatArray,
     Quaternion,
+    conjugate,
+    identity,
+    multiply,
     q_inverse_multiply,
     q_multiply,
+    slerp,
 )
-from app.science.skeleton.joints import JOINT_NAMES
+from app.science.skeleton import JOINT_NAMES
 
 YIELD_S = 0.1
 _LIMBS = [JOINT_NAMES.index(name) for name in ("Neck", "LeftShoulder", "RightShoulder")]

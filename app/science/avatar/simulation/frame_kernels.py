@@ -5,12 +5,12 @@ Importing this module loads the compiler; a simulation does so when it is made.
 
 import numpy as np
 
-from app.science.avatar.mjcf.hinge_table import IndexArray
-from app.science.retargeting.kernels import compiled
+from app.science.avatar.mjcf import IndexArray
+from app.science.compiled import compiled_fused
 from app.science.rotations import FloatArray
 
 
-@compiled
+@compiled_fused
 def ramp(
     goal: FloatArray, ranges: FloatArray, command: FloatArray, slots: IndexArray,
     duration_s: float, fastest: float, controls: FloatArray,
@@ -35,7 +35,7 @@ def ramp(
     return after, limited
 
 
-@compiled
+@compiled_fused
 def local_rotations(world: FloatArray, parents: IndexArray, rows: IndexArray) -> FloatArray:
     """Rotations parent^-1 row (n, 4) of bodies' world orientations (B, 4)."""
     found = np.empty((rows.shape[0], 4))

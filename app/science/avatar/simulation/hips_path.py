@@ -6,10 +6,8 @@ Plain floats: this runs at every step, and arrays of three or four numbers are s
 from math import acos, dist, isfinite, pi, sqrt
 from typing import TYPE_CHECKING
 
-from app.science.avatar.mjcf.hinge_table import HingeTable
-from app.science.avatar.mjcf.simulation_error import SimulationError
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Quaternion, Vector, q_blend
+from app.science.avatar.mjcf import HingeTable, SimulationError
+from app.science.rotations import FloatArray, Quaternion, Vector, q_blend
 
 if TYPE_CHECKING:
     import mujoco

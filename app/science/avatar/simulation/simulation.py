@@ -24,20 +24,55 @@ whole steps, inside the simulation; the hips are never delayed, and zero bypasse
 """
 
 import logging
+from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
 
-from app.science.avatar.body.parts import AXES
-from app.science.avatar.mjcf.hinge_table import HingeTable, hinge_table
-from app.science.avatar.mjcf.simulation_error import SimulationError
-from app.science.avatar.simulation.avatar_state import AvatarState, Health
-from app.science.avatar.simulation.boxes import Boxes
+from app.science.avatar.body import AXES
+from app.science.avatar.mjcf import HingeTable, SimulationError, hinge_table
 from app.science.avatar.simulation.contacts import Contact, read_contacts
 from app.science.avatar.simulation.hips_path import HipsPath
 from app.science.avatar.simulation.soft_contacts import SoftContacts
-from app.science.avatar.simulation.switches import Switches
+from app.science.avatar.simulation.switches import Boxes, Switches
 from app.science.rotations import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class AvatarState:
+    """The avatar at one moment.
+
+    Attributes:
+        time_s: steps taken times 2 ms.
+        root_position_m: (3,) the hips' joint in the world.
+        rotations: (22, 4) local rotations wxyz as in `skeleton`; row 0 is world_from_hips.
+        angles_rad: (91,) in the order of `AXIS_NAMES`; NaN where the model has no hinge.
+        command_rad: (91,) likewise, the targets in force before any added latency.
+    """
+
+    time_s: float
+    root_position_m: FloatArray
+    rotations: FloatArray
+    angles_rad: FloatArray
+    command_rad: FloatArray
+
+
+@dataclass(frozen=True)
+class Health:
+    """What happened since the beginning.
+
+    Attributes:
+        restored: frames after which the simulation had failed and was put back.
+        ignored_inputs: frames with a value that was not finite.
+        limited_targets: frames in which a target moved faster than `simulation.MAX_SPEED_RAD_S`.
+        teleports: times the hips were put elsewhere.
+    """
+
+    restored: int
+    ignored_inputs: int
+    limited_targets: int
+    teleports: int
+
 
 MAX_SPEED_RAD_S = 40.0
 WILD_RAD_S = 1000.0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.science.avatar.mjcf.hinge_table import HingeTable
+from app.science.avatar.mjcf import HingeTable
 from app.science.rotations import FloatArray
 
 if TYPE_CHECKING:

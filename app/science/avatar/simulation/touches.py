@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import PARENT_OF
-from app.science.skeleton.joints import JOINT_INDEX
+from app.science.avatar.body import PARENT_OF
+from app.science.skeleton import JOINT_INDEX
 
 if TYPE_CHECKING:
     import mujoco

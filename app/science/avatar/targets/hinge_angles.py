@@ -27,10 +27,9 @@ from math import acos, atan2, cos, hypot, isfinite, nan, pi, sin
 import numpy as np
 import numpy.typing as npt
 
-from app.science.retargeting.kernels import compiled
-from app.science.retargeting.plan import IntArray
-from app.science.rotations import FloatArray
-from app.science.rotations.scalars import Quaternion, Vector
+from app.science.compiled import compiled_fused
+from app.science.retargeting import IntArray
+from app.science.rotations import FloatArray, Quaternion, Vector
 
 BoolArray = npt.NDArray[np.bool_]
 _TURN = 2.0 * pi
@@ -41,7 +40,7 @@ _FARTHEST_RAD = 1.25 * pi
 _STRAIGHT = 0.05
 
 
-@compiled
+@compiled_fused
 def _product(a: Quaternion, b: Quaternion) -> Quaternion:
     aw, ax, ay, az = a
     bw, bx, by, bz = b
@@ -53,17 +52,17 @@ def _product(a: Quaternion, b: Quaternion) -> Quaternion:
     )
 
 
-@compiled
+@compiled_fused
 def _read(rows: FloatArray, row: int) -> Quaternion:
     return rows[row, 0], rows[row, 1], rows[row, 2], rows[row, 3]
 
 
-@compiled
+@compiled_fused
 def _write(rows: FloatArray, row: int, q: Quaternion) -> None:
     rows[row, 0], rows[row, 1], rows[row, 2], rows[row, 3] = q
 
 
-@compiled
+@compiled_fused
 def _seen(q: Quaternion, frame: FloatArray, hand: float) -> Quaternion:
     """The rotation along the columns of a frame."""
     w, x, y, z = q
@@ -75,7 +74,7 @@ def _seen(q: Quaternion, frame: FloatArray, hand: float) -> Quaternion:
     )
 
 
-@compiled
+@compiled_fused
 def _three(q: Quaternion, before: Vector) -> Vector:
     """One of the two ways; see the module."""
     w, x, y, z = q
@@ -93,7 +92,7 @@ def _three(q: Quaternion, before: Vector) -> Vector:
     return a, b, atan2(cosine * r21 + sine * r31, cosine * r22 + sine * r32)
 
 
-@compiled
+@compiled_fused
 def _two(q: Quaternion) -> tuple[float, float, float]:
     """Both angles, and how much of the rotation is left."""
     w, x, y, z = q
@@ -102,7 +101,7 @@ def _two(q: Quaternion) -> tuple[float, float, float]:
     return total + difference, total - difference, 2.0 * acos(min(near, 1.0))
 
 
-@compiled
+@compiled_fused
 def _settled(angle: float, previous: float, middle: float) -> float:
     """Near to the last frame, unless that leads round and round."""
     near = angle + _TURN * round((previous - angle) / _TURN)
@@ -111,7 +110,7 @@ def _settled(angle: float, previous: float, middle: float) -> float:
     return near
 
 
-@compiled
+@compiled_fused
 def _choose(
     one: Vector, hand: float, at: int, low: FloatArray, high: FloatArray,
     previous: FloatArray, margin: float, wanted: FloatArray,
@@ -134,7 +133,7 @@ def _choose(
             wanted[at + k] = _settled(hand * one[k], previous[at + k], middle)
 
 
-@compiled
+@compiled_fused
 def fold_in(rotations: FloatArray, into: IntArray, rows: FloatArray) -> None:
     """Give the rotation of what does not turn to the part below: rows[i] = ... rotations[into]."""
     for part in range(into.shape[0]):
@@ -145,7 +144,7 @@ def fold_in(rotations: FloatArray, into: IntArray, rows: FloatArray) -> None:
         _write(rows, part, q)
 
 
-@compiled
+@compiled_fused
 def turn_bend_planes(hinges: IntArray, frames: FloatArray, rows: FloatArray) -> None:
     """Turn the bone above each elbow and knee about itself until the hinge lies across the bend.
 
@@ -166,7 +165,7 @@ def turn_bend_planes(hinges: IntArray, frames: FloatArray, rows: FloatArray) -> 
         _write(rows, below, _product(back, _read(rows, below)))
 
 
-@compiled
+@compiled_fused
 def fit(
     rows: FloatArray, columns: IntArray, counts: IntArray, frames: FloatArray, hands: FloatArray,
     low: FloatArray, high: FloatArray, previous: FloatArray, margin: float,
@@ -197,7 +196,7 @@ def fit(
             residual[part] = 2.0 * acos(min(hypot(q[0], q[1]), 1.0))
 
 
-@compiled
+@compiled_fused
 def pass_on(pairs: IntArray, low: FloatArray, high: FloatArray, wanted: FloatArray) -> None:
     """What the wrist cannot turn about the forearm's axis, the forearm does: the axes are one."""
     for k in range(pairs.shape[0]):
@@ -207,7 +206,7 @@ def pass_on(pairs: IntArray, low: FloatArray, high: FloatArray, wanted: FloatArr
         wanted[wrist] = left
 
 
-@compiled
+@compiled_fused
 def follow_frames(
     local: FloatArray, anew: BoolArray, folded: IntArray, bends: IntArray, bend_frames: FloatArray,
     columns: IntArray, counts: IntArray, frames: FloatArray, hands: FloatArray, parts: IntArray,

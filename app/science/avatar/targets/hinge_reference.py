@@ -26,10 +26,9 @@ from collections.abc import Collection, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import AXES, PART_NAMES
+from app.science.avatar.body import AXES, PART_NAMES
 from app.science.avatar.targets.targets import Limits, TargetAngles, joint_rotations
-from app.science.joint_error import ERROR_JOINTS, Clipping
-from app.science.recorded_error import Asked
+from app.science.joint_error import ERROR_JOINTS, Asked, Clipping
 from app.science.rotations import FloatArray, is_unit
 
 GAP_S = 0.25

@@ -6,14 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import (
-    AXES_OF,
-    AXIS_NAMES,
-    PARENT_OF,
-    PART_NAMES,
-    SIDES,
-    Letter,
-)
+from app.science.avatar.body import AXES_OF, AXIS_NAMES, PARENT_OF, PART_NAMES, SIDES, Letter
 from app.science.rotations import FloatArray
 
 IndexArray = npt.NDArray[np.int64]

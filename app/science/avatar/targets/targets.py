@@ -30,10 +30,10 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.parts import AXES, PART_NAMES
+from app.science.avatar.body import AXES, PART_NAMES
 from app.science.avatar.targets.target_plan import plan_targets
 from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply
-from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX
+from app.science.skeleton import JOINT_COUNT, JOINT_INDEX
 
 AXIS_COUNT = len(AXES)
 ROUNDING_RAD = 1e-6

@@ -10,11 +10,19 @@ from app.science.avatar.tuning.results import (
     TuningProgress,
     TuningReport,
 )
-from app.science.avatar.tuning.tracking import Followed, Spread, Tracking, follow_capture, track
+from app.science.avatar.tuning.tracking import (
+    NOTHING,
+    Followed,
+    Spread,
+    Tracking,
+    follow_capture,
+    track,
+)
 from app.science.avatar.tuning.tuner import tune
 
 __all__ = [
     "HEURISTICS",
+    "NOTHING",
     "Assessment",
     "AxisTuning",
     "Followed",

@@ -3,14 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.model import avatar_model
+from app.science.avatar.body import Figure
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.mjcf import avatar_model
 from app.science.avatar.tuning.crew import Crew
 from app.science.avatar.tuning.evaluation import Trial
 from app.science.avatar.tuning.plant import bare
 from app.science.avatar.tuning.results import AxisTuning, TuningOptions, TuningProgress
-from app.science.avatar.tuning.verdicts import objection
+from app.science.avatar.tuning.step_response import objection
 
 
 @dataclass(frozen=True)

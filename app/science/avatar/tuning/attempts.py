@@ -2,13 +2,12 @@
 
 from dataclasses import dataclass
 
-from app.science.avatar.configuration.axis_settings import AxisSettings
+from app.science.avatar.configuration import AxisSettings
 from app.science.avatar.tuning.experiments import natural_hz
 from app.science.avatar.tuning.heuristics import HEURISTICS, Gains
 from app.science.avatar.tuning.relay import NoOscillation
 from app.science.avatar.tuning.results import AxisTuning, Experiment, TuningOptions
-from app.science.avatar.tuning.step_response import StepFigures
-from app.science.avatar.tuning.verdicts import objection
+from app.science.avatar.tuning.step_response import StepFigures, objection
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from app.science.avatar.body.body import Body
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.model_options import TIMESTEP_S, ModelOptions
-from app.science.avatar.mjcf.mjcf import build_mjcf, driven_axes
-from app.science.avatar.mjcf.scene import Scene
+from app.science.avatar.body import Body, BodyMasses
+from app.science.avatar.configuration import TIMESTEP_S, AxisSettings, ModelOptions
+from app.science.avatar.mjcf import Scene, build_mjcf, driven_axes
 from app.science.avatar.tuning.step_response import StepFigures, step_figures
 from app.science.rotations import FloatArray
 

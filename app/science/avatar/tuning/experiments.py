@@ -4,12 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
-from app.science.avatar.body.body import Body
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.body.parts import FINGER_PARTS
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.mjcf.gains import NATURAL_HZ
-from app.science.avatar.mjcf.hinges import Hinge, hinges_of
+from app.science.avatar.body import FINGER_PARTS, Body, BodyMasses
+from app.science.avatar.configuration import AxisSettings
+from app.science.avatar.mjcf import NATURAL_HZ, Hinge, hinges_of
 from app.science.avatar.tuning.plant import axis_plant, bare, poses_of
 from app.science.avatar.tuning.relay import NoOscillation, relay_for, run_relay
 from app.science.avatar.tuning.results import Experiment, TuningOptions

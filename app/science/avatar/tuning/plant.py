@@ -14,13 +14,9 @@ from dataclasses import replace
 from math import pi
 from typing import TYPE_CHECKING, Literal
 
-from app.science.avatar.body.body import Body
-from app.science.avatar.body.masses import BodyMasses
-from app.science.avatar.body.parts import AXES
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.model_options import ModelOptions
-from app.science.avatar.mjcf.mjcf import build_mjcf
-from app.science.avatar.mjcf.scene import Scene
+from app.science.avatar.body import AXES, Body, BodyMasses
+from app.science.avatar.configuration import AxisSettings, ModelOptions
+from app.science.avatar.mjcf import Scene, build_mjcf
 
 if TYPE_CHECKING:
     import mujoco

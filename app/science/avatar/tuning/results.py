@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Final, Literal
 
-from app.science.avatar.configuration.configuration import Configuration
+from app.science.avatar.configuration import Configuration
 from app.science.avatar.tuning.heuristics import HEURISTICS
 from app.science.avatar.tuning.plant import Pose
 from app.science.avatar.tuning.relay import Oscillation, RelaySettings

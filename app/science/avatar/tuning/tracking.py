@@ -24,17 +24,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import numpy.typing as npt
 
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.body.parts import AXES, AXIS_NAMES, PARENT_OF, PART_NAMES
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.model import avatar_model
-from app.science.avatar.mjcf.scene import FLOOR_ONLY, Scene
+from app.science.avatar.body import AXES, AXIS_NAMES, PARENT_OF, PART_NAMES, Figure
+from app.science.avatar.configuration import Configuration
+from app.science.avatar.mjcf import FLOOR_ONLY, Scene, avatar_model
 from app.science.avatar.tuning.results import TuningError
 from app.science.rotations import FloatArray
 from app.science.skeleton import Movement
 
 if TYPE_CHECKING:
-    from app.science.avatar.simulation.contacts import Contact
+    from app.science.avatar.simulation import Contact
 
 AFTERWARDS_S: Final = 0.1
 """The slowest motors are back at their targets by then."""
@@ -113,9 +111,8 @@ def track(
     Raises:
         TuningError: the movement is too short. BodyError: there is no such body.
     """
-    from app.science.avatar.simulation.following import Follower
-    from app.science.avatar.simulation.simulation import PhysicsAvatar
-    from app.science.avatar.targets.targets import TargetAngles
+    from app.science.avatar.simulation import Follower, PhysicsAvatar
+    from app.science.avatar.targets import TargetAngles
 
     rate_hz, positions_m, rotations = (
         movement.rate_hz,

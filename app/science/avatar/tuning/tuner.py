@@ -3,7 +3,7 @@
 1. Every free axis is let oscillate by a relay, alone (`experiments`).
 2. A rule makes gains of it (`heuristics`).
 3. The whole body is given all the gains, and each axis must jump (`evaluation`).
-4. What `verdicts` objects to is tried again with a weaker relay, which means lower gains. After the
+4. What `objection` finds is tried again with a weaker relay, which means lower gains. After the
    last attempt the best gains are kept and the axis is flagged with the reason.
 5. If anything changed since an axis was tried, the whole body is tried once more.
 
@@ -14,11 +14,9 @@ both sides are tried. An axis whose left counterpart is locked or missing is tun
 from collections.abc import Callable
 from dataclasses import replace
 
-from app.science.avatar.body.figure import Figure
-from app.science.avatar.body.parts import mirrored_name
-from app.science.avatar.configuration.axis_settings import AxisSettings
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.mjcf.model import avatar_model
+from app.science.avatar.body import Figure, mirrored_name
+from app.science.avatar.configuration import AxisSettings, Configuration
+from app.science.avatar.mjcf import avatar_model
 from app.science.avatar.tuning.attempts import AxisAttempts
 from app.science.avatar.tuning.crew import Crew
 from app.science.avatar.tuning.evaluation import Trial

@@ -18,11 +18,8 @@ from app.science.walking.evaluation.scoring import (
     comparison,
     error_summary,
 )
-from app.science.walking.models.crps import covers, crps_s, iqr
-from app.science.walking.models.prediction import predictor_for
-from app.science.walking.models.steering_models import SteeringModel
-from app.science.walking.records.model import PlannedWalk, WalkingError
-from app.science.walking.records.protocols import PathFollower
+from app.science.walking.models import SteeringModel, covers, crps_s, iqr, predictor_for
+from app.science.walking.records import PathFollower, PlannedWalk, WalkingError
 
 DRAWS = 200
 LEAST_FOR_IQR = 4

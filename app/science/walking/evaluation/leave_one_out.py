@@ -11,14 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.maps.blending import BlendingSpace
-from app.science.walking.maps.database import WalkDatabase
-from app.science.walking.maps.densifying import IntArray
-from app.science.walking.maps.interpolation import radial_basis
-from app.science.walking.maps.neighbours import neighbours
-from app.science.walking.maps.suitability import SuitabilityOptions
-from app.science.walking.models.fitting import space_of
-from app.science.walking.models.reading_choice import person_folds
+from app.science.walking.maps import (
+    BlendingSpace,
+    IntArray,
+    SuitabilityOptions,
+    WalkDatabase,
+    neighbours,
+    radial_basis,
+)
+from app.science.walking.models import person_folds, space_of
 
 NODES = 100
 """Random nodes of each map at which the radial basis is tried."""

@@ -3,17 +3,16 @@
 The paper takes one draw and compares |dt|. That punishes honesty: where walks differ, a draw from
 their true distribution is off by about sqrt 2 times as much as the distribution's median, so a
 model that knows nothing of variety wins. `crps` has the score that is judged by.
+SciPy is slow to load, so only what needs it does.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special, stats
 
 from app.science.rotations import FloatArray
-from app.science.statistics.signed_rank import signed_rank
-from app.science.walking.records.model import WalkingError
+from app.science.walking.records import WalkingError
 
 PERCENTILES = (5.0, 25.0, 50.0, 75.0, 95.0)
 """As the paper prints them."""
@@ -47,6 +46,8 @@ class ErrorSummary:
 
 def error_summary(predicted_s: FloatArray, truth_s: FloatArray) -> ErrorSummary:
     """Summarise errors of one prediction (N,) for each walk; raises WalkingError for none."""
+    from scipy import stats
+
     if not len(truth_s) or predicted_s.shape != truth_s.shape:
         raise WalkingError(
             f"Errors of {predicted_s.shape} predictions for {truth_s.shape} walks make no summary."
@@ -85,6 +86,8 @@ class Comparison:
 
 def comparison(names: tuple[str, str], first_s: FloatArray, second_s: FloatArray) -> Comparison:
     """Compare errors, or scores, (N,) of two models walk by walk."""
+    from app.science.statistics import signed_rank
+
     test = signed_rank(first_s, second_s)
     apart = first_s - second_s
     spread = float(apart.std(ddof=1)) if len(apart) > 1 else 0.0
@@ -105,6 +108,8 @@ def signed_rank_power(pairs: int, effect: float, alpha: float = ALPHA) -> float:
         effect: mean difference over the standard deviation of differences.
         alpha: of the test.
     """
+    from scipy import special
+
     usable = pairs * EFFICIENCY
     if usable <= 1.0:
         return alpha

@@ -1,1 +1,16 @@
-"""Following a path: speed along it, and the metrics of a walk."""
+"""The agent that follows a path, steered by three parameters, and the metrics of its walk.
+
+`SteeringFollower` moves one agent for each vector of parameters; `EuclideanMetric` is the paper's.
+The compiler is loaded with the first agent.
+"""
+
+from app.science.walking.following.course import course_of
+from app.science.walking.following.following import FollowingRules, SteeringFollower
+from app.science.walking.following.metrics import EuclideanMetric
+
+__all__ = [
+    "EuclideanMetric",
+    "FollowingRules",
+    "SteeringFollower",
+    "course_of",
+]

@@ -17,14 +17,18 @@ and has not arrived when its time is over.
 """
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
 
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import PlannedPath, Walk, WalkingError
-from app.science.walking.records.parameters import PAPER_PARAMETERS, SteeringParameter
-from app.science.walking.records.protocols import Course, Trajectories
+from app.science.walking.following.course import Pace, Way, way_of
+from app.science.walking.records import (
+    PAPER_PARAMETERS,
+    Course,
+    SteeringParameter,
+    Trajectories,
+    WalkingError,
+)
 
 
 @dataclass(frozen=True)
@@ -43,45 +47,15 @@ class FollowingRules:
                 raise WalkingError(f"{name} is {getattr(self, name)}; it must be positive.")
 
 
-class Way(NamedTuple):
-    """A path as the agents see it: P points, P - 1 legs.
-
-    Attributes:
-        points: (P, 2).
-        units: (P - 1, 2) direction of each leg.
-        lengths: (P - 1,).
-        before: (P,) way up to each point.
-    """
-
-    points: FloatArray
-    units: FloatArray
-    lengths: FloatArray
-    before: FloatArray
-
-
-class Pace(NamedTuple):
-    """Numbers of one simulation: the rules, speed at the start, whether it brakes, most steps."""
-
-    dt: float
-    lookahead: float
-    radius: float
-    floor: float
-    begin: float
-    brakes: bool
-    steps: int
-
-
 @dataclass(frozen=True)
 class SteeringFollower:
     """Follows paths with (v_max, a_max, omega); a `PathFollower`.
 
     Attributes:
         rules: fixed for all agents.
-        backend: compiled, or the same in NumPy over all agents at once, to check it against.
     """
 
     rules: FollowingRules = FollowingRules()
-    backend: Literal["compiled", "numpy"] = "compiled"
 
     @property
     def parameters(self) -> tuple[SteeringParameter, ...]:
@@ -131,32 +105,6 @@ class SteeringFollower:
     def _move(
         self, way: Way, vectors: FloatArray, pace: Pace, places: FloatArray, arrival: FloatArray
     ) -> None:
-        if self.backend == "numpy":
-            from app.science.walking.following.following_numpy import move_all
-        else:
-            from app.science.walking.following.following_kernels import move_all
+        from app.science.walking.following.following_kernels import move_all
+
         move_all(way, vectors, pace, places, arrival)
-
-
-def way_of(path: PlannedPath) -> Way:
-    """The path in legs."""
-    legs = np.diff(path.points_m, axis=0)
-    lengths = np.linalg.norm(legs, axis=1)
-    points = np.ascontiguousarray(path.points_m, dtype=np.float64)
-    return Way(points, legs / lengths[:, None], lengths, path.arc_m)
-
-
-TIMES_REFERENCE = 2.0
-EXTRA_S = 1.0
-
-
-def course_of(walk: Walk, path: PlannedPath, dt_s: float) -> Course:
-    """The course by which a walk is re-simulated.
-
-    An agent that takes more than twice as long and a second has not arrived: its suitability in
-    time is below exp(-10) by then. A walk that a recording cuts begins, or ends, at speed.
-    """
-    samples = int(np.floor(walk.duration_s / dt_s + 1e-9)) + 1
-    begin_m_s = 0.0 if walk.begins_still else float(walk.speeds_m_s[0])
-    limit_s = TIMES_REFERENCE * walk.duration_s + EXTRA_S
-    return Course(path, samples, limit_s, begin_m_s, walk.ends_still)

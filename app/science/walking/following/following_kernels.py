@@ -1,12 +1,15 @@
-"""The agents of `following`, compiled: one after the other, each to its end."""
+"""The agents of `following` and the distances of `metrics`, compiled.
+
+Agents move one after the other, each to its end.
+"""
 
 import math
 
 import numpy as np
 
+from app.science.compiled import compiled
 from app.science.rotations import FloatArray
-from app.science.walking.compiling import compiled
-from app.science.walking.following.following import Pace, Way
+from app.science.walking.following.course import Pace, Way
 
 
 @compiled
@@ -123,3 +126,15 @@ def move_all(
     """Move K agents: vectors (K, 3), places (K, N, 2), arrival (K,), the last two filled here."""
     for agent in range(len(vectors)):
         arrival[agent] = move(way, vectors[agent], pace, places[agent])
+
+
+@compiled
+def distance_sums(reference: FloatArray, places: FloatArray) -> FloatArray:
+    """(K,) sums over N samples of the distance between (N, 2) and each of (K, N, 2)."""
+    sums = np.zeros(len(places))
+    for agent in range(len(places)):
+        for sample in range(len(reference)):
+            dx = places[agent, sample, 0] - reference[sample, 0]
+            dy = places[agent, sample, 1] - reference[sample, 1]
+            sums[agent] += math.sqrt(dx * dx + dy * dy)
+    return sums

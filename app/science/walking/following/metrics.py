@@ -6,13 +6,11 @@ exchanged.
 """
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.protocols import Reference, Trajectories
+from app.science.walking.records import Reference, Trajectories, WalkingError
 
 
 @dataclass(frozen=True)
@@ -23,19 +21,14 @@ class EuclideanMetric:
     samples, which cancels in every reading as suitability.
     """
 
-    backend: Literal["compiled", "numpy"] = "compiled"
     name: str = "euclidean"
 
     def deviations(self, reference: Reference, trajectories: Trajectories) -> FloatArray:
         """Return (K,) deviations; raises WalkingError for a reference of no length."""
-        _check(reference, trajectories)
-        if self.backend == "compiled":
-            from app.science.walking.following.metric_kernels import distance_sums
+        from app.science.walking.following.following_kernels import distance_sums
 
-            sums = distance_sums(reference.xy_m, trajectories.xy_m)
-        else:
-            apart = trajectories.xy_m - reference.xy_m
-            sums = np.sqrt((apart * apart).sum(axis=-1)).sum(axis=-1)
+        _check(reference, trajectories)
+        sums = distance_sums(reference.xy_m, trajectories.xy_m)
         deviations: FloatArray = sums / reference.length_m
         return deviations
 

@@ -13,9 +13,7 @@ from app.science.rotations import FloatArray
 from app.science.walking.maps.densifying import Blends, IntArray, MapArray, drawn_blends
 from app.science.walking.maps.interpolation import axes_of, radial_basis
 from app.science.walking.maps.neighbours import Tree, check_k, neighbours, tree_of
-from app.science.walking.records.dependencies import Scaling
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.parameters import ParameterGrid
+from app.science.walking.records import ParameterGrid, Scaling, WalkingError
 
 NEIGHBOURS = 100
 ENTRIES = 5000

@@ -14,9 +14,7 @@ import numpy.typing as npt
 from app.science.rotations import FloatArray
 from app.science.walking.maps.densifying import MAP_FLOATS, IntArray, MapArray
 from app.science.walking.maps.suitability import DeviationMap, SuitabilityOptions
-from app.science.walking.records.dependencies import dependency_vectors
-from app.science.walking.records.model import PlannedWalk, WalkingError
-from app.science.walking.records.parameters import ParameterGrid
+from app.science.walking.records import ParameterGrid, PlannedWalk, WalkingError, dependency_vectors
 
 PERSONS = 2
 """Fewer cannot tell how people differ, nor be told apart for validation."""

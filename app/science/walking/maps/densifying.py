@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError
+from app.science.walking.records import WalkingError
 
 LEAST_WEIGHT, MOST_WEIGHT = -0.1, 1.1
 MAP_FLOATS = np.float32

@@ -19,8 +19,7 @@ import numpy as np
 
 from app.science.rotations import FloatArray
 from app.science.walking.maps.densifying import MAP_FLOATS, IntArray, MapArray
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.parameters import ParameterGrid
+from app.science.walking.records import ParameterGrid, WalkingError
 
 MOST_NODES = 4096
 """More would need a matrix of more than 130 MB."""

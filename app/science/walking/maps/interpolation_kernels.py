@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from app.science.compiled import compiled
 from app.science.rotations import FloatArray
-from app.science.walking.compiling import compiled
 from app.science.walking.maps.densifying import IntArray
 
 

@@ -11,12 +11,17 @@ from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 
-from app.science.walking.following.following import SteeringFollower, course_of
-from app.science.walking.following.metrics import EuclideanMetric
+from app.science.walking.following import EuclideanMetric, SteeringFollower, course_of
 from app.science.walking.maps.suitability import DeviationMap
-from app.science.walking.records.model import PlannedWalk, WalkingError
-from app.science.walking.records.parameters import PAPER_GRID, ParameterGrid
-from app.science.walking.records.protocols import Metric, PathFollower, reference_of
+from app.science.walking.records import (
+    PAPER_GRID,
+    Metric,
+    ParameterGrid,
+    PathFollower,
+    PlannedWalk,
+    WalkingError,
+    reference_of,
+)
 
 AHEAD = 2
 """Maps begun ahead of the one that is taken next, for each thread."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from app.science.rotations import FloatArray
 from app.science.walking.maps.densifying import IntArray
-from app.science.walking.records.model import WalkingError
+from app.science.walking.records import WalkingError
 
 LEAF = 16
 """Points in a leaf of the tree."""

@@ -2,8 +2,8 @@
 
 import math
 
+from app.science.compiled import compiled
 from app.science.rotations import FloatArray
-from app.science.walking.compiling import compiled
 from app.science.walking.maps.densifying import IntArray
 
 STACK = 128

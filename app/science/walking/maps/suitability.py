@@ -18,9 +18,7 @@ from typing import Literal
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.parameters import ParameterGrid
-from app.science.walking.records.protocols import BoolArray
+from app.science.walking.records import BoolArray, ParameterGrid, WalkingError
 
 TIME_CONSTANT_S = 0.1
 """tau of the time-aware reading."""

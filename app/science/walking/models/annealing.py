@@ -13,9 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.maps.database import WalkDatabase
-from app.science.walking.maps.interpolation import MOST_NODES, radial_basis
-from app.science.walking.records.parameters import ParameterGrid
+from app.science.walking.maps import MOST_NODES, WalkDatabase, radial_basis
+from app.science.walking.records import ParameterGrid
 
 STEPS = 4000
 HOT, COLD = 0.5, 1e-4

@@ -3,8 +3,8 @@
     CRPS(F, t) = E|T - t| - E|T - T'| / 2,   T and T' independent from F
 
 The score is proper: the truth has the smallest expected one. For one number instead of a
-distribution it is |dt|, so that all models are on one scale, in seconds. It stands apart from
-`scoring`, whose tests take half a second of imports that whoever only predicts need not wait for.
+distribution it is |dt|, so that all models are on one scale, in seconds. Models are
+chosen by it, and evaluations compare by it.
 """
 
 import numpy as np

@@ -5,9 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.walking.maps.blending import ENTRIES, NEIGHBOURS, BlendingSpace, blending_space
-from app.science.walking.maps.database import WalkDatabase, check_persons
-from app.science.walking.maps.suitability import TIME_AWARE, SuitabilityOptions
+from app.science.walking.maps import (
+    ENTRIES,
+    NEIGHBOURS,
+    TIME_AWARE,
+    BlendingSpace,
+    SuitabilityOptions,
+    WalkDatabase,
+    blending_space,
+    check_persons,
+)
 from app.science.walking.models.annealing import StaticFit, static_fit
 from app.science.walking.models.reading_choice import READINGS, ReadingScore, ranked_readings
 from app.science.walking.models.steering_models import (
@@ -16,7 +23,7 @@ from app.science.walking.models.steering_models import (
     StaticModel,
     SteeringModel,
 )
-from app.science.walking.records.dependencies import scaling_of
+from app.science.walking.records import scaling_of
 
 LEAST_TO_CHOOSE = 8
 """Fewer people left out in turn tell readings apart by chance: then it is the time-aware one."""

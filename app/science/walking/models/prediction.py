@@ -13,8 +13,14 @@ import numpy as np
 
 from app.science.rotations import FloatArray
 from app.science.walking.models.steering_models import SteeringModel
-from app.science.walking.records.model import PlannedPath, Walk, WalkingError
-from app.science.walking.records.protocols import Course, PathFollower, Trajectories
+from app.science.walking.records import (
+    Course,
+    PathFollower,
+    PlannedPath,
+    Trajectories,
+    Walk,
+    WalkingError,
+)
 
 EXTRA_S, SLOWEST_S_PER_M = 10.0, 12.0
 """An agent is given 10 s, and 12 s for each metre: slower than the grid's slowest."""

@@ -15,13 +15,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.maps.blending import ENTRIES, NEIGHBOURS, BlendingSpace, blending_space
-from app.science.walking.maps.database import WalkDatabase, check_persons
-from app.science.walking.maps.densifying import IntArray
-from app.science.walking.maps.interpolation import Axes, axes_of
-from app.science.walking.maps.suitability import PAPER, TIME_AWARE, SuitabilityOptions
+from app.science.walking.maps import (
+    ENTRIES,
+    NEIGHBOURS,
+    PAPER,
+    TIME_AWARE,
+    Axes,
+    BlendingSpace,
+    IntArray,
+    SuitabilityOptions,
+    WalkDatabase,
+    axes_of,
+    blending_space,
+    check_persons,
+)
 from app.science.walking.models.crps import crps_s
-from app.science.walking.records.dependencies import scaling_of
+from app.science.walking.records import scaling_of
 
 DRAWS = 200
 FOLDS = 4

@@ -21,9 +21,8 @@ from typing import Literal
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.maps.blending import BlendingSpace
-from app.science.walking.maps.interpolation import axes_of, radial_basis
-from app.science.walking.records.model import WalkingError
+from app.science.walking.maps import BlendingSpace, axes_of, radial_basis
+from app.science.walking.records import WalkingError
 
 HEADROOM = 1.02
 PROPOSALS = 64

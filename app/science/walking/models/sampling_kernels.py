@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
+from app.science.compiled import compiled
 from app.science.rotations import FloatArray
-from app.science.walking.compiling import compiled
-from app.science.walking.maps.densifying import IntArray, MapArray
+from app.science.walking.maps import IntArray, MapArray
 from app.science.walking.maps.interpolation_kernels import multilinear_point, radial_point
 from app.science.walking.maps.neighbours_kernels import nearest, weigh
 

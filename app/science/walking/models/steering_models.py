@@ -14,10 +14,9 @@ from typing import Literal, Protocol
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.maps.blending import BlendingSpace
-from app.science.walking.maps.interpolation import axes_of, radial_basis
+from app.science.walking.maps import BlendingSpace, axes_of, radial_basis
 from app.science.walking.models.sampling import Density, Interpolation, MixtureSampler, density_of
-from app.science.walking.records.protocols import BoolArray
+from app.science.walking.records import BoolArray
 
 _HALVINGS, _LEVEL = 12, 1e-3
 

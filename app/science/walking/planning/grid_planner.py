@@ -13,11 +13,18 @@ import numpy as np
 
 from app.science.rotations import FloatArray
 from app.science.walking.planning.shortest import passable, shortest_way
-from app.science.walking.records.model import PlannedPath
-from app.science.walking.records.protocols import BoolArray, Point
-from app.science.walking.scene.outlines import FREE, Lattice, Outlines, outlines_of
-from app.science.walking.scene.scene import Scene, SceneError
-from app.science.walking.scene.shapes import FLAT_M2, area_m2, contains
+from app.science.walking.records import BoolArray, PlannedPath, Point
+from app.science.walking.scene import (
+    FLAT_M2,
+    FREE,
+    Lattice,
+    Outlines,
+    Scene,
+    SceneError,
+    area_m2,
+    contains,
+    outlines_of,
+)
 
 CELL_M = 0.01
 MOST_NODES = 16_000_000

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from app.science.compiled import compiled
 from app.science.rotations import FloatArray
-from app.science.walking.compiling import compiled
-from app.science.walking.scene.outlines import BLOCKED, FREE, MOVED, TOUCH_M, Lattice, Outlines
+from app.science.walking.scene import BLOCKED, FREE, MOVED, TOUCH_M, Lattice, Outlines
 
 EDGE_CELLS = 0.75
 """Nodes less than that inside an outline are moved onto it."""

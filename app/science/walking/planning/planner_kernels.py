@@ -8,9 +8,9 @@ import math
 
 import numpy as np
 
+from app.science.compiled import compiled
 from app.science.rotations import FloatArray
-from app.science.walking.compiling import compiled
-from app.science.walking.scene.outlines import CLOSED, FREE, TOUCH_M, IntArray, Lattice, Outlines
+from app.science.walking.scene import CLOSED, FREE, TOUCH_M, IntArray, Lattice, Outlines
 
 
 @compiled

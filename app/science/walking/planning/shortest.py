@@ -1,16 +1,25 @@
-"""The shortest way over given points that see each other (Dijkstra on the visibility graph)."""
+"""Which points see each other, and the shortest way over them.
+
+Dijkstra on the visibility graph.
+"""
 
 import heapq
 
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.scene.outlines import IntArray, Outlines
-from app.science.walking.scene.shapes import contains
+from app.science.walking.scene import IntArray, Outlines, contains
 
 HIDDEN_M = 1e-7
 """A corner deeper than that inside another outline is never passed."""
 Bounds = tuple[float, float, float, float]
+
+
+def sees(ax: float, ay: float, bx: float, by: float, outlines: Outlines) -> bool:
+    """Whether the straight line from a to b passes through no obstacle; exact."""
+    from app.science.walking.planning import planner_kernels as kernels
+
+    return kernels.sees(ax, ay, bx, by, outlines)
 
 
 def passable(places: list[FloatArray], corners: list[FloatArray], bounds_m: Bounds) -> FloatArray:

@@ -1,1 +1,21 @@
-"""From tracks and captures to walks."""
+"""From captures and tracks to walks.
+
+`track_of_motion` finds a person on the floor in a capture, `walks_of` cuts a track into walks and
+`planned_walk` gives each the path it was planned on; `census` counts what there is.
+"""
+
+from app.science.walking.recording.capture_tracks import Followed, track_of_motion
+from app.science.walking.recording.census import census
+from app.science.walking.recording.segmentation import walks_of
+from app.science.walking.recording.tracks import Walker
+from app.science.walking.recording.walks import dependencies_of, planned_walk
+
+__all__ = [
+    "Followed",
+    "Walker",
+    "census",
+    "dependencies_of",
+    "planned_walk",
+    "track_of_motion",
+    "walks_of",
+]

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from app.science.retargeting.joint_map import propose_joint_map
+from app.science.retargeting import propose_joint_map
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 from app.science.walking.recording.centre_of_mass import NEEDED
 from app.science.walking.recording.tracks import (
@@ -14,7 +14,7 @@ from app.science.walking.recording.tracks import (
     track_of_markers,
     track_of_rig,
 )
-from app.science.walking.records.model import Track, WalkingError
+from app.science.walking.records import Track, WalkingError
 
 PELVIS = (("LASI", "RASI", "LPSI", "RPSI"), ("LFWT", "RFWT", "LBWT", "RBWT"))
 """Names of the four markers of a pelvis, by the two usual marker sets."""

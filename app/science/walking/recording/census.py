@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.science.walking.records.model import WalkingError
+from app.science.walking.records import WalkingError
 
 WIDTH_M = 0.5
 CUTOFF = 0.05

@@ -10,10 +10,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from app.science.avatar.body.deleva import mass_fractions, segments_of
+from app.science.avatar.body import mass_fractions, segments_of
 from app.science.rig import RigMotion
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError
+from app.science.walking.records import WalkingError
 
 _NAVEL, _BREASTBONE, _VERTEBRA = 0.26, 0.61, 1.0
 _TRUNK = {

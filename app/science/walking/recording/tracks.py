@@ -12,7 +12,7 @@ import numpy as np
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 from app.science.rotations import FloatArray, rotate
 from app.science.walking.recording.centre_of_mass import centre_of_mass
-from app.science.walking.records.model import Kind, Track, WalkingError
+from app.science.walking.records import Kind, Track, WalkingError
 
 LONGEST_GAP_S = 0.1
 """A longer gap is not filled: a person may turn in it."""

@@ -2,18 +2,18 @@
 
 from collections.abc import Mapping
 
-from app.science.walking.records.model import (
+from app.science.walking.records import (
     LENGTH,
     STATURE,
     TURNING,
     PlannedPath,
     PlannedWalk,
+    Planner,
     Walk,
     WalkingError,
     check_stature,
 )
-from app.science.walking.records.protocols import Planner
-from app.science.walking.scene.turning import turning_per_m
+from app.science.walking.scene import turning_per_m
 
 NONE: Mapping[str, float] = {}
 

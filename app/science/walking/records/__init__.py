@@ -1,1 +1,68 @@
-"""The records that the parts exchange."""
+"""The records that all of walking exchanges: tracks, walks, planned paths, parameters, protocols.
+
+A record that exists is valid; what is not raises `WalkingError`. Metres, seconds, radians.
+"""
+
+from app.science.walking.records.dependencies import Scaling, dependency_vectors, scaling_of
+from app.science.walking.records.model import (
+    LENGTH,
+    STATURE,
+    TURNING,
+    Kind,
+    PlannedPath,
+    PlannedWalk,
+    Track,
+    Walk,
+    WalkingError,
+    arc_of,
+    check_stature,
+)
+from app.science.walking.records.parameters import (
+    PAPER_GRID,
+    PAPER_PARAMETERS,
+    ParameterGrid,
+    SteeringParameter,
+    regular_grid,
+)
+from app.science.walking.records.protocols import (
+    BoolArray,
+    Course,
+    Metric,
+    PathFollower,
+    Planner,
+    Point,
+    Reference,
+    Trajectories,
+    reference_of,
+)
+
+__all__ = [
+    "LENGTH",
+    "PAPER_GRID",
+    "PAPER_PARAMETERS",
+    "STATURE",
+    "TURNING",
+    "BoolArray",
+    "Course",
+    "Kind",
+    "Metric",
+    "ParameterGrid",
+    "PathFollower",
+    "PlannedPath",
+    "PlannedWalk",
+    "Planner",
+    "Point",
+    "Reference",
+    "Scaling",
+    "SteeringParameter",
+    "Track",
+    "Trajectories",
+    "Walk",
+    "WalkingError",
+    "arc_of",
+    "check_stature",
+    "dependency_vectors",
+    "reference_of",
+    "regular_grid",
+    "scaling_of",
+]

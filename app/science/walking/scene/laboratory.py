@@ -8,8 +8,7 @@ pole to the inside of the turn keeps planners from the short cut that people wer
 
 import math
 
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.protocols import Point
+from app.science.walking.records import Point, WalkingError
 from app.science.walking.scene.scene import CLEARANCE_M, Obstacle, Scene, ScenePath
 from app.science.walking.scene.shapes import disc_corners, wall_corners
 

@@ -13,8 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError
-from app.science.walking.records.protocols import Point
+from app.science.walking.records import Point, WalkingError
 from app.science.walking.scene.shapes import (
     FLAT_M2,
     area_m2,

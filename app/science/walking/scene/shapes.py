@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.protocols import BoolArray, Point
+from app.science.walking.records import BoolArray, Point
 
 SIDES = 16
 """Corners of a disc: at the corners it is 2 % wider than the circle."""

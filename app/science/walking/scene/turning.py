@@ -7,10 +7,9 @@ the first and last 5 cm, where a direction means little. Radians a metre.
 """
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from app.science.rotations import FloatArray
-from app.science.walking.records.model import WalkingError, arc_of
+from app.science.walking.records import WalkingError, arc_of
 
 SPACING_M = 0.01
 SIGMA_SAMPLES = 2.0
@@ -32,6 +31,8 @@ def by_length(points_m: FloatArray, spacing_m: float = SPACING_M) -> FloatArray:
 
 def total_turning(points_m: FloatArray) -> float:
     """Add up how far a line's direction turns, to whichever side; radians."""
+    from scipy.ndimage import gaussian_filter1d
+
     even = gaussian_filter1d(by_length(points_m), SIGMA_SAMPLES, axis=0, mode="nearest")
     steps = np.diff(even, axis=0)
     trim = round(TRIM_M / SPACING_M)

@@ -11,9 +11,8 @@ from app.features.movement.avatar.service import (
 )
 from app.models import AvatarVersion, StudySession
 from app.protocol.avatar import avatar_text, file_of, load_avatar, loaded
-from app.science.avatar.configuration.configuration import Configuration
-from app.science.avatar.configuration.editing import lock, with_global
-from app.science.avatar.mjcf.defaults import default_configuration
+from app.science.avatar.configuration import Configuration, lock, with_global
+from app.science.avatar.mjcf import default_configuration
 from tests.api.people import sign_in
 from tests.features.lab import Json, Lab, error, ok
 

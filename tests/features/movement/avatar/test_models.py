@@ -7,9 +7,9 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
-from app.science.avatar.body.parts import FINGER_PARTS
-from app.science.avatar.configuration.editing import lock, without_parts
-from app.science.avatar.mjcf.model import avatar_model
+from app.science.avatar.body import FINGER_PARTS
+from app.science.avatar.configuration import lock, without_parts
+from app.science.avatar.mjcf import avatar_model
 from tests.features.lab import Lab, error
 from tests.features.movement.avatar.test_avatars import CAST, PATH, SHIPPED, new, save
 

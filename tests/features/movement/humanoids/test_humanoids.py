@@ -14,8 +14,8 @@ from app.features.movement.captures.contents import drop_unused, plain_pieces
 from app.models import CaptureContent, HumanoidRow
 from app.protocol.avatar import avatar_text, file_of, load_avatar, loaded
 from app.protocol.humanoid import figure_json, parse_figure
-from app.science.avatar.body.parts import PART_NAMES
-from app.science.avatar.mjcf.model import avatar_model
+from app.science.avatar.body import PART_NAMES
+from app.science.avatar.mjcf import avatar_model
 from tests.api.people import sign_in
 from tests.features.care.backups.lab import make, put_back
 from tests.features.lab import Json, Lab, error, ok

@@ -10,8 +10,8 @@ from httpx2 import Response
 
 from app.features.record.sessions.contents import content_body, contents_of
 from app.protocol.avatar import AvatarFile, configuration_of, loaded
-from app.science.avatar.mjcf.defaults import default_configuration
-from app.science.avatar.simulation.simulation import PhysicsAvatar
+from app.science.avatar.mjcf import default_configuration
+from app.science.avatar.simulation import PhysicsAvatar
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.avatar.test_avatars import CAST, new
 from tests.features.movement.avatar.test_studies import KEY, study

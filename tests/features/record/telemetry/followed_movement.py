@@ -17,8 +17,7 @@ from app.features.record.telemetry.encodings.columns import Columns
 from app.rehearsal.body import FRAME_RATE_HZ
 from app.rehearsal.body import captured_movement as on_skeleton
 from app.science.rotations import normalise
-from app.science.skeleton import build_skeleton
-from app.science.skeleton.movement import Movement, continuous, resample
+from app.science.skeleton import Movement, build_skeleton, continuous, resample
 
 RATE_HZ = FRAME_RATE_HZ
 LATENCY_S = 0.125

@@ -13,8 +13,7 @@ from app.features.record.telemetry.joint_errors import joint_error_rows
 from app.features.record.telemetry.movement import Run
 from app.features.record.telemetry.summaries import Summariser, replace_rows, summary_rows
 from app.models import JointErrorCourseRow, JointErrorRow, Phase, PhaseQuality, StudySession
-from app.science.joint_error import ERROR_JOINTS
-from app.science.joint_error_course import COURSE_BIN_S
+from app.science.joint_error import COURSE_BIN_S, ERROR_JOINTS
 from app.science.rotations import FloatArray, from_rotation_vector, identity
 from app.wire import VALUES_PER_FRAME
 from tests.features.builders import SessionSpec, as_physics, build_session

@@ -10,9 +10,9 @@ from sqlalchemy import select
 
 from app.features.record.telemetry.summaries import replace_rows, summary_rows
 from app.models import JointErrorRow, Phase, PhaseLatency, StudySession
-from app.science.avatar.body.parts import AXIS_NAMES
-from app.science.avatar.mjcf.defaults import default_configuration
-from app.science.avatar.targets.targets import TargetAngles, joint_rotations
+from app.science.avatar.body import AXIS_NAMES
+from app.science.avatar.mjcf import default_configuration
+from app.science.avatar.targets import TargetAngles, joint_rotations
 from app.science.joint_error import ERROR_AXES, ERROR_JOINTS, joint_error_summary
 from app.science.rotations import FloatArray
 from app.wire import StreamName

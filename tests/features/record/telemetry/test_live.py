@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from app.features.record.telemetry.live import LiveTelemetry, live_telemetry
-from app.science.avatar.configuration.limits import ANATOMIC
-from app.science.avatar.targets.hinge_reference import HingeReference
-from app.science.avatar.targets.targets import TargetAngles, joint_rotations
+from app.science.avatar.configuration import ANATOMIC
+from app.science.avatar.targets import HingeReference, TargetAngles, joint_rotations
 from app.science.rotations import FloatArray, from_rotation_vector, identity
-from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX
+from app.science.skeleton import JOINT_COUNT, JOINT_INDEX
 from app.wire import VALUES_PER_FRAME, StreamName, decode_batch, encode_batch
 from tests.features.builders import SessionSpec, as_physics, build_session
 from tests.features.lab import Lab

@@ -15,7 +15,7 @@ from app.science.avatar.ik import (
     goals_of,
 )
 from app.science.avatar.ik.chain import Chain
-from app.science.avatar.ik.turns import rotation_between
+from app.science.avatar.ik.solver import rotation_between
 from app.science.rotations import FloatArray, geodesic_angle
 from tests.science.avatar.ik import bodies
 

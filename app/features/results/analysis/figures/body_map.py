@@ -13,8 +13,7 @@ from app.features.results.analysis.figures.drawing import (
 )
 from app.features.results.analysis.figures.joint_errors import joint_rows, task_angles, what_of
 from app.features.results.analysis.figures.theme import new_figure
-from app.science.skeleton import build_skeleton
-from app.science.skeleton.joints import JOINT_NAMES, PARENTS
+from app.science.skeleton import JOINT_NAMES, PARENTS, build_skeleton
 
 KEY, TITLE = "joint_error_body", "Joint error on the body by added latency"
 HOW = (

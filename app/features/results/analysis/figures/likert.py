@@ -21,8 +21,7 @@ from app.features.results.analysis.figures.drawing import (
     too_few,
 )
 from app.features.results.analysis.figures.theme import new_figure
-from app.science.instruments import Instrument
-from app.science.instruments.model import Item
+from app.science.instruments import Instrument, Item
 
 WHAT = (
     "Share of answers in each category, before any recoding, at each added latency. Bars are "

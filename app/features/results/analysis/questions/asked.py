@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 from app.features.results.analysis.questions.measures import Measure
 from app.features.results.analysis.questions.words import bounded, number, p_words
-from app.science.statistics import Comparison
-from app.science.statistics.arrays import FloatArray, complete_rows
+from app.science.statistics import Comparison, FloatArray, complete_rows
 
 WILCOXON_SOURCE = (
     "Wilcoxon 1945, Biometrics Bull. 1:80; Holm 1979, Scand. J. Stat. 6:65; Kerby 2014, Compr. "

@@ -3,8 +3,13 @@
 import numpy as np
 
 from app.features.results.analysis.questions.words import number
-from app.science.statistics import Interval, StatisticsError, bootstrap_interval, mean_of
-from app.science.statistics.arrays import FloatArray
+from app.science.statistics import (
+    FloatArray,
+    Interval,
+    StatisticsError,
+    bootstrap_interval,
+    mean_of,
+)
 
 SEED, DRAWS = 20_260_101, 1999
 

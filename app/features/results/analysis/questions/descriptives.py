@@ -5,8 +5,7 @@ import numpy as np
 from app.features.results.analysis.questions.bootstrapped import interval_words
 from app.features.results.analysis.questions.measures import Measure
 from app.features.results.analysis.questions.words import Said, measured, number
-from app.science.statistics import share_of_maximum
-from app.science.statistics.arrays import FloatArray
+from app.science.statistics import FloatArray, share_of_maximum
 
 
 def descriptive(measure: Measure) -> Said:

@@ -14,10 +14,8 @@ import pandas as pd
 from app.features.results.analysis.figures.by_latency import per_participant
 from app.features.results.analysis.figures.joint_errors import task_angles
 from app.features.results.analysis.material import Material
-from app.science.instruments import Instrument
-from app.science.instruments.formula import names_in
-from app.science.statistics.arrays import FloatArray
-from app.science.statistics.planned import Direction
+from app.science.instruments import Instrument, names_in
+from app.science.statistics import Direction, FloatArray
 
 LIMBS = ("hand", "foot")
 FALLS: frozenset[str] = frozenset({"agency"})

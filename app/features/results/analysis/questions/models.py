@@ -16,15 +16,18 @@ from app.features.results.analysis.questions.words import (
     p_words,
 )
 from app.science.statistics import (
+    Effect,
     StatisticsError,
     rm_anova,
 )
-from app.science.statistics.carry_over import carry_over
-from app.science.statistics.effects import Effect
-from app.science.statistics.mixed_design import build_design
-from app.science.statistics.mixed_model import fit_mixed_model
-from app.science.statistics.mixed_terms import factor
-from app.science.statistics.mixed_tests import TermTest, term_tests
+from app.science.statistics.mixed import (
+    TermTest,
+    build_design,
+    carry_over,
+    factor,
+    fit_mixed_model,
+    term_tests,
+)
 
 ANOVA_SOURCE = (
     "Winer, Brown and Michels 1991, ch. 7; Greenhouse and Geisser 1959, Psychometrika 24:95; "

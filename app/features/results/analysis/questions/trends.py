@@ -12,8 +12,13 @@ from app.features.results.analysis.questions.words import (
     p_cell,
     p_words,
 )
-from app.science.statistics import DirectionalHypothesis, PageTrend, directional, page_trend
-from app.science.statistics.planned import Direction
+from app.science.statistics import (
+    Direction,
+    DirectionalHypothesis,
+    PageTrend,
+    directional,
+    page_trend,
+)
 
 PAGE_SOURCE = "Page 1963, J. Am. Stat. Assoc. 58:216."
 

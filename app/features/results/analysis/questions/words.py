@@ -11,8 +11,7 @@ from functools import cache
 from importlib.resources import files
 
 from app.features.results.analysis.schemas import ResultView
-from app.science.statistics.error_rates_table import ErrorRates, error_rates_from_json
-from app.science.statistics.planned import Direction
+from app.science.statistics import Direction, ErrorRates, error_rates_from_json
 
 _SMALLEST_P = 0.001
 _BOUNDED_DIGITS = 3

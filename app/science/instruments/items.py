@@ -1,0 +1,105 @@
+"""What an instrument consists of: items with their scales and choices, and scores.
+
+Texts are given in every language the instrument declares: `{"en": ..., "de": ...}`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+Text = Mapping[str, str]
+"""Language code -> wording. Every declared language is present."""
+
+ItemType = Literal["likert", "integer", "number", "text", "boolean", "choice"]
+Answer = float | int | str | bool | None
+"""What can be answered; None for an item that was left out."""
+
+# Read by pydantic when an instrument file is loaded: nothing unknown, nothing converted silently.
+STRICT: dict[str, object] = {"extra": "forbid", "strict": True, "allow_inf_nan": False}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One option of a choice item; `key` is what is stored."""
+
+    __pydantic_config__: ClassVar[dict[str, object]] = STRICT
+
+    key: str
+    label: Text
+
+
+@dataclass(frozen=True)
+class Scale:
+    """The scale of likert items: whole numbers, with labels from lowest to highest.
+
+    `step`: from one to the next. `labels`: one for each step, or two for both ends, or none.
+    """
+
+    __pydantic_config__: ClassVar[dict[str, object]] = STRICT
+
+    minimum: int
+    maximum: int
+    labels: tuple[Text, ...]
+    step: int = 1
+
+    @property
+    def steps(self) -> range:
+        """Every possible answer, from lowest to highest; empty if `step` is not positive."""
+        return range(self.minimum, self.maximum + 1, self.step) if self.step > 0 else range(0)
+
+
+@dataclass(frozen=True)
+class Item:
+    """One question.
+
+    `minimum`, `maximum`: limits of integer and number items, in `unit`. `scale`: of a likert item,
+    in place of the instrument's. `max_length`: characters of a text answer. `reverse_keyed`:
+    agreement speaks against what the item's scale measures (used for reliability, never by the
+    formulas). `note`: where the item comes from.
+    """
+
+    __pydantic_config__: ClassVar[dict[str, object]] = STRICT
+
+    key: str
+    text: Text
+    type: ItemType
+    required: bool = True
+    minimum: float | None = None
+    maximum: float | None = None
+    unit: str | None = None
+    choices: tuple[Choice, ...] = ()
+    max_length: int | None = None
+    reverse_keyed: bool = False
+    note: str | None = None
+    scale: Scale | None = None
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether a formula can use the item; a yes counts 1 and a no 0."""
+        return self.type in ("likert", "integer", "number", "boolean")
+
+
+@dataclass(frozen=True)
+class Score:
+    """A formula with a name. `minimum`, `maximum`: the range that its author states."""
+
+    __pydantic_config__: ClassVar[dict[str, object]] = STRICT
+
+    key: str
+    label: Text
+    formula: str
+    minimum: float | None = None
+    maximum: float | None = None
+    note: str | None = None
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a text or an instrument comes from, and how far that was checked."""
+
+    __pydantic_config__: ClassVar[dict[str, object]] = STRICT
+
+    source: str
+    licence: str
+    verified: str
+    notes: tuple[str, ...] = ()

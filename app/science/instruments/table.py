@@ -1,0 +1,220 @@
+"""Answers as CSV in, scores as CSV out, for people who keep their data in spreadsheets.
+
+Spreadsheets write the same table in many ways: with ; or tabs, with a byte order mark, with CRLF,
+blank lines and Q1 for q1. All of that is read. What cannot be understood is refused with its line.
+
+Apart from `scoring` because of pandas, which a server that scores single forms need not load.
+"""
+
+import csv
+import io
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+from app.science.instruments.answers import as_number
+from app.science.instruments.errors import AnswerError, InstrumentTableError, shortened
+from app.science.instruments.evaluation import FloatArray
+from app.science.instruments.instrument import Instrument
+from app.science.instruments.items import Item
+from app.science.instruments.scoring import scores_of_columns
+
+__all__ = ["score_csv", "score_table"]
+_SEPARATORS = (",", ";", "\t")
+_MISSING = frozenset({"", "na", "n/a", "nan", "null", "none"})
+_YES_NO = {"true": True, "yes": True, "false": False, "no": False}
+
+
+@dataclass(frozen=True)
+class _Row:
+    """The cells of one row, and the line of the file on which it ends (from 1)."""
+
+    line: int
+    cells: list[str]
+
+
+def score_csv(instrument: Instrument, text_in: str) -> str:
+    """Score a CSV of raw answers: id columns as they are, then one column for each score.
+
+    `text_in`: a header line, then one row for each filled-in form; columns named like items hold
+    answers, empty (or NA) where missing. The result uses commas and \\n; scores have every digit
+    that a float has and are empty where they have no value. A header alone gives a header.
+
+    Raises InstrumentTableError, naming line and column, for: no header, no item column, doubled
+    columns, a row of another length, broken quotes, an answer off its scale.
+    """
+    separator, header, rows = _read(instrument, text_in.removeprefix("\ufeff"))
+    for row in rows:
+        if len(row.cells) != len(header):
+            raise InstrumentTableError(
+                f"Line {row.line} has {len(row.cells)} cells, but the header has {len(header)}. "
+                "Give every row one cell for each column, and put text with separators in quotes."
+            )
+    cells = [row.cells for row in rows]
+    if separator == ";":
+        # Where ; separates cells, spreadsheets write decimals with a comma.
+        cells = [_with_points(instrument, header, row) for row in cells]
+    frame = pd.DataFrame(cells, columns=header, dtype=object)
+    try:
+        table = score_table(instrument, frame)
+    except AnswerError as error:
+        raise _located(error, instrument, header, rows) from error
+    return _written(table, [score.key for score in instrument.scores])
+
+
+def _read(instrument: Instrument, text: str) -> tuple[str, list[str], list[_Row]]:
+    lines = io.StringIO(text, newline="")
+    first = next((line for line in lines if line.strip()), "")
+    if not first:
+        raise _empty(instrument)
+
+    def n_items(separator: str) -> int:
+        names = (cell.strip().strip('"') for cell in first.strip("\r\n").split(separator))
+        return sum(_item_name(instrument, name) in instrument.by_key for name in names)
+
+    separator = max(_SEPARATORS, key=n_items)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    rows: list[_Row] = []
+    try:
+        rows.extend(
+            _Row(reader.line_num, cells)
+            for cells in reader
+            if len(cells) > 1 or "".join(cells).strip()
+        )
+    except csv.Error as error:
+        raise InstrumentTableError(
+            f"Line {reader.line_num} cannot be read: {error}. "
+            'Close every quote; write a quote inside a quoted cell twice ("").'
+        ) from error
+    if not rows:  # a quoted empty cell is a line of text, but no row
+        raise _empty(instrument)
+    return separator, rows[0].cells, rows[1:]
+
+
+def _empty(instrument: Instrument) -> InstrumentTableError:
+    return InstrumentTableError(
+        "The table is empty. Give a header line with id columns and the items "
+        + ", ".join(instrument.by_key)
+        + "."
+    )
+
+
+def _with_points(instrument: Instrument, header: list[str], cells: list[str]) -> list[str]:
+    return [
+        cell.replace(",", ".") if _item_name(instrument, name) in instrument.by_key else cell
+        for name, cell in zip(header, cells, strict=True)
+    ]
+
+
+def _located(
+    error: AnswerError, instrument: Instrument, header: list[str], rows: list[_Row]
+) -> InstrumentTableError:
+    number = error.row or 1
+    row = rows[number - 1]
+    at = next(n for n, name in enumerate(header) if _item_name(instrument, name) == error.item)
+    return InstrumentTableError(
+        f"Row {number} (line {row.line}), column {header[at].strip()}: the answer is "
+        f"{shortened(row.cells[at])!r}. Valid is {error.valid}, or an empty cell if it is missing. "
+        "Correct it and score again; nothing was written."
+    )
+
+
+def _written(table: pd.DataFrame, scores: list[str]) -> str:
+    out = io.StringIO(newline="")
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(table.columns.tolist())
+    for row in table.itertuples(index=False, name=None):
+        ids, values = row[: -len(scores) or None], row[len(row) - len(scores) :]
+        writer.writerow([*ids, *("" if value != value else repr(float(value)) for value in values)])
+    return out.getvalue()
+
+
+def score_table(instrument: Instrument, frame: pd.DataFrame) -> pd.DataFrame:
+    """Scores of a table with one row for each filled-in form.
+
+    `frame`: columns named like items (q1 or Q1) hold raw answers, as numbers or as text; all others
+    are ids. Returns the ids as they are, then one float column for each score (NaN: no value), with
+    the same index. A missing item column empties just the scores that need it.
+
+    Raises AnswerError with the row (from 1) for an answer off its scale; InstrumentTableError if no
+    column is an item, if a column is there twice, or if an id is named like a score.
+    """
+    named = _item_columns(instrument, [str(name) for name in frame.columns])
+    columns = {
+        key: _numbers(instrument, instrument.by_key[key], frame.iloc[:, position])
+        for key, position in named.items()
+        if instrument.by_key[key].is_numeric
+    }
+    items = set(named.values())
+    ids = frame.iloc[:, [at for at in range(frame.shape[1]) if at not in items]]
+    clash = [score.key for score in instrument.scores if score.key in ids.columns]
+    if clash:
+        raise InstrumentTableError(
+            f"The table already has a column {clash[0]!r}, which is the name of a score. "
+            "Rename or remove that column."
+        )
+    scores = scores_of_columns(instrument, columns, rows=len(frame))
+    return pd.concat([ids, pd.DataFrame(scores, index=frame.index, dtype=np.float64)], axis=1)
+
+
+def _numbers(instrument: Instrument, item: Item, column: "pd.Series[float]") -> FloatArray:
+    return np.array(
+        [
+            as_number(instrument, item, _cell(value), row=row)
+            for row, value in enumerate(column.tolist(), start=1)
+        ],
+        dtype=np.float64,
+    )
+
+
+def _cell(value: object) -> object:
+    """Text of a table as a number where it is one; the usual words for "missing" as None."""
+    if value is pd.NA:
+        return None
+    if not isinstance(value, str):
+        return value
+    text = value.strip().lower()
+    if text in _MISSING:
+        return None
+    if text in _YES_NO:
+        return _YES_NO[text]
+    # float() would also take "1_0", "inf" and digits of other scripts.
+    if text.isascii() and "_" not in text and any(letter.isdigit() for letter in text):
+        try:
+            return float(text)
+        except ValueError:
+            return value
+    return value
+
+
+def _item_columns(instrument: Instrument, headers: Sequence[str]) -> dict[str, int]:
+    """Item key -> position of its column. Capitals and blanks around a header do not matter.
+
+    Raises InstrumentTableError if a column is there twice or if no column is an item.
+    """
+    names = [_item_name(instrument, header) for header in headers]
+    doubled = [name for name, count in Counter(names).items() if count > 1]
+    if doubled:
+        places = ", ".join(str(at + 1) for at, name in enumerate(names) if name == doubled[0])
+        raise InstrumentTableError(
+            f"The column {doubled[0]!r} is there more than once (columns {places}). "
+            "Keep the right one and remove the others."
+        )
+    found = {name: at for at, name in enumerate(names) if name in instrument.by_key}
+    if not found:
+        keys = ", ".join(instrument.by_key)
+        given = ", ".join(headers) or "none"
+        raise InstrumentTableError(
+            f"No column is an item of {instrument.key}: the columns are {given}. "
+            f"Name the answer columns after the items: {keys}."
+        )
+    return found
+
+
+def _item_name(instrument: Instrument, header: str) -> str:
+    """The item that a header means; other headers stay as they are."""
+    name = header.strip()
+    return name.lower() if name.lower() in instrument.by_key else header

@@ -1,0 +1,32 @@
+"""How far an avatar's joints are from what they were asked for.
+
+`joint_errors` has the definition, `joint_error_summary` its figures over a phase, `recorded_errors`
+those of two recorded streams, against the present pose and against the delayed command, and
+`joint_error_course` their course over the phase's active time.
+"""
+
+from app.science.joint_error.course import COURSE_BIN_S, active_times, joint_error_course
+from app.science.joint_error.errors import (
+    ERROR_AXES,
+    ERROR_JOINTS,
+    Clipping,
+    JointErrorSummary,
+    joint_error_summary,
+    joint_errors,
+)
+from app.science.joint_error.recorded import Asked, Recorded, recorded_errors
+
+__all__ = [
+    "COURSE_BIN_S",
+    "ERROR_AXES",
+    "ERROR_JOINTS",
+    "Asked",
+    "Clipping",
+    "JointErrorSummary",
+    "Recorded",
+    "active_times",
+    "joint_error_course",
+    "joint_error_summary",
+    "joint_errors",
+    "recorded_errors",
+]

@@ -1,0 +1,226 @@
+"""Cumulative link models: ordinal answers without pretending that 1 to 7 are numbers.
+
+Behind an answer stands a hidden value; thresholds cut it into the categories of the scale:
+
+    P(answer <= k) = F(theta_k - x beta - u),    u ~ N(0, sigma^2) for each participant,
+
+F logistic (`logit`) or normal (`probit`). Thresholds are free but increasing. A positive effect
+moves answers up the scale; with `logit`, exp(beta) is the factor by which the odds of answering
+above any threshold grow. With u it is a mixed model (CLMM), without it the plain one (CLM), which
+takes all answers as independent and is wrong for repeated measures: it is here to compare with.
+
+The likelihood is Laplace's (`nodes` 1) or by adaptive Gauss-Hermite quadrature
+(`cumulative_likelihood`). Standard errors are from the observed information: differences of the
+analytic gradient at the optimum. Tests of single effects are Wald's; prefer likelihood-ratio tests
+(`cumulative_tests`). Both are approximate with a dozen participants.
+
+Categories that nobody chose have no threshold: they are left out, and the result says which. If
+every answer of a condition is at the end of the scale, its effect has no finite estimate; then the
+fit is told as not converged.
+
+Sources: Agresti 2010, Analysis of Ordinal Categorical Data; Christensen 2019, `ordinal` for R.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import scipy.stats
+
+from app.science.statistics.arrays import FloatArray, IntArray
+from app.science.statistics.mixed.cumulative_likelihood import Answers
+from app.science.statistics.mixed.cumulative_links import Link
+from app.science.statistics.mixed.cumulative_search import Found, search
+from app.science.statistics.mixed.design import Design
+from app.science.statistics.mixed.terms import Label, ModelError, participant_codes
+
+_LEVEL = 0.95
+_MOST_NODES = 50
+_FEWEST_PARTICIPANTS = 3
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """Where the hidden value passes from one category to the next, `2|3`."""
+
+    between: str
+    estimate: float
+    se: float
+
+
+@dataclass(frozen=True)
+class CumulativeEffect:
+    """A coefficient, in units of the hidden value (log odds or standard deviations).
+
+    Attributes:
+        name: for instance `latency[125]`: that level less the reference.
+        estimate, se: and its standard error.
+        z, p: Wald's two-sided test that it is zero.
+        low, high: 95 % confidence interval.
+    """
+
+    name: str
+    estimate: float
+    se: float
+    z: float
+    p: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class CumulativeModel:
+    """A fitted cumulative link (mixed) model.
+
+    Attributes:
+        link: of the hidden value.
+        nodes: of the quadrature; 1 is Laplace's approximation, 0 a model without participants.
+        thresholds, effects: estimates.
+        participant_sd: sigma, in units of the hidden value; 0 if estimated as zero or not in it.
+        participant_sd_se: its standard error; NaN where sigma is 0.
+        log_likelihood: at the optimum.
+        parameters: how many were estimated.
+        observations: how many went in.
+        participants: of how many people; 0 in a model without.
+        levels: the categories that were chosen, in order.
+        unused_levels: those of the scale that nobody chose.
+        converged: whether the likelihood is level and peaked where the search ended.
+        messages: what a reader must know of the fit, in sentences; empty if nothing.
+        gradient: (parameters,) of the log-likelihood where the search ended.
+        design: what the effects are of; None with thresholds only.
+        covariance: (p, p) of the effects; NaN without standard errors.
+    """
+
+    link: Link
+    nodes: int
+    thresholds: tuple[Threshold, ...]
+    effects: tuple[CumulativeEffect, ...]
+    participant_sd: float
+    participant_sd_se: float
+    log_likelihood: float
+    parameters: int
+    observations: int
+    participants: int
+    levels: tuple[int, ...]
+    unused_levels: tuple[int, ...]
+    converged: bool
+    messages: tuple[str, ...]
+    gradient: FloatArray
+    design: Design | None
+    covariance: FloatArray
+
+    @property
+    def participant_variance(self) -> float:
+        """sigma^2, as `ordinal` prints it."""
+        return self.participant_sd**2
+
+    @property
+    def aic(self) -> float:
+        """Akaike's criterion."""
+        return 2.0 * (self.parameters - self.log_likelihood)
+
+
+def fit_cumulative_model(
+    answers: Sequence[int] | IntArray,
+    participants: Sequence[Label] | None,
+    design: Design | None,
+    *,
+    link: Link = "logit",
+    nodes: int = 1,
+    scale: Sequence[int] | None = None,
+) -> CumulativeModel:
+    """Fit the model by maximum likelihood.
+
+    Args:
+        answers: N categories as whole numbers, larger is more.
+        participants: N names; None takes all answers as independent (CLM).
+        design: of the same N observations; its intercept is left out, since thresholds are there.
+            None has thresholds only.
+        link: "logit" or "probit".
+        nodes: 1 for Laplace, up to 50 for adaptive Gauss-Hermite quadrature; 10 are plenty.
+        scale: the categories that could be chosen, to tell which were not.
+
+    Raises:
+        ModelError: lengths differ, an answer is not of the scale, fewer than two categories were
+            chosen, or there are fewer than three participants.
+    """
+    given = np.asarray(answers)
+    levels = _levels(given, scale)
+    x = np.empty((len(given), 0)) if design is None else design.matrix[:, 1:]
+    names = () if design is None else design.names[1:]
+    codes = np.arange(len(given)) if participants is None else participant_codes(participants)
+    _check(len(given), len(x), codes, nodes)
+    order = np.argsort(codes, kind="stable")
+    categories = np.searchsorted(levels, given)[order].astype(np.int64)
+    data = Answers(categories, x[order], codes[order], len(levels))
+    found = search(data, link, nodes, mixed=participants is not None)
+    unused = sorted(set(scale or ()) - set(levels))
+    return CumulativeModel(
+        link=link,
+        nodes=nodes if participants is not None else 0,
+        thresholds=_thresholds(levels, found),
+        effects=_effects(names, found),
+        participant_sd=found.at.sd,
+        participant_sd_se=float(found.errors[-1]),
+        log_likelihood=found.log_likelihood,
+        parameters=len(found.errors) - (participants is None),
+        observations=len(given),
+        participants=0 if participants is None else data.participants,
+        levels=tuple(levels),
+        unused_levels=tuple(unused),
+        converged=found.converged,
+        messages=(*found.messages, *_about(unused)),
+        gradient=found.gradient,
+        design=design,
+        covariance=found.covariance,
+    )
+
+
+def _thresholds(levels: list[int], found: Found) -> tuple[Threshold, ...]:
+    names = [f"{low}|{high}" for low, high in pairwise(levels)]
+    values = zip(names, found.at.thresholds, found.errors, strict=False)
+    return tuple(Threshold(name, float(value), float(se)) for name, value, se in values)
+
+
+def _effects(names: Sequence[str], found: Found) -> tuple[CumulativeEffect, ...]:
+    errors = found.errors[len(found.at.thresholds) : -1]
+    half = float(scipy.stats.norm.ppf((1.0 + _LEVEL) / 2.0))
+    effects = []
+    for name, value, se in zip(names, found.at.beta.tolist(), errors.tolist(), strict=True):
+        z = value / se
+        p = 2.0 * float(scipy.stats.norm.sf(abs(z)))
+        low, high = value - half * se, value + half * se
+        effects.append(CumulativeEffect(name, value, se, z, p, low, high))
+    return tuple(effects)
+
+
+def _levels(given: IntArray, scale: Sequence[int] | None) -> list[int]:
+    if given.ndim != 1 or given.dtype.kind not in "iu":
+        raise ModelError("Answers must be whole numbers in one row, without missing ones.")
+    levels: list[int] = np.unique(given).tolist()
+    strangers = [level for level in levels if scale is not None and level not in scale]
+    if strangers:
+        raise ModelError(f"The answer {strangers[0]} is not of the scale {list(scale or ())}.")
+    if len(levels) < len(("low", "high")):
+        raise ModelError(f"All answers are {levels}: there is nothing to explain.")
+    return levels
+
+
+def _check(answers: int, rows: int, codes: IntArray, nodes: int) -> None:
+    if not answers == rows == len(codes):
+        raise ModelError(
+            f"{answers} answers, {len(codes)} participants' names and {rows} rows of the design do "
+            "not fit; each observation needs one of each."
+        )
+    if codes.max() + 1 < _FEWEST_PARTICIPANTS:
+        raise ModelError(f"{codes.max() + 1} participants are too few; give three or more.")
+    if not 1 <= nodes <= _MOST_NODES:
+        raise ModelError(f"{nodes} nodes of quadrature were asked for; 1 to {_MOST_NODES} can be.")
+
+
+def _about(unused: list[int]) -> tuple[str, ...]:
+    if not unused:
+        return ()
+    told = ", ".join(str(level) for level in unused)
+    return (f"Nobody answered {told}; the scale was taken without.",)

@@ -1,0 +1,59 @@
+"""A course as the agents see it: the path in legs, the numbers of one simulation, its time."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from app.science.rotations import FloatArray
+from app.science.walking.records import Course, PlannedPath, Walk
+
+TIMES_REFERENCE = 2.0
+EXTRA_S = 1.0
+
+
+class Way(NamedTuple):
+    """A path as the agents see it: P points, P - 1 legs.
+
+    Attributes:
+        points: (P, 2).
+        units: (P - 1, 2) direction of each leg.
+        lengths: (P - 1,).
+        before: (P,) way up to each point.
+    """
+
+    points: FloatArray
+    units: FloatArray
+    lengths: FloatArray
+    before: FloatArray
+
+
+class Pace(NamedTuple):
+    """Numbers of one simulation: the rules, speed at the start, whether it brakes, most steps."""
+
+    dt: float
+    lookahead: float
+    radius: float
+    floor: float
+    begin: float
+    brakes: bool
+    steps: int
+
+
+def way_of(path: PlannedPath) -> Way:
+    """The path in legs."""
+    legs = np.diff(path.points_m, axis=0)
+    lengths = np.linalg.norm(legs, axis=1)
+    points = np.ascontiguousarray(path.points_m, dtype=np.float64)
+    return Way(points, legs / lengths[:, None], lengths, path.arc_m)
+
+
+def course_of(walk: Walk, path: PlannedPath, dt_s: float) -> Course:
+    """The course by which a walk is re-simulated.
+
+    An agent that takes more than twice as long and a second has not arrived: its suitability in
+    time is below exp(-10) by then. A walk that a recording cuts begins, or ends, at speed.
+    """
+    samples = int(np.floor(walk.duration_s / dt_s + 1e-9)) + 1
+    begin_m_s = 0.0 if walk.begins_still else float(walk.speeds_m_s[0])
+    limit_s = TIMES_REFERENCE * walk.duration_s + EXTRA_S
+    return Course(path, samples, limit_s, begin_m_s, walk.ends_still)

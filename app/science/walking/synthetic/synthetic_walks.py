@@ -1,0 +1,105 @@
+"""Databases of made-up walks: a population sent through scenes.
+
+Each person walks every path of every scene some times. Start and goal are some centimetres beside
+the scene's places, as a person's are. Tracks are cut and smoothed as captured ones are, and planned
+from their own start to their own goal.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.science.walking.planning import LazyThetaPlanner
+from app.science.walking.recording import planned_walk, walks_of
+from app.science.walking.records import PlannedPath, PlannedWalk, Point, WalkingError
+from app.science.walking.scene import (
+    POLE_DEG,
+    POLE_M,
+    STRAIGHT_M,
+    Scene,
+    SceneError,
+    pole_scene,
+    straight_scene,
+)
+from app.science.walking.synthetic.populations import Person, Population, person_of, walk_along
+
+BESIDE_M = 0.02
+"""How far, one sd along each axis, a person starts and ends beside a place."""
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Whom of a population, and how often.
+
+    Attributes:
+        people: how many persons.
+        repetitions: of each path by each person.
+        seed: another one gives other people.
+        prefix: before their names, so that two samples never share a person.
+    """
+
+    people: int
+    repetitions: int = 1
+    seed: int = 1
+    prefix: str = ""
+
+
+def laboratory_scenes() -> list[Scene]:
+    """The sixteen scenes of the paper's database."""
+    return [straight_scene(length) for length in STRAIGHT_M] + [
+        pole_scene(turn, distance) for turn in POLE_DEG for distance in POLE_M
+    ]
+
+
+def synthetic_walks(
+    population: Population, scenes: Sequence[Scene], sample: Sample
+) -> Iterator[PlannedWalk]:
+    """Make walks, person by person; each one's note names its scene and path.
+
+    Raises:
+        WalkingError: nobody, or no path.
+    """
+    if sample.people < 1 or sample.repetitions < 1 or not any(scene.paths for scene in scenes):
+        raise WalkingError("A population needs people, repetitions and a scene with paths.")
+    ways = [_Way(LazyThetaPlanner(scene), at) for scene in scenes for at in range(len(scene.paths))]
+    for number in range(sample.people):
+        rng = np.random.default_rng((sample.seed, number))
+        person = person_of(population, number, rng)
+        person = replace(person, name=f"{sample.prefix}{person.name}")
+        for way in ways:
+            for _ in range(sample.repetitions):
+                yield from way.walked(person, rng)
+
+
+@dataclass(frozen=True, eq=False)
+class _Way:
+    planner: LazyThetaPlanner
+    number: int
+
+    def walked(self, person: Person, rng: np.random.Generator) -> Iterator[PlannedWalk]:
+        scene = self.planner.scene
+        path = scene.paths[self.number]
+        start, goal = (self._beside(scene.places[name], rng) for name in (path.start, path.goal))
+        track = walk_along(person, self.planner.plan(start, goal), rng)
+        for walk in walks_of(track):
+            noted = replace(walk, note=f"{scene.name}: {path.name}")
+            yield planned_walk(noted, self.planner)
+
+    def _beside(self, place: Point, rng: np.random.Generator) -> Point:
+        """A place nearby where a person can stand."""
+        for _ in range(50):
+            x, y = np.array(place) + BESIDE_M * rng.standard_normal(2)
+            try:
+                self.planner.scene.check_point((float(x), float(y)), "A walker")
+            except SceneError:
+                continue
+            return float(x), float(y)
+        return place
+
+
+def straight_path(length_m: float) -> PlannedPath:
+    """A straight path of some length, for questions without a scene."""
+    if not 0.0 < length_m < np.inf:
+        raise WalkingError(f"A path of {length_m} m is none.")
+    return PlannedPath(np.array([[0.0, 0.0], [0.0, length_m]]))

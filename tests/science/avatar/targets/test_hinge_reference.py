@@ -1,0 +1,180 @@
+"""What an avatar moved by physics is asked for."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from app.science.avatar.body.parts import AXES_OF, AXIS_NAMES, PART_NAMES
+from app.science.avatar.configuration.axis_settings import AxisSettings
+from app.science.avatar.configuration.editing import lock
+from app.science.avatar.configuration.limits import ANATOMIC, FREE
+from app.science.avatar.mjcf.gains import default_configuration
+from app.science.avatar.targets.hinge_reference import GAP_S, HingeReference
+from app.science.avatar.targets.targets import TargetAngles, joint_rotations
+from app.science.joint_error.errors import ERROR_JOINTS, joint_error_summary
+from app.science.joint_error.recorded import Asked, Recorded, recorded_errors
+from app.science.rotations import FloatArray, from_rotation_vector, geodesic_angle, identity
+from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES
+from tests.science.avatar.captured import WALK, captured
+from tests.science.avatar.simulated import follow, model
+from tests.science.avatar.targets.test_batch import FRAMES, wild_movement
+
+RATE_HZ = 90.0
+
+
+def _times_s(frames: int) -> FloatArray:
+    return np.arange(frames) / RATE_HZ
+
+
+def _clipped(asked: Asked) -> npt.NDArray[np.bool_]:
+    assert asked.clipping is not None
+    return asked.clipping.clipped
+
+
+def _shrugging() -> FloatArray:
+    """Two seconds: shoulders rise by 20 deg, elbows and knees bend 30 deg askew."""
+    poses = identity(180, JOINT_COUNT)
+    swing = np.sin(np.linspace(0.0, math.pi, 180))
+    for joint, axis, size in (
+        ("LeftShoulder", (0.0, 0.0, -1.0), 20.0),
+        ("LeftLowerArm", (0.0, -math.cos(0.5), math.sin(0.5)), 60.0),
+        ("LeftLowerLeg", (-math.cos(0.5), 0.0, math.sin(0.5)), 60.0),
+    ):
+        vectors = math.radians(size) * swing[:, np.newaxis] * np.array(axis)
+        poses[:, JOINT_INDEX[joint]] = from_rotation_vector(vectors)
+    return poses
+
+
+def test_an_avatar_that_does_as_it_is_told_has_no_error() -> None:
+    """Though its own rotations are not the participant's: these would blame it by 20 deg."""
+    poses = _shrugging()
+    told = TargetAngles(ANATOMIC).batch(poses)
+    actual = joint_rotations(told.wanted_rad, poses[:, 0])
+    asked = HingeReference(ANATOMIC).recording(_times_s(len(poses)), poses)
+    summary = joint_error_summary(asked.rotations, actual, asked.clipping)
+    np.testing.assert_allclose(np.nan_to_num(summary.max_rad), 0.0, atol=1e-12)
+    raw = joint_error_summary(poses, actual)
+    for joint in ("LeftShoulder", "LeftUpperArm", "LeftUpperLeg"):
+        assert math.degrees(raw.max_rad[ERROR_JOINTS.index(joint), 0]) > 19.0
+
+
+def test_a_joint_without_a_hinge_has_no_figures() -> None:
+    """Neither an error nor a sample nor one that was left out: it is not asked for anything."""
+    poses = wild_movement(50)
+    parts = [part for part in PART_NAMES if part != "Chest"]
+    asked = HingeReference(ANATOMIC, parts).recording(_times_s(50), poses)
+    summary = joint_error_summary(asked.rotations, poses, asked.clipping)
+    none = {joint for joint, count in zip(ERROR_JOINTS, summary.count, strict=True) if not count}
+    assert none == {"LeftShoulder", "RightShoulder", "Chest"}
+    rows = [ERROR_JOINTS.index(joint) for joint in none]
+    assert np.isnan(summary.rms_rad[rows]).all()
+    assert np.isnan(summary.clipped_share[rows]).all()
+    assert not summary.left_out.any()
+
+
+def test_shares_are_of_hinges_that_turn() -> None:
+    """A knee has two, an elbow as many as its limits leave, a toe one, a cast none."""
+    poses = wild_movement(50)
+    cast = lock(default_configuration(), "left_leg")
+
+    def shares(reference: HingeReference, joint: str) -> list[bool]:
+        asked = reference.recording(_times_s(50), poses)
+        summary = joint_error_summary(asked.rotations, poses, asked.clipping)
+        return [not math.isnan(one) for one in summary.clipped_share[ERROR_JOINTS.index(joint)]]
+
+    for limits, joint, expected in (
+        (ANATOMIC, "LeftLowerLeg", [True, True, True, False]),
+        (ANATOMIC, "LeftLowerArm", [True, True, True, False]),
+        (FREE, "LeftLowerArm", [True, True, True, True]),
+        (ANATOMIC, "RightToes", [True, True, False, False]),
+        (cast.in_force, "LeftLowerLeg", [False] * 4),
+        (cast.in_force, "RightLowerLeg", [True, True, True, False]),
+    ):
+        assert shares(HingeReference(limits), joint) == expected, joint
+
+
+def test_a_limb_in_a_cast_has_the_error_of_what_it_cannot_do() -> None:
+    """A knee held straight while the participant bends theirs by 40 deg is 40 deg wrong."""
+    cast = lock(default_configuration(), "left_leg")
+    angles = np.zeros((20, len(AXIS_NAMES)))
+    angles[:, AXIS_NAMES.index("LeftLowerLegX")] = math.radians(40.0)
+    poses = joint_rotations(angles, identity(20))
+    asked = HingeReference(cast.in_force, cast.parts).recording(_times_s(20), poses)
+    summary = joint_error_summary(asked.rotations, identity(20, JOINT_COUNT), asked.clipping)
+    knee = ERROR_JOINTS.index("LeftLowerLeg")
+    assert math.degrees(summary.mean_rad[knee, 0]) == pytest.approx(40.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("broken", [np.nan, 0.0, 0.7])
+def test_what_follows_from_a_rotation_that_is_none_is_unknown(broken: float) -> None:
+    """A hand's also at the forearm, which turns for it; every other joint and frame counts."""
+    poses = wild_movement(30)
+    poses[10, JOINT_INDEX["RightHand"]] = broken
+    asked = HingeReference(ANATOMIC).recording(_times_s(30), poses)
+    unknown = np.argwhere(np.isnan(asked.rotations).any(axis=-1))
+    assert {(frame, JOINT_NAMES[joint]) for frame, joint in unknown.tolist()} == {
+        (10, "RightHand"),
+        (10, "RightLowerArm"),
+    }
+
+
+@pytest.mark.parametrize("jump_s", [2.0 * GAP_S, -1.0])
+def test_after_a_gap_hinges_are_followed_anew(jump_s: float) -> None:
+    """As after a time that goes back: the frames before say nothing any more."""
+    poses, times_s, gap = wild_movement(), _times_s(FRAMES), 700
+    late_s = np.where(np.arange(FRAMES) < gap, times_s, times_s + jump_s)
+    reference = HingeReference(ANATOMIC)
+    cut, apart = reference.recording(late_s, poses), reference.recording(times_s[gap:], poses[gap:])
+    np.testing.assert_array_equal(_clipped(cut)[gap:], _clipped(apart))
+    together = reference.recording(times_s, poses)
+    assert not np.array_equal(_clipped(cut), _clipped(together))
+
+
+def test_one_pose_is_asked_for_as_a_recording_of_it() -> None:
+    """What is shown live is what is stored, and joints without a hinge show nothing."""
+    poses = wild_movement(20)
+    reference = HingeReference(ANATOMIC)
+    for pose in poses:
+        live = reference.pose(pose)
+        stored = reference.recording(np.zeros(1), pose[np.newaxis]).rotations[0]
+        hinged = [not JOINT_INDEX[name] or bool(AXES_OF[name]) for name in JOINT_NAMES]
+        np.testing.assert_array_equal(live[hinged], stored[hinged])
+        assert np.isnan(live[[not one for one in hinged]]).all()
+        assert geodesic_angle(live[0], pose[0]) < 1e-12
+
+
+def test_a_real_walk_is_followed_by_what_hinges_can_do(shared_data: Path) -> None:
+    """At 125 ms the motors are a degree behind their command; raw rotations say five times that."""
+    movement = captured(shared_data, WALK)
+    built = model()
+    followed = follow(built, movement, delay_s=0.125)
+    times_s, frames = _times_s(movement.frame_count), np.arange(45, movement.frame_count)
+
+    def mean_deg(asked: Asked) -> float:
+        run = Recorded(times_s, asked, frames, times_s[frames], followed.rotations[frames])
+        summary = recorded_errors([run], 0.125).command
+        return float(np.degrees(np.nanmean(summary.mean_rad[:, 0])))
+
+    reference = HingeReference(built.configuration.in_force, built.body.parts)
+    assert mean_deg(reference.recording(times_s, movement.rotations)) < 1.5
+    assert mean_deg(Asked(movement.rotations)) > 5.0
+
+
+def test_a_recording_without_frames_asks_for_nothing() -> None:
+    """As a run of which every target frame was lost."""
+    asked = HingeReference(ANATOMIC).recording(np.zeros(0), np.zeros((0, JOINT_COUNT, 4)))
+    assert asked.rotations.shape == (0, JOINT_COUNT, 4)
+    assert _clipped(asked).shape == (0, len(ERROR_JOINTS), 3)
+
+
+def test_limits_may_be_settings() -> None:
+    """A configuration's axes in force are limits too."""
+    settings = default_configuration().in_force
+    assert all(isinstance(one, AxisSettings) for one in settings.values())
+    poses = wild_movement(5)
+    asked = HingeReference(settings).recording(_times_s(5), poses)
+    expected = HingeReference(ANATOMIC).recording(_times_s(5), poses)
+    np.testing.assert_allclose(asked.rotations, expected.rotations, atol=1e-9)

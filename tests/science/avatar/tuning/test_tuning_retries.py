@@ -1,0 +1,59 @@
+"""What the tuning does when the first gains of an axis do not do."""
+
+import time
+from dataclasses import replace
+
+import pytest
+
+from app.science.avatar.configuration.configuration import Configuration
+from app.science.avatar.mjcf.gains import default_configuration
+from app.science.avatar.tuning import AxisTuning, TuningOptions, tune
+
+_AXIS = "LeftUpperArmY"
+_OTHERS = (
+    "trunk_head", "left_leg", "right_leg", "right_arm", "left_fingers", "right_fingers",
+    "LeftLowerArm", "LeftHand",
+)  # fmt: skip
+
+
+def _shoulder(max_torque_nm: float) -> Configuration:
+    """A body of which only the left upper arm moves, with a motor of this torque."""
+    held = replace(default_configuration(), locked_groups=_OTHERS)
+    axes = {**held.axes, _AXIS: replace(held.axes[_AXIS], max_torque_nm=max_torque_nm)}
+    return replace(held, axes=axes)
+
+
+def _tuned(max_torque_nm: float, **options: object) -> AxisTuning:
+    chosen = TuningOptions(**options)  # type: ignore[arg-type]  # names are checked by running
+    report = tune(_shoulder(max_torque_nm), 1.75, chosen, wall_s=time.monotonic)
+    return next(one for one in report.axes if one.name == _AXIS)
+
+
+@pytest.mark.parametrize("max_torque_nm", [40.0, 20.0])
+def test_a_motor_that_is_too_weak_to_brake_gets_lower_gains(max_torque_nm: float) -> None:
+    """The first gains overshoot as the motor is at its greatest torque; slower ones do not."""
+    once, more = _tuned(max_torque_nm, attempts=1), _tuned(max_torque_nm, attempts=4)
+    assert once.flagged
+    assert "overshoots" in once.status
+    assert more.status == "retried"
+    assert more.note == f"accepted at attempt {more.attempts}"
+    assert more.step is not None
+    assert more.step.overshoot_percent <= 5.0
+    assert more.kp == pytest.approx(once.kp * 0.64 ** (more.attempts - 1), rel=0.05)
+
+
+def test_what_no_attempt_mends_is_flagged_with_the_best_gains() -> None:
+    """The reason stands in the status, and the best is better than the first."""
+    once, more = _tuned(12.0, attempts=1), _tuned(12.0, attempts=3)
+    assert more.flagged
+    assert more.attempts == 3
+    assert once.step is not None
+    assert more.step is not None
+    assert more.step.overshoot_percent < once.step.overshoot_percent
+
+
+def test_a_rule_that_always_overshoots_is_tried_to_the_end() -> None:
+    """Ziegler and Nichols without an integral part, with a motor that is strong enough."""
+    one = _tuned(150.0, heuristic="ziegler-nichols-pd", attempts=2)
+    assert one.flagged
+    assert one.attempts == 2

@@ -1,0 +1,80 @@
+"""Tracks are cut where the person stands still."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter1d
+
+from app.science.rotations import FloatArray
+from app.science.walking.recording.segmentation import SegmentationRules, smoothed, walks_of
+from app.science.walking.records.model import Track, WalkingError
+
+RATE_HZ = 120.0
+
+
+def _walked(*parts: tuple[float, float]) -> Track:
+    """Parts (seconds, metres ahead), each at minimum jerk; no metres is standing."""
+    ahead, at = [np.zeros(1)], 0.0
+    for seconds, metres in parts:
+        share = np.arange(1, round(seconds * RATE_HZ) + 1) / round(seconds * RATE_HZ)
+        ahead.append(at + metres * (10.0 * share**3 - 15.0 * share**4 + 6.0 * share**5))
+        at += metres
+    places = np.concatenate(ahead)
+    xy_m = np.stack([np.zeros_like(places), places], axis=-1)
+    return Track(np.arange(len(places)) / RATE_HZ, xy_m, "7", "made", "synthetic", 1.8)
+
+
+def test_there_and_back_are_two_walks() -> None:
+    """Two walks of 3 m with 5 s of standing between, as in the paper's first experiment."""
+    walks = walks_of(_walked((2.0, 0.0), (4.0, 3.0), (5.0, 0.0), (4.0, -3.0), (2.0, 0.0)))
+    assert [round(walk.length_m, 1) for walk in walks] == [3.0, 3.0]
+    for walk in walks:
+        assert walk.begins_still
+        assert walk.ends_still
+        assert 3.2 < walk.duration_s < 4.0
+        assert (walk.subject, walk.kind, walk.stature_m) == ("7", "synthetic", 1.8)
+    assert walks[0].goal_m == pytest.approx(walks[1].start_m, abs=0.05)
+
+
+def test_a_short_pause_belongs_to_the_walk() -> None:
+    """Coming to rest and going on takes about .8 s below .1 m/s: the rule decides."""
+    assert len(walks_of(_walked((1.0, 0.0), (3.0, 2.0), (0.2, 0.0), (3.0, 2.0), (1.0, 0.0)))) == 2
+    rules = SegmentationRules(still_s=1.5)
+    walks = walks_of(_walked((2.0, 0.0), (3.0, 2.0), (0.2, 0.0), (3.0, 2.0), (2.0, 0.0)), rules)
+    assert [round(walk.length_m, 1) for walk in walks] == [4.0]
+
+
+def test_a_recording_that_cuts_a_walk_says_so() -> None:
+    """A track that begins and ends amid a walk has one walk that does not begin or end still."""
+    track = _walked((4.0, 4.0))
+    middle = slice(120, 360)
+    cut = Track(track.times_s[middle], track.xy_m[middle], "7", "made")
+    (walk,) = walks_of(cut)
+    assert not walk.begins_still
+    assert not walk.ends_still
+    assert walk.speeds_m_s[0] > 0.5
+
+
+def test_standing_is_no_walk_and_neither_is_a_step() -> None:
+    """Nobody walked, or nowhere far."""
+    assert walks_of(_walked((3.0, 0.0))) == []
+    assert walks_of(_walked((1.0, 0.0), (0.8, 0.2), (1.0, 0.0))) == []
+
+
+def test_places_are_smoothed_as_in_the_paper() -> None:
+    """At 120 Hz with sigma = 2 samples; at 60 Hz over the same time."""
+    noise: FloatArray = np.random.default_rng(3).normal(size=(50, 2))
+    for rate_hz, sigma in ((120.0, 2.0), (60.0, 1.0)):
+        expected = gaussian_filter1d(noise, sigma, axis=0)
+        assert smoothed(noise, rate_hz)[8:-8] == pytest.approx(expected[8:-8])
+
+
+def test_smoothing_keeps_place_and_speed_at_the_ends() -> None:
+    """Who is filmed amid a steady walk is as quick at the first frame as later."""
+    steady = np.stack([np.zeros(40), np.arange(40) * 0.01], axis=-1)
+    assert smoothed(steady, 120.0) == pytest.approx(steady, abs=1e-12)
+
+
+def test_rules_that_are_none_are_refused() -> None:
+    """A negative threshold is named."""
+    with pytest.raises(WalkingError, match="still_m_s"):
+        SegmentationRules(still_m_s=-0.1)
