@@ -13,20 +13,19 @@ from app.api.pages import install_pages
 from app.api.router import add_routes
 from app.clock import Clock
 from app.database import open_database
-from app.features.care.opening.service import bring_up_to_date
-from app.features.care.rights.service import finish_erasures
-from app.features.care.storage.measuring import StorageDesk
-from app.features.design.studies.service import add_shipped
-from app.features.movement.avatar.service import add_shipped_avatar
-from app.features.movement.captures.workbench import Workbench
-from app.features.movement.walking.bench import Bench
-from app.features.movement.walking.desk import FittingDesk
-from app.features.people.accounts.service import ensure_admin
+from app.features.care.opening import bring_up_to_date
+from app.features.care.rights import finish_erasures
+from app.features.care.storage import StorageDesk
+from app.features.design.studies import add_shipped
+from app.features.movement.avatar import add_shipped_avatar
+from app.features.movement.captures import Workbench
+from app.features.movement.walking import Bench, FittingDesk
+from app.features.people.accounts import ensure_admin
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
 from app.features.record.tryout import TryoutDesk
-from app.features.results.analysis.drawing import Drawings
-from app.features.results.exports.desk import ExportDesk
-from app.features.results.replay.desk import ReplayDesk
+from app.features.results.analysis import Drawings
+from app.features.results.exports import ExportDesk
+from app.features.results.replay import ReplayDesk
 from app.lan import Network
 from app.platform.context import AppContext, PartMaker
 from app.platform.hub import Hub

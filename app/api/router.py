@@ -38,7 +38,6 @@ from app.features.record.tablet.endpoints import router as tablet
 from app.features.record.tryout.endpoints import router as tryout
 from app.features.results.analysis.endpoints import router as analysis
 from app.features.results.exports.endpoints import router as exports
-from app.features.results.exports.file_endpoints import router as export_files
 from app.features.results.imports.endpoints import router as imports
 from app.features.results.preregistration.endpoints import router as preregistrations
 from app.features.results.replay.endpoints import router as replays
@@ -99,7 +98,6 @@ def add_routes(app: FastAPI) -> None:
             preflight,
             poses,
             replays,
-            export_files,
             storage,
             tryout,
             imports,

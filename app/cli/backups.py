@@ -14,14 +14,10 @@ from app.cli.errors import warn
 from app.clock import Clock
 from app.database import Database
 from app.errors import NotDurable, ReembodyError
-from app.features.care.backups.service import BackedUp, Restored, back_up, checked_backup, restore
-from app.features.care.opening.service import (
-    bring_up_to_date,
-    existing_database,
-    put_away_if_damaged,
-)
-from app.features.care.rights.service import ErasuresKept, finish_erasures
-from app.features.people.audit.copies import COMMAND_LINE, record_copy
+from app.features.care.backups import BackedUp, Restored, back_up, checked_backup, restore
+from app.features.care.opening import bring_up_to_date, existing_database, put_away_if_damaged
+from app.features.care.rights import ErasuresKept, finish_erasures
+from app.features.people.audit import COMMAND_LINE, record_copy
 from app.features.record.erasure import expect_erasure, forget_erasure
 from app.platform.context import AppContext
 from app.platform.folders import backups_of

@@ -7,7 +7,7 @@ from sqlalchemy import select
 
 from app.clock import Clock
 from app.database import Database, open_database
-from app.features.care.opening.service import prepare_database
+from app.features.care.opening import prepare_database
 from app.models import Account
 from app.settings import Settings
 
@@ -29,7 +29,7 @@ def opened_database() -> Iterator[Database]:
 
 def new_token(username: str, hours: float) -> str:
     """A bearer token for an account of this installation; raises LookupError if there is none."""
-    from app.features.people.accounts.service import issue_token  # only tokens need accounts
+    from app.features.people.accounts import issue_token  # only tokens need accounts
 
     with opened_database() as database, database.writing() as db:
         account = db.scalar(select(Account).where(Account.username == username))

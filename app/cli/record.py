@@ -8,11 +8,11 @@ from app.cli.installation import opened_database
 from app.clock import Clock
 from app.database import Database
 from app.errors import NotFound
-from app.features.design.studies.service import study_by_key
-from app.features.people.audit.copies import COMMAND_LINE, record_copy
+from app.features.design.studies import study_by_key
+from app.features.people.audit import COMMAND_LINE, record_copy
 from app.features.record.receipts import receipt_of, receipt_text
 from app.features.results.analysis.tables import KINDS, Kind
-from app.features.results.exports.service import Exported, export_study, usual_kind
+from app.features.results.exports.writing import Exported, export_study, usual_kind
 
 
 def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:

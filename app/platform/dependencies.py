@@ -14,9 +14,8 @@ from app.errors import KeptConflict, NotAllowed, NotSignedIn
 from app.models import Device
 from app.platform.access import Caller, caller_of, require_object
 from app.platform.context import AppContext
-from app.platform.cookies import read_cookie
 from app.platform.policy import HEADSET, TABLET, allowed
-from app.platform.tokens import account_of_token, device_of_token
+from app.platform.tokens import account_of_token, device_of_token, read_cookie
 
 LOGIN_COOKIE = "reembody_login"
 TABLET_COOKIE = "reembody_tablet"

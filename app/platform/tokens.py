@@ -1,7 +1,13 @@
-"""Tokens: what proves who is calling.
+"""Tokens: what proves who is calling, and the cookies that hold one in a browser.
 
 A token is random and of 256 bits. The database keeps its SHA-256, so a stolen database opens
 nothing, and every token can be revoked.
+
+A cookie is out of reach of scripts, of other sites, and of other hosts. Over https its name begins
+with `__Host-`: the browser then takes the cookie only if it is Secure, for this host alone and for
+every path, so nobody who controls plain http or a neighbouring name can plant one. Over http (this
+machine, a USB cable) that prefix is not allowed and the name is plain. A request is read for the
+name of its own scheme only.
 """
 
 import hashlib
@@ -9,11 +15,14 @@ from datetime import datetime
 
 from sqlalchemy import bindparam, select
 from sqlalchemy.orm import Session
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import Response
 
 from app.errors import NotSignedIn
 from app.models import Account, Device, LoginToken
 
 _BY_TOKEN = select(Device).where(Device.token_hash == bindparam("token_hash"))
+HOST_ONLY = "__Host-"
 
 
 def hash_token(token: str) -> str:
@@ -40,3 +49,41 @@ def device_of_token(db: Session, token: str, kind: str) -> Device:
             f"this {kind} is not paired any more", remedy="Enter a new code from the console."
         )
     return device
+
+
+def cookie_name(request: HTTPConnection, name: str) -> str:
+    """What the cookie `name` is called where `request` comes from."""
+    return f"{HOST_ONLY}{name}" if _is_secure(request) else name
+
+
+def read_cookie(request: HTTPConnection, name: str) -> str | None:
+    """The token in the cookie `name`."""
+    return request.cookies.get(cookie_name(request, name))
+
+
+def set_cookie(request: Request, response: Response, name: str, token: str, age_s: int) -> None:
+    """Let the browser keep a token in the cookie `name` for `age_s`."""
+    response.set_cookie(
+        cookie_name(request, name),
+        token,
+        max_age=age_s,
+        path="/",
+        httponly=True,
+        samesite="strict",
+        secure=_is_secure(request),
+    )
+
+
+def delete_cookie(request: Request, response: Response, name: str) -> None:
+    """Let the browser forget the cookie `name`; a browser obeys only if all attributes agree."""
+    response.delete_cookie(
+        cookie_name(request, name),
+        path="/",
+        httponly=True,
+        samesite="strict",
+        secure=_is_secure(request),
+    )
+
+
+def _is_secure(request: HTTPConnection) -> bool:
+    return request.url.scheme in ("https", "wss")

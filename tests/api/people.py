@@ -4,8 +4,7 @@ from dataclasses import dataclass
 
 from fastapi.testclient import TestClient
 
-from app.features.people.accounts.people import give_studies
-from app.features.people.accounts.service import create_account, issue_token
+from app.features.people.accounts import create_account, give_studies, issue_token
 from tests.features.lab import STUDY, Json, Lab, ok
 
 ROLES = ("admin", "experimenter", "operator", "analyst")

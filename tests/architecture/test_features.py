@@ -1,84 +1,55 @@
-"""Features know little of each other: what one may import of another is listed here."""
+"""Features know little of each other: outsiders import what a feature's face offers."""
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
-FEATURES = Path(__file__).resolve().parents[2] / "app" / "features"
-ALWAYS = {"service", "schemas"}
-"""What a feature does, and what travels in its name."""
-ALSO = {
-    "audit": {
-        "copies",  # whoever hands out a copy of data puts it on record
-    },
-    "sessions": {
-        "engine",  # commands and state are the words in which features speak of a session
-        "contents",  # words beside the event log
-        "consent",  # the tablet hands in what the participant agreed to
-        "consent_schemas",
-        "journal",  # the log's canonical JSON and its hash chain
-        "capture",  # whose sessions take no more data
-    },
-    "telemetry": {
-        "frames",  # reading movement back
-        "encoding",  # what a frame is
-        "positions",  # how far streams are stored
-        "writer",  # the headset's socket hands its messages over here
-        "outcome",  # and hears what became of them
-        "live",  # the figures that do not wait for the commit
-        "hinges",  # what a physics avatar is asked for, moment by moment
-    },
-    "alarms": {
-        "alarm",  # the writer stores changes of alarms
-        "limits",  # the headset's socket is watched
-        "watch",
-    },
-    "captures": {
-        "contents",  # humanoid models are kept beside captures, once by their hash
-        "uploads",  # and taken in the same way
-        "downloads",
-        "binary",
-        "workbench",  # and measured in the same process
-    },
-    "erasure": {
-        "overwriting",  # imported answers are erased, too
-        "traces",
-    },
-    "exports": {
-        "desk",  # files of a study go when one of its participants is erased
-    },
-    "analysis": {
-        "tables",  # an export is the tables
-        "codebook",  # and their columns
-        "clocks",  # where a run of the headset lies on the wall clock
-    },
-}
+REPOSITORY = Path(__file__).resolve().parents[2]
+ROUTERS = "app/api/router.py"
+"""It takes routers from the features' `endpoints`, where they are made: faces know no HTTP."""
 
 
-def imports() -> Iterator[tuple[str, str, str]]:
-    """(importing file, other feature, its module) for every import across features."""
-    for file in sorted(FEATURES.glob("*/*/**/*.py")):
-        own = file.relative_to(FEATURES).parts[1]
+def imports() -> Iterator[tuple[str, str, list[str]]]:
+    """(importing file, module, its names) for every import of a feature from outside of it."""
+    for file in sorted((REPOSITORY / "app").glob("**/*.py")):
+        path = file.relative_to(REPOSITORY).as_posix()
+        own = ".".join(path.split("/")[:4])
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            if not isinstance(node, ast.ImportFrom) or node.module is None:
-                continue
-            parts = node.module.split(".")
-            if parts[:2] == ["app", "features"] and len(parts) > 4 and parts[3] != own:
-                yield str(file.relative_to(FEATURES)), parts[3], parts[4]
+            found: list[tuple[str, list[str]]] = []
+            if isinstance(node, ast.ImportFrom) and node.module is not None:
+                found = [(node.module, [name.name for name in node.names])]
+            elif isinstance(node, ast.Import):
+                found = [(name.name, []) for name in node.names]
+            for module, names in found:
+                if f"{module}.".startswith("app.features.") and not f"{module}.".startswith(
+                    f"{own}."
+                ):
+                    yield path, module, names
 
 
-def test_a_feature_uses_only_what_another_offers() -> None:
-    """Services and schemas are for everybody, other modules only where they are listed."""
+@cache
+def offered(module: str) -> frozenset[str]:
+    """The names in the `__all__` of a package; none where it is no face."""
+    face = REPOSITORY / module.replace(".", "/") / "__init__.py"
+    if not face.is_file():
+        return frozenset()
+    for node in ast.parse(face.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "__all__":
+            return frozenset(ast.literal_eval(node.value))
+    return frozenset()
+
+
+def test_outsiders_import_what_a_face_offers() -> None:
+    """A package's `__all__` is its face; whatever lies deeper is the feature's own business.
+
+    A feature's heavy half is a package with a face of its own. Only the routers are taken from
+    where they are made.
+    """
     strangers = [
-        f"{file} imports {feature}.{module}"
-        for file, feature, module in imports()
-        if module not in ALWAYS | ALSO.get(feature, set())
+        f"{file} imports {module}: {', '.join(names) or 'as a whole'}"
+        for file, module, names in imports()
+        if not (file == ROUTERS and module.endswith(".endpoints"))
+        and not (names and offered(module).issuperset(names))
     ]
     assert strangers == []
-
-
-def test_nothing_is_listed_that_nobody_uses() -> None:
-    """The list shrinks when an import goes away."""
-    used = {(feature, module) for _, feature, module in imports()}
-    listed = {(feature, module) for feature, modules in ALSO.items() for module in modules}
-    assert listed - used == set()

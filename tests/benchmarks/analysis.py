@@ -25,13 +25,13 @@ from sqlalchemy import update
 
 from app.clock import Clock
 from app.database import Database, open_database
-from app.features.care.opening.service import bring_up_to_date
-from app.features.design.studies.service import add_shipped
+from app.features.care.opening import bring_up_to_date
+from app.features.design.studies import add_shipped
 from app.features.results.analysis.dashboard import dashboard_of
 from app.features.results.analysis.figures import completions_drawing, embodiment_drawings
 from app.features.results.analysis.material import Material, read_material
 from app.features.results.analysis.tables import phases_table, scores_table
-from app.features.results.exports.cells import csv_pieces
+from app.features.results.exports.writing.cells import csv_pieces
 from app.models import Participant, StudySession
 from app.settings import Settings
 from tests.benchmarks.report import Figure, Report

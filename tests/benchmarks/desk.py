@@ -14,8 +14,8 @@ import numpy as np
 
 from app.clock import Clock
 from app.database import open_database
-from app.features.care.opening.service import bring_up_to_date
-from app.features.design.studies.service import add_shipped
+from app.features.care.opening import bring_up_to_date
+from app.features.design.studies import add_shipped
 from app.platform.policy import POLICY
 from app.settings import Settings
 from tests.benchmarks.report import Figure, Report

@@ -19,8 +19,8 @@ from sqlalchemy import Table, insert, literal, select, update
 
 from app.clock import Clock
 from app.database import Base, Database, open_database
-from app.features.care.opening.service import bring_up_to_date
-from app.features.design.studies.service import add_shipped
+from app.features.care.opening import bring_up_to_date
+from app.features.design.studies import add_shipped
 from app.models import TelemetryStream
 from app.settings import Settings
 from app.wire import StreamName

@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from app.database import Database, open_database
-from app.features.results.exports.service import export_study
+from app.features.results.exports.writing import export_study
 from app.schema_revisions import migrate
 from app.wire import StreamName
 from tests.benchmarks.headsets import FRAMES_PER_BATCH, movement

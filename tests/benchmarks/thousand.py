@@ -11,8 +11,8 @@ from sqlalchemy import Column, ColumnElement, Connection, Table, func, insert, l
 from sqlalchemy.orm import Session
 
 from app.database import Base, Database
-from app.features.design.studies.service import newest_version, protocol_of, study_by_key
-from app.features.record.ledger.service import hold_slot, take_slot
+from app.features.design.studies import newest_version, protocol_of, study_by_key
+from app.features.record.ledger import hold_slot, take_slot
 from app.models import (
     Answer,
     ClockProbe,

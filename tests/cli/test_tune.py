@@ -7,8 +7,13 @@ import pytest
 
 from app.cli.installation import opened_database
 from app.clock import Clock
-from app.features.movement.avatar.schemas import NewAvatar
-from app.features.movement.avatar.service import avatar_by_key, create_avatar, newest_version, typed
+from app.features.movement.avatar import (
+    NewAvatar,
+    avatar_by_key,
+    create_avatar,
+    newest_version,
+    typed,
+)
 from app.features.movement.humanoids.tasks import measured
 from app.models import CaptureContent, HumanoidRow
 from app.protocol.avatar import file_of, load_avatar

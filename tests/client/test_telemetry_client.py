@@ -9,8 +9,9 @@ from sqlalchemy import select
 from app.client.file_journal import FileJournal
 from app.client.journal import Journal
 from app.client.telemetry import TelemetryClient
-from app.features.record.receipts.service import SessionReceipt, receipt_of
-from app.features.record.telemetry.frames import concatenate, iter_frames
+from app.features.record.receipts import receipt_of
+from app.features.record.receipts.service import SessionReceipt
+from app.features.record.telemetry import concatenate, iter_frames
 from app.models import TelemetryStream
 from app.wire import StreamName
 from tests.faults.record import record_of

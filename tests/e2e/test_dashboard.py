@@ -5,7 +5,7 @@ from collections.abc import Callable
 from playwright.sync_api import Page, expect
 
 from app.database import open_database
-from app.features.design.studies.service import add_version, study_by_key
+from app.features.design.studies import add_version, study_by_key
 from app.protocol.plan import Step
 from tests.e2e.people import PATIENCE_MS, Experimenter
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session

@@ -18,7 +18,7 @@ from sqlalchemy.orm import Session
 from app.database import open_database
 from app.features.care.backups.digest import overall
 from app.features.care.backups.reading import digests, opened_backup
-from app.features.record.sessions.journal import events_of, verify_chain
+from app.features.record.sessions import events_of, verify_chain
 from app.rehearsal.cast import answer, operate
 from app.rehearsal.rehearse import RehearsalPlan, assembled, rehearse
 from tests.faults.commands import UNUSABLE, Said, reembody

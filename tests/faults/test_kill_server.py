@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.features.record.sessions.journal import events_of, verify_chain
+from app.features.record.sessions import events_of, verify_chain
 from app.rehearsal.cast import perform
 from app.rehearsal.rehearse import RehearsalPlan, assembled
 from tests.faults.figures import note

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.features.record.receipts.service import receipt_of
+from app.features.record.receipts import receipt_of
 from tests.faults.figures import note
 from tests.features.lab import Json
 from tests.features.movement_builders import moving_values

@@ -7,7 +7,7 @@ from typing import Any
 from sqlalchemy import Executable, delete, insert, select, update
 from sqlalchemy.orm import Session
 
-from app.features.record.receipts.service import receipt_of
+from app.features.record.receipts import receipt_of
 from app.models import SessionEvent
 from tests.faults.figures import note
 from tests.features.lab import Lab

@@ -11,15 +11,10 @@ from datetime import timedelta
 from sqlalchemy.orm import Session
 
 from app.clock import Clock
-from app.features.design.studies.service import (
-    add_shipped,
-    newest_version,
-    protocol_of,
-    study_by_key,
-)
-from app.features.movement.avatar.service import SHIPPED, version_of
-from app.features.record.ledger.service import close_attempt, hold_slot, take_slot
-from app.features.record.sessions.contents import store_content
+from app.features.design.studies import add_shipped, newest_version, protocol_of, study_by_key
+from app.features.movement.avatar import SHIPPED, version_of
+from app.features.record.ledger import close_attempt, hold_slot, take_slot
+from app.features.record.sessions import store_content
 from app.features.record.sessions.engine import events as e
 from app.features.record.sessions.engine import initial_state, state_to_json
 from app.features.record.sessions.engine.state import SessionStatus, StepState, StepStatus

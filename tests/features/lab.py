@@ -15,7 +15,7 @@ from pydantic import SecretStr
 
 from app.clock import Clock
 from app.database import Database
-from app.features.people.accounts.service import issue_token
+from app.features.people.accounts import issue_token
 from app.main import create_app
 from app.models import Account
 from app.platform.context import AppContext

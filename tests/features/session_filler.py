@@ -9,7 +9,8 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import instrument_for, instrument_of
+from app.features.design.instruments import instrument_of
+from app.features.design.studies import instrument_for
 from app.models import (
     Answer,
     Completion,

@@ -17,7 +17,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.client.journal import Entry, Journal
-from app.features.record.telemetry.frames import epochs_of, iter_frames
+from app.features.record.telemetry import epochs_of, iter_frames
 from app.models import ClientReport, TelemetryBatch, TelemetryChunk
 from app.wire import StreamName, decode_batch
 from app.wire.messages import REPORT_STREAM

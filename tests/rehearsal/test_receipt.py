@@ -5,7 +5,8 @@ import hashlib
 import pytest
 from sqlalchemy.orm import Session
 
-from app.features.record.receipts.service import SessionReceipt, receipt_of
+from app.features.record.receipts import receipt_of
+from app.features.record.receipts.service import SessionReceipt
 from app.wire.messages import REPORT_STREAM
 from tests.rehearsal.performed import Performed
 

@@ -8,9 +8,9 @@ import pytest
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import protocol_of
-from app.features.record.headset.service import participant_info
-from app.features.record.sessions.journal import events_of, verify_chain
+from app.features.design.studies import protocol_of
+from app.features.record.headset import participant_info
+from app.features.record.sessions import events_of, verify_chain
 from app.models import (
     Completion,
     Contact,

@@ -233,7 +233,7 @@ def make_passwords_cheap() -> None:
 
 def _read_shipped_files() -> None:
     """Every new database gets them; what was read is kept by its text."""
-    from app.features.design.studies.service import shipped_files
+    from app.features.design.studies import shipped_files
     from app.protocol.loading import load_instrument, study_source
 
     shipped = shipped_files()

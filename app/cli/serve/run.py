@@ -19,7 +19,7 @@ from app.cli.serve.output import addresses, certificate_text
 from app.clock import Clock
 from app.collecting import settle
 from app.errors import InvalidInput
-from app.features.care.opening.service import prepare_database
+from app.features.care.opening import prepare_database
 from app.lan import Network
 from app.lan.serving import (
     CertificateWatch,

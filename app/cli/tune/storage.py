@@ -6,9 +6,11 @@ from sqlalchemy.orm import Session
 from app.cli.installation import opened_database
 from app.cli.tune.output_json import report_json
 from app.clock import Clock
-from app.features.movement.avatar.schemas import AvatarKey, NewAvatar, NewAvatarVersion
-from app.features.movement.avatar.service import (
+from app.features.movement.avatar import (
     SHIPPED,
+    AvatarKey,
+    NewAvatar,
+    NewAvatarVersion,
     add_avatar_version,
     add_shipped_avatar,
     avatar_by_key,
@@ -17,8 +19,8 @@ from app.features.movement.avatar.service import (
     newest_version,
     typed,
 )
-from app.features.movement.humanoids.service import figure_by_hash
-from app.features.people.audit.copies import COMMAND_LINE
+from app.features.movement.humanoids import figure_by_hash
+from app.features.people.audit import COMMAND_LINE
 from app.models import AvatarVersion
 from app.protocol.avatar import file_of
 from app.science.avatar.body import Figure

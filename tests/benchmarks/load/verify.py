@@ -11,7 +11,8 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.database import Database, open_database
-from app.features.record.telemetry.encoding import Frames, decode_frames
+from app.features.record.telemetry import Frames
+from app.features.record.telemetry.encoding import decode_frames
 from app.models import AlarmRow, ClientReport, TelemetryBatch, TelemetryChunk
 from app.wire import StreamName, decode_batch
 from app.wire.messages import REPORT_STREAM

@@ -13,7 +13,7 @@ from sqlalchemy.exc import DatabaseError
 from app.clock import Clock
 from app.database import open_database
 from app.errors import ReembodyError
-from app.features.care.opening.service import prepare_database
+from app.features.care.opening import prepare_database
 from app.models import StudySession, TelemetryStream
 from app.settings import Settings
 from tests.faults.power.disk import Image

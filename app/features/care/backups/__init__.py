@@ -9,9 +9,19 @@ rows       rows in one form that is the same on both engines
 digest     checksums over such rows
 manifest   what a backup says of itself
 writing    making the file
-reading    opening the file, and checking that it is whole
-older      bringing an earlier version's to the newest schema
+reading    opening the file, whole and in the newest schema
 restoring  putting its rows in the place of a database's
-progress   telling how far it has come
-service    what others use
+service    backing up and restoring, as others use them
 """
+
+from app.features.care.backups.service import (
+    ENDING,
+    BackedUp,
+    Restored,
+    back_up,
+    checked_backup,
+    restore,
+    stamped,
+)
+
+__all__ = ["ENDING", "BackedUp", "Restored", "back_up", "checked_backup", "restore", "stamped"]

@@ -14,8 +14,7 @@ from typing import Any
 
 from sqlalchemy import Connection
 
-from app.features.care.backups.progress import Progress, silent
-from app.features.care.backups.rows import Row, read_rows
+from app.features.care.backups.rows import Progress, Row, read_rows, silent
 from app.features.care.backups.shapes import TableShape
 
 

@@ -7,9 +7,8 @@ from sqlalchemy.exc import DBAPIError
 
 from app.errors import InvalidInput, NotDurable
 from app.features.care.backups.digest import digest_of
-from app.features.care.backups.progress import Progress, silent
 from app.features.care.backups.reading import Backup
-from app.features.care.backups.rows import read_rows, write_rows
+from app.features.care.backups.rows import Progress, read_rows, silent, write_rows
 from app.features.care.backups.shapes import TableShape
 
 LOCK_TIMEOUT = "30s"

@@ -1,12 +1,6 @@
-"""Rows in one form that is the same on both engines, read and written a few at a time.
+"""Rows in one form that is the same on both engines, read and written a few at a time."""
 
-The form is what SQLite keeps: a moment is the text `2026-03-29 01:59:59.000001` in UTC, JSON is its
-text as it was stored, a truth is 0 or 1. The databases convert, which is much faster than to do it
-for each value here. Two things SQLite does not have: a negative zero, which becomes zero, and "not
-a number", which becomes null.
-"""
-
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from sqlalchemy import (
@@ -42,6 +36,8 @@ Row = tuple[Any, ...]
 SHORT_ROWS, LONG_ROWS = 2000, 64
 """How many rows are in memory at once."""
 _MOMENT = "YYYY-MM-DD HH24:MI:SS.US"
+Progress = Callable[[str, int], None]
+"""Called with a table's name and how many more of its rows are done."""
 
 
 def read_rows(connection: Connection, shape: TableShape) -> Iterator[list[Row]]:
@@ -136,3 +132,7 @@ def _to_postgresql(kind: Kind, name: str) -> ColumnElement[Any]:
 
 def _bare(shape: TableShape) -> Table:
     return Table(shape.name, MetaData(), *(Column(one.name, null().type) for one in shape.columns))
+
+
+def silent(_table: str, _rows: int) -> None:
+    """Tell nobody."""

@@ -13,10 +13,9 @@ from sqlalchemy.orm import Session
 from app.clock import Clock
 from app.database import Database
 from app.errors import Conflict
-from app.features.care.backups.older import as_newest
-from app.features.care.backups.progress import Progress, silent
-from app.features.care.backups.reading import Backup, opened_backup
+from app.features.care.backups.reading import Backup, as_newest, opened_backup
 from app.features.care.backups.restoring import hold_still, is_empty, replace_rows
+from app.features.care.backups.rows import Progress, silent
 from app.features.care.backups.writing import write_backup
 from app.features.record.devices import devices_of_session, revoke
 from app.models import Participant, StudySession

@@ -21,9 +21,8 @@ from app import __version__
 from app.errors import Conflict, InvalidInput, NotDurable, NotFound
 from app.features.care.backups.digest import Digester, TableDigest
 from app.features.care.backups.manifest import Manifest, write_manifest
-from app.features.care.backups.progress import Progress, silent
 from app.features.care.backups.reading import opened_backup, opened_copy
-from app.features.care.backups.rows import read_rows, sqlite_insert
+from app.features.care.backups.rows import Progress, read_rows, silent, sqlite_insert
 from app.features.care.backups.shapes import TableShape, shapes_of
 from app.schema_revisions import alembic_config, known_revisions, revision_of
 

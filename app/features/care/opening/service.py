@@ -1,5 +1,7 @@
 """What happens to the database at every start, before anything works with it."""
 
+import os
+import tempfile
 from pathlib import Path
 
 from sqlalchemy import Connection, func, inspect, select, table
@@ -8,8 +10,7 @@ from app import __version__
 from app.clock import Clock
 from app.database import Database, open_database
 from app.errors import Conflict, NotFound
-from app.features.care.backups.service import ENDING, back_up, stamped
-from app.features.care.opening.beginning import begin
+from app.features.care.backups import ENDING, back_up, stamped
 from app.features.care.opening.inspection import damage_of, foreign_tables, is_open_elsewhere
 from app.features.care.opening.quarantine import Quarantine
 from app.platform.folders import backups_of, database_file
@@ -156,3 +157,21 @@ def _damaged(what: str, place: Path, settings: Settings) -> Conflict:
         remedy="Restore the newest backup: reembody restore FILE." + hint + " Or begin an empty "
         "database, knowing what that means: reembody serve --new-database.",
     )
+
+
+def begin(file: Path) -> None:
+    """Make an empty database with the newest schema at `file`, where there is none."""
+    folder = file.absolute().parent
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=".beginning-", dir=folder) as beside:
+        fresh = Path(beside) / file.name
+        # Its last connection copies the log into the file and removes it.
+        migrate(f"sqlite:///{fresh}")
+        for path in (fresh, folder):
+            handle = os.open(path, os.O_RDONLY)
+            try:
+                os.fsync(handle)
+            finally:
+                os.close(handle)
+        if not file.exists():
+            fresh.rename(file)

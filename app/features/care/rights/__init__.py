@@ -1,13 +1,17 @@
 """What participants may ask for afterwards: a copy, a correction, and that their data go.
 
-traces       what of a session is about the person, and removing it
-erasing      one erasure, in one transaction
-overwriting  the bytes that the database itself would leave behind
-tombstones   the list of erasures beside the database, which outlives a restored backup
-again        making erasures again in a database that does not know of them
-copies       exports, access copies and backups that left the database
-corrections  later values of answers, with their reasons
-people       the participants of a study
-access       a person's own copy, as a page to read and as data
-service      what others use
+An erasure that was promised stays made: a database from an older backup is erased again at the
+start (`finish_erasures`) and within a restore (`ErasuresKept`).
+
+erasing       one erasure, in one transaction
+tombstones    the list of erasures beside the database, which outlives a restored backup
+service       erasures that stay made, whatever database comes back
+copies        exports, access copies and backups that left the database
+corrections   later values of answers, with their reasons
+participants  the participants of a study
+access        a person's own copy, as a page to read and as data
 """
+
+from app.features.care.rights.service import ErasuresKept, finish_erasures
+
+__all__ = ["ErasuresKept", "finish_erasures"]

@@ -8,9 +8,8 @@ from sqlalchemy import ColumnElement, and_, or_, select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
-from app.features.care.backups.service import ENDING
-from app.features.people.audit.copies import LONGEST_PLACE, record_copy
-from app.features.people.audit.service import record
+from app.features.care.backups import ENDING
+from app.features.people.audit import LONGEST_PLACE, record, record_copy
 from app.models import CopyMade, Participant, Study, StudySession
 from app.platform.folders import backups_of
 from app.settings import Settings

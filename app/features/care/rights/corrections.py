@@ -7,7 +7,7 @@ can be erased.
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound, NotNow
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.features.record.questionnaires import AnswerValue, correct_answer
 from app.features.record.sessions import CorrectAnswers, apply_command, state_of, store_content
 from app.models import AnswerCorrection, StudySession, Submission

@@ -9,7 +9,7 @@ from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
 from app.features.care.rights.copies import copies_of_study, mark_destroyed
 from app.features.care.rights.corrections import correct
-from app.features.care.rights.erasing import erasure_of
+from app.features.care.rights.erasing import erase, erasure_of, participant_of, require_erasable
 from app.features.care.rights.participants import copy_view, erasure_view, participants_of
 from app.features.care.rights.schemas import (
     CopyView,
@@ -18,18 +18,12 @@ from app.features.care.rights.schemas import (
     NewCorrection,
     ParticipantView,
 )
-from app.features.care.rights.service import (
-    erase,
-    keep_tombstones,
-    participant_of,
-    require_erasable,
-)
-from app.features.design.studies.service import study_by_key
-from app.features.people.audit.copies import in_browser_of, record_copy
-from app.features.people.audit.service import record
+from app.features.care.rights.service import keep_tombstones
+from app.features.design.studies import study_by_key
+from app.features.people.audit import in_browser_of, record, record_copy
 from app.features.record.erasure import expect_erasure, overwrite
 from app.features.record.questionnaires import StoredAnswers, stored_answers
-from app.features.results.exports.desk import ExportDesk
+from app.features.results.exports import ExportDesk
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing

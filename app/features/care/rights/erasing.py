@@ -9,10 +9,10 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, NotFound, NotNow
 from app.features.care.rights.copies import copies_holding, register_found
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.features.record.erasure import remove_traces
 from app.features.record.sessions import EraseData, apply_command
-from app.features.results.imports.service import forget_participant
+from app.features.results.imports import forget_participant
 from app.models import CopyMade, Erasure, ImportedForm, Participant, Study, StudySession, new_id
 from app.platform.context import AppContext
 

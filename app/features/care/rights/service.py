@@ -1,24 +1,84 @@
-"""Participants' rights, as the rest of the product asks for them."""
+"""Erasures that stay made: a database that came out of an older backup does not know of them."""
 
 import logging
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
 
 from app.errors import NotDurable
-from app.features.care.rights.again import ErasuresKept, erase_again
-from app.features.care.rights.erasing import erase, erasure_of, participant_of, require_erasable
-from app.features.care.rights.tombstones import tombstone_file, tombstones_of
+from app.features.care.rights.erasing import (
+    erase_now,
+    erasure_of,
+    locked_sessions,
+)
+from app.features.care.rights.tombstones import Tombstone, moment, tombstone_file, tombstones_of
+from app.features.people.audit import record
 from app.features.record.erasure import expect_erasure, overwrite_what_is_left
+from app.models import Participant, StudySession
 from app.platform.context import AppContext
 
-__all__ = [
-    "ErasuresKept",
-    "erase",
-    "erasure_of",
-    "finish_erasures",
-    "keep_tombstones",
-    "participant_of",
-    "require_erasable",
-]
+AGAIN = "restored"
+"""The reason code of an erasure that was made again."""
 log = logging.getLogger(__name__)
+
+
+@dataclass
+class ErasuresKept:
+    """What a restore must not undo: called before and behind it, inside its transaction."""
+
+    context: AppContext
+    _known: dict[str, Tombstone] = field(default_factory=dict)
+
+    def before(self, db: Session) -> None:
+        """Remember every erasure that the table or the list beside it knows."""
+        listed = tombstone_file(self.context.settings).read()
+        self._known = {one.erasure_id: one for one in (*listed, *tombstones_of(db))}
+
+    def behind(self, db: Session) -> int:
+        """Make those again that the restored rows undid; how many there were."""
+        return erase_again(db, self.context, list(self._known.values()))
+
+
+def erase_again(db: Session, context: AppContext, known: Sequence[Tombstone]) -> int:
+    """Erase every participant whose sessions are here although they were erased once."""
+    done = 0
+    for one in known:
+        owners = db.scalars(
+            select(StudySession.participant_id)
+            .where(StudySession.id.in_(one.sessions))
+            .distinct()
+            .order_by(StudySession.participant_id)
+        ).all()
+        for participant_id in owners:
+            if erasure_of(db, participant_id) is None:
+                _erase_again(db, context, one, participant_id)
+                done += 1
+    return done
+
+
+def _erase_again(db: Session, context: AppContext, one: Tombstone, participant_id: str) -> None:
+    participant = db.get_one(Participant, participant_id)
+    sessions = locked_sessions(db, participant)
+    erasure = erase_now(
+        db,
+        context,
+        participant,
+        sessions,
+        erasure_id=one.erasure_id,
+        by=one.by,
+        at=moment(one),
+        why=AGAIN,
+    )
+    record(
+        db,
+        actor="system",
+        action="participant.erased_again",
+        subject=f"participant:{participant.code}",
+        details={"erasure": erasure.id, "removed": erasure.removed},
+        now=context.clock.utc_now(),
+    )
 
 
 def finish_erasures(context: AppContext) -> int:

@@ -1,1 +1,8 @@
-"""What takes how much room, and for how many more sessions there is some."""
+"""What takes how much room, and for how many more sessions there is some.
+
+Looking takes seconds, so one `StorageDesk` looks for everybody and keeps what it saw.
+"""
+
+from app.features.care.storage.measuring import StorageDesk
+
+__all__ = ["StorageDesk"]

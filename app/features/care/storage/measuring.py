@@ -15,8 +15,7 @@ from app.clock import Clock
 from app.database import Database
 from app.features.care.storage.families import FAMILY_OF
 from app.features.care.storage.schemas import PartView, Place, SessionRoom
-from app.features.care.storage.shares import bytes_by_session
-from app.features.care.storage.tables import TableSizes, table_sizes
+from app.features.care.storage.tables import TableSizes, bytes_by_session, table_sizes
 from app.models import Participant, Study, StudySession
 from app.platform.context import AppContext, Part
 from app.platform.folders import backups_of

@@ -13,7 +13,7 @@ from app.features.care.storage.schemas import (
     StorageView,
     StudyRoom,
 )
-from app.features.design.studies.service import newest_version, protocol_of
+from app.features.design.studies import newest_version, protocol_of
 from app.models import Study
 from app.platform.access import Caller, is_theirs
 from app.platform.context import AppContext

@@ -1,1 +1,35 @@
-"""Studies and their versions."""
+"""Studies and their versions: checked files, named by the hash of their content.
+
+A version that a session has started on is frozen; an edit makes a new one. What a stored version
+asks for is unpacked once and kept.
+"""
+
+from app.features.design.studies.service import (
+    add_shipped,
+    add_version,
+    freeze,
+    instrument_for,
+    newest_version,
+    protocol_of,
+    require_open,
+    shipped_files,
+    study_by_key,
+    versions_of,
+)
+from app.features.design.studies.versions import UsedInstrument, used_instrument, version_content
+
+__all__ = [
+    "UsedInstrument",
+    "add_shipped",
+    "add_version",
+    "freeze",
+    "instrument_for",
+    "newest_version",
+    "protocol_of",
+    "require_open",
+    "shipped_files",
+    "study_by_key",
+    "used_instrument",
+    "version_content",
+    "versions_of",
+]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.features.design.instruments.service import newest_instruments
+from app.features.design.instruments import newest_instruments
 from app.features.design.studies.draft_schemas import DifferenceView, InstrumentChange, StudyDiff
 from app.features.design.studies.lifecycle import UNDER_WAY
 from app.features.design.studies.service import check_study, newest_version, version_by_number

@@ -15,10 +15,9 @@ from app.features.design.studies.draft_schemas import (
     TimelineRequest,
     TimelineView,
 )
-from app.features.design.studies.drafts import check, dry_run, edit
+from app.features.design.studies.drafts import check, dry_run, edit, templates
 from app.features.design.studies.schemas import StudyFile
 from app.features.design.studies.service import study_by_key
-from app.features.design.studies.templates import templates
 from app.platform.dependencies import Reading, SignedIn
 from app.protocol import study_schema
 

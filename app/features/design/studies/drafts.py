@@ -1,22 +1,25 @@
-"""Working on a file that is not stored yet: checking it, changing it, walking through it."""
+"""Working on a file that is not stored yet: beginning, checking, changing, walking through it."""
 
 from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
 
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.design.instruments.service import parsed_instruments
+from app.features.design.instruments import parsed_instruments
 from app.features.design.studies.draft_schemas import (
     ChangeRequest,
     CheckResult,
     EstimateRule,
     StudyFigures,
+    TemplateView,
     TimelineRequest,
     TimelineStep,
     TimelineView,
 )
 from app.features.design.studies.service import check_study
-from app.features.movement.avatar.service import newest_numbers
+from app.features.movement.avatar import newest_numbers
 from app.platform.config_problems import invalid_config, problem_views
 from app.protocol import (
     BY_HAND_S,
@@ -38,6 +41,7 @@ from app.protocol import (
     total_s,
 )
 from app.protocol.editing import Change, edit_text
+from app.resources import study_configs_dir
 
 RULE = EstimateRule(
     reading_words_per_s=READING_WORDS_PER_S,
@@ -45,6 +49,35 @@ RULE = EstimateRule(
     by_hand_s=BY_HAND_S,
     item_s=ITEM_S,
 )
+
+
+def template_files() -> tuple[Path, ...]:
+    """The templates first, from small to large, then the shipped studies."""
+    root = study_configs_dir()
+    templates = sorted((root / "templates").glob("*.yaml"), key=lambda file: file.stat().st_size)
+    return (*sorted(root.glob("*.yaml")), *templates)
+
+
+@lru_cache(maxsize=1)
+def templates() -> tuple[TemplateView, ...]:
+    """Each file with its name in all its languages."""
+    return tuple(_view(file) for file in template_files())
+
+
+def _view(file: Path) -> TemplateView:
+    text = file.read_text(encoding="utf-8")
+    tree = read_source(text).tree
+    assert isinstance(tree, dict)  # noqa: S101 - a test loads every one of them
+    return TemplateView(
+        key=file.stem,
+        title=_texts(tree.get("title")),
+        description=_texts(tree.get("description")),
+        yaml=text,
+    )
+
+
+def _texts(value: Plain) -> dict[str, str]:
+    return {key: str(words) for key, words in value.items()} if isinstance(value, dict) else {}
 
 
 def check(db: Session, text: str) -> CheckResult:

@@ -13,12 +13,7 @@ from app.features.design.studies.comparing import compare_versions
 from app.features.design.studies.draft_endpoints import router as drafts
 from app.features.design.studies.draft_schemas import DuplicateRequest, StudyDiff, VersionDetail
 from app.features.design.studies.lifecycle import archive, duplicate, restore
-from app.features.design.studies.schemas import (
-    StudyFile,
-    StudySummary,
-    StudyView,
-    VersionView,
-)
+from app.features.design.studies.schemas import StudyFile, StudySummary, StudyView, VersionView
 from app.features.design.studies.service import (
     add_version,
     create_study,
@@ -29,7 +24,7 @@ from app.features.design.studies.service import (
     version_by_number,
     versions_of,
 )
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.models import Study, StudyVersion
 from app.platform.access import Caller, add_member, is_blind, is_theirs
 from app.platform.dependencies import Context, Reading, SignedIn, Writing

@@ -9,15 +9,8 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
-from app.features.design.instruments.service import (
-    instrument_of as instrument_of,  # read with studies
-)
-from app.features.design.instruments.service import newest_instruments as newest_instruments
-from app.features.design.instruments.service import parsed_instruments, save_instrument
-from app.features.design.studies.versions import UsedInstrument as UsedInstrument
-from app.features.design.studies.versions import used_instrument as used_instrument
-from app.features.design.studies.versions import version_content as version_content
-from app.features.movement.avatar.service import newest_numbers
+from app.features.design.instruments import newest_instruments, parsed_instruments, save_instrument
+from app.features.movement.avatar import newest_numbers
 from app.models import InstrumentVersion, Study, StudySession, StudyVersion
 from app.platform.config_problems import invalid_config
 from app.protocol import ConfigError, LoadedStudy, StudyProtocol, load_study, parse_study_json

@@ -9,7 +9,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
-from app.features.design.instruments.service import instrument_of
+from app.features.design.instruments import instrument_of
 from app.models import InstrumentVersion, StudyVersion
 from app.platform.immutable_cache import Unchanging
 from app.protocol import StudyProtocol, parse_study_json

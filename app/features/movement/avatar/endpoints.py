@@ -4,7 +4,6 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Query, Response
 
-from app.features.movement.avatar.models import MEDIA_TYPE, model_of
 from app.features.movement.avatar.schemas import (
     MAX_VERSION,
     AvatarCheck,
@@ -21,7 +20,14 @@ from app.features.movement.avatar.service import (
     typed,
     version_of,
 )
-from app.features.movement.avatar.views import avatar_list, avatar_view, check_text, version_detail
+from app.features.movement.avatar.views import (
+    MEDIA_TYPE,
+    avatar_list,
+    avatar_view,
+    check_text,
+    model_of,
+    version_detail,
+)
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.protocol.avatar import avatar_text
 

@@ -14,8 +14,8 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidConfig, NotFound, StaleVersion
 from app.features.movement.avatar.schemas import NewAvatar, NewAvatarVersion, Origin
-from app.features.movement.humanoids.service import is_known
-from app.features.people.audit.service import record
+from app.features.movement.humanoids import is_known
+from app.features.people.audit import record
 from app.models import Avatar, AvatarVersion
 from app.protocol.avatar import (
     AvatarFile,

@@ -1,11 +1,13 @@
-"""Drawing avatars' configurations for pages."""
+"""From stored configurations of avatars to what pages show: lists, checks, and the model."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 from itertools import groupby
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from app.errors import Conflict
 from app.features.movement.avatar.schemas import (
     AvatarCheck,
     AvatarSummary,
@@ -20,12 +22,17 @@ from app.features.movement.avatar.service import (
     unknown_humanoid,
     version_of,
 )
+from app.features.movement.humanoids import humanoid_by_hash, parsed_figure
 from app.models import Avatar, AvatarVersion, Study, StudySession
 from app.platform.access import Caller, is_theirs
 from app.platform.config_problems import problem_views
 from app.protocol import ConfigError, ConfigProblem
-from app.protocol.avatar import file_of, load_avatar
+from app.protocol.avatar import file_of, load_avatar, parse_avatar_json
+from app.science.avatar.body import BodyError
 from app.science.avatar.configuration import Configuration
+from app.science.avatar.mjcf import AvatarModel, avatar_model
+
+MEDIA_TYPE = "application/xml"
 
 
 def avatar_list(db: Session, caller: Caller) -> list[AvatarSummary]:
@@ -133,3 +140,33 @@ def _sessions_by_hash(
         .group_by(column)
     )
     return {str(found): count for found, count in rows}
+
+
+def model_of(db: Session, key: str, number: int | None, stature_m: float) -> AvatarModel:
+    """The model of a version, the newest for None, without a scene but the floor.
+
+    The stature counts to the millimetre. Raises NotFound, and Conflict where the configuration
+    lacks a part without which there is no body.
+    """
+    version = version_of(db, key, number)
+    humanoid = typed(version).humanoid
+    figure = None if humanoid is None else humanoid_by_hash(db, humanoid).figure
+    try:
+        return _built(version.content_hash, version.canonical_json, figure, round(stature_m, 3))
+    except BodyError as error:
+        raise Conflict(
+            f"this avatar cannot be built: {error}",
+            value=key,
+            remedy="Save a version of the configuration in which this is mended.",
+        ) from None
+
+
+@lru_cache(maxsize=16)
+def _built(
+    _content_hash: str, canonical_json: str, figure: str | None, stature_m: float
+) -> AvatarModel:
+    return avatar_model(
+        parse_avatar_json(canonical_json),
+        stature_m,
+        figure=None if figure is None else parsed_figure(figure),
+    )

@@ -1,5 +1,7 @@
 """Joint maps, and captures on avatars, over HTTP."""
 
+import os
+import tempfile
 from pathlib import Path
 from typing import Annotated
 
@@ -8,14 +10,13 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
-from app.features.movement.captures.binary import BINARY, BYTES, MEDIA_TYPES, binary
-from app.features.movement.captures.downloads import attachment, retargeted_file
 from app.features.movement.captures.joint_maps import (
     joint_map_view,
     mapped_capture,
     reset_map,
     save_map,
 )
+from app.features.movement.captures.opening import Mapped
 from app.features.movement.captures.schemas import (
     MAX_AVATARS,
     Avatar,
@@ -23,12 +24,19 @@ from app.features.movement.captures.schemas import (
     JointMapView,
     JointMapWish,
 )
-from app.features.movement.captures.tasks import retargeted_positions, verification_json
+from app.features.movement.captures.tasks import (
+    retargeted_positions,
+    verification_json,
+    write_retargeted,
+)
 from app.features.movement.captures.verification_schemas import VerificationView
 from app.features.movement.captures.workbench import Workbench
+from app.features.movement.files import BINARY, BYTES, attachment, binary
+from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/captures", tags=["captures"])
+MEDIA_TYPES: dict[ExportFormat, str] = {"bvh": "text/plain", "csv": "text/csv"}
 
 
 @router.get("/{capture_id}/joint-map")
@@ -100,7 +108,7 @@ async def get_retargeted(
 ) -> FileResponse:
     """The movement on an avatar, to keep."""
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
-    path = await retargeted_file(context, mapped, avatar, format, lock_feet=lock_feet)
+    path = await _retargeted_file(context, mapped, avatar, format, lock_feet=lock_feet)
     return FileResponse(
         path,
         media_type=MEDIA_TYPES[format],
@@ -125,3 +133,24 @@ async def get_retargeted_motion(
         ),
         media_type=BYTES,
     )
+
+
+async def _retargeted_file(
+    context: AppContext, mapped: Mapped, avatar: str, format_: ExportFormat, *, lock_feet: bool
+) -> Path:
+    """A file of the movement on an avatar, which the caller removes; raises InvalidInput."""
+    path = await run_in_threadpool(_new_file)
+    try:
+        await context.part(Workbench).run(
+            write_retargeted, mapped, avatar, format_, path, lock_feet=lock_feet
+        )
+    except BaseException:
+        await run_in_threadpool(path.unlink)
+        raise
+    return path
+
+
+def _new_file() -> Path:
+    handle, name = tempfile.mkstemp(prefix="reembody-retargeted-")
+    os.close(handle)
+    return Path(name)

@@ -6,13 +6,10 @@ from fastapi import APIRouter, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.features.movement.captures.binary import BINARY, BYTES, binary
-from app.features.movement.captures.downloads import attachment, sent, stored_file
 from app.features.movement.captures.schemas import (
     CaptureChange,
     CapturePage,
     CaptureView,
-    FileName,
     MetresPerUnit,
     ReadingChoice,
     Shown,
@@ -25,15 +22,16 @@ from app.features.movement.captures.service import (
     remove_capture,
     source_of_capture,
     store_of,
+    stored_file,
 )
 from app.features.movement.captures.tasks import recorded_positions
 from app.features.movement.captures.views import capture_page, capture_view
 from app.features.movement.captures.workbench import Workbench
+from app.features.movement.files import BODY, BYTES, FileName, attachment, binary, sent
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/captures", tags=["captures"])
-BODY = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}
 
 
 @router.post(

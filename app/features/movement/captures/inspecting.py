@@ -7,7 +7,6 @@ from typing import Literal
 import numpy as np
 
 from app.adapters.captures import Capture
-from app.features.movement.captures.contents import compress
 from app.features.movement.captures.opening import Opened, Store, open_files, open_stored
 from app.features.movement.captures.schemas import (
     CaptureSummary,
@@ -16,6 +15,7 @@ from app.features.movement.captures.schemas import (
     SkeletonView,
 )
 from app.features.movement.captures.source import Source
+from app.features.movement.files import compress
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 
 KIND: dict[type, Literal["skeleton", "markers", "bodies"]] = {

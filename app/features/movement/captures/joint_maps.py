@@ -11,7 +11,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, StaleVersion
-from app.features.movement.captures.avatars import Mapped
+from app.features.movement.captures.opening import Mapped
 from app.features.movement.captures.schemas import (
     CaptureSummary,
     JointMapView,
@@ -21,7 +21,7 @@ from app.features.movement.captures.schemas import (
 )
 from app.features.movement.captures.service import capture_by_id, store_of
 from app.features.movement.captures.source import source_of
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.models import CaptureRow, SavedJointMap
 from app.platform.access import Caller
 from app.platform.context import AppContext

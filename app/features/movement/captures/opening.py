@@ -1,6 +1,7 @@
-"""In the process for captures: files become movement, and the last one stays open.
+"""In the process for captures: files become movement, on a reference avatar where that is asked.
 
-Runs under a memory limit, so that a file made to hurt fails here and nowhere else.
+The last file stays open. Runs under a memory limit, so that a file made to hurt fails here and
+nowhere else.
 """
 
 from collections.abc import Iterable, Mapping
@@ -13,12 +14,22 @@ from sqlalchemy.orm import Session
 
 from app.adapters.captures import Capture, CaptureError, Limits, Reading, read_capture
 from app.database import make_engine
-from app.features.movement.captures.contents import plain_pieces
 from app.features.movement.captures.source import Cannot, Source
-from app.science.rig import BodyMotion, RigMotion
+from app.features.movement.files import plain_pieces
+from app.science.retargeting import (
+    REFERENCE_JOINT_MAP,
+    AvatarError,
+    Retargeted,
+    named_avatar,
+    retarget_motion,
+)
+from app.science.rig import BodyMotion, RigError, RigMotion
 
 if TYPE_CHECKING:
     from app.science.fitting import Fitted
+
+MapPairs = tuple[tuple[str, str], ...]
+"""A joint map that can be part of a key."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,3 +127,31 @@ def _joined(pieces: Iterable[bytes]) -> bytes:
     for piece in pieces:
         whole += piece
     return bytes(whole)
+
+
+@dataclass(frozen=True)
+class Mapped:
+    """A stored capture, how it is read, and the map of its joints."""
+
+    store: Store
+    source: Source
+    joint_map: MapPairs
+
+    @property
+    def moving(self) -> RigMotion:
+        """The skeleton's movement; raises Cannot."""
+        return open_stored(self.store, self.source).moving
+
+
+def on_avatar(mapped: Mapped, avatar: str, *, lock_feet: bool) -> Retargeted:
+    """The movement on the avatar of a stature, such as "165cm"; raises Cannot."""
+    try:
+        return retarget_motion(
+            mapped.moving,
+            dict(mapped.joint_map),
+            named_avatar(avatar),
+            REFERENCE_JOINT_MAP,
+            lock=lock_feet,
+        )
+    except (RigError, AvatarError) as error:
+        raise Cannot(str(error)) from None

@@ -3,7 +3,6 @@
 from datetime import datetime
 from typing import Annotated, Literal
 
-from fastapi import Query
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 Kind = Literal["skeleton", "markers", "bodies"]
@@ -13,8 +12,6 @@ Shown = Literal["recorded", "skeleton"]
 ExportFormat = Literal["bvh", "csv"]
 JointSource = Literal["name", "hierarchy", "chosen"]
 
-FILE_NAME = r"^[^\x00-\x1f\x7f/\\]+$"
-FileName = Annotated[str, Query(min_length=1, max_length=200, pattern=FILE_NAME)]
 AVATAR = r"^[0-9]{2,3}(\.[0-9])?cm$"
 Avatar = Annotated[str, StringConstraints(pattern=AVATAR)]
 """A stature, such as "165cm" or "172.5cm", from 50 to 260 cm."""

@@ -10,7 +10,6 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotFound
-from app.features.movement.captures.contents import drop_unused, store
 from app.features.movement.captures.inspecting import (
     Inspected,
     compressed_beside,
@@ -20,9 +19,9 @@ from app.features.movement.captures.inspecting import (
 from app.features.movement.captures.opening import Store
 from app.features.movement.captures.schemas import CaptureChange, ReadingChoice
 from app.features.movement.captures.source import Source, source_of
-from app.features.movement.captures.uploads import Uploaded, uploaded
 from app.features.movement.captures.workbench import Workbench
-from app.features.people.audit.service import record
+from app.features.movement.files import Uploaded, drop_unused, store, uploaded
+from app.features.people.audit import record
 from app.models import CaptureRow, new_id
 from app.platform.access import Caller
 from app.platform.context import AppContext
@@ -207,3 +206,14 @@ def _record(
         details={"format": row.format, "content": row.content_hash[:12], **more},
         now=context.clock.utc_now(),
     )
+
+
+def stored_file(context: AppContext, capture_id: str, *, companion: bool) -> tuple[str, str]:
+    """Name and content hash of a capture's file; raises NotFound."""
+    with context.database.reading() as db:
+        row = capture_by_id(db, capture_id)
+    if not companion:
+        return row.file_name, row.content_hash
+    if row.companion_name is None or row.companion_hash is None:
+        raise NotFound("this capture has no companion file", value=row.file_name)
+    return row.companion_name, row.companion_hash

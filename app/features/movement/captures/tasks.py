@@ -1,20 +1,154 @@
 """In the process for captures: what a page or a download asks for, as bytes.
 
 Everything that a task needs is in its arguments, which are hashable: the same call gives the same
-bytes.
+bytes. The verification of a walk is JSON, thinned for drawing.
 """
 
 from pathlib import Path
 
-from app.adapters.captures import to_bvh, to_csv
-from app.features.movement.captures.avatars import Mapped, on_avatar
-from app.features.movement.captures.opening import Store, open_stored
-from app.features.movement.captures.preview import encode, points_of, skeleton_points
-from app.features.movement.captures.schemas import ExportFormat, Shown
-from app.features.movement.captures.source import Source
-from app.features.movement.captures.verifying import verification_json
+import numpy as np
 
-__all__ = ["recorded_positions", "retargeted_positions", "verification_json", "write_retargeted"]
+from app.adapters.captures import to_bvh, to_csv
+from app.features.movement.captures.opening import Mapped, Store, on_avatar, open_stored
+from app.features.movement.captures.preview import encode, points_of, skeleton_points, step_for
+from app.features.movement.captures.schemas import ExportFormat, Shown
+from app.features.movement.captures.source import Cannot, Source
+from app.features.movement.captures.verification_schemas import (
+    AvatarWalkerView,
+    LegAnglesView,
+    ToePathView,
+    VerificationView,
+    WalkerView,
+    WalkStepView,
+)
+from app.science.retargeting import (
+    REFERENCE_JOINT_MAP,
+    AvatarFigures,
+    LegAngles,
+    Retargeted,
+    Verification,
+    Walk,
+    named_stature_m,
+    verify,
+)
+from app.science.rig import RigError
+from app.science.rotations import FloatArray
+
+MOST_DRAWN = 3000
+"""Points of a line; a screen shows fewer."""
+_METRE_DIGITS, _DEGREE_DIGITS = 5, 3
+"""A hundredth of a millimetre and a thousandth of a degree: far below what a line can show."""
+
+
+def verification_json(mapped: Mapped, avatars: tuple[str, ...], *, lock_feet: bool) -> bytes:
+    """The verification on avatars such as "165cm", as a `VerificationView`; raises Cannot."""
+    source, joint_map = mapped.moving, dict(mapped.joint_map)
+    moved = {name: on_avatar(mapped, name, lock_feet=lock_feet) for name in avatars}
+    try:
+        found = verify(
+            source,
+            joint_map,
+            [(name, one.motion, REFERENCE_JOINT_MAP) for name, one in moved.items()],
+        )
+    except RigError as error:
+        raise Cannot(str(error)) from None
+    step = step_for(source.frame_count, source.rate_hz, 1, MOST_DRAWN)
+    view = VerificationView(
+        frames=source.frame_count,
+        rate_hz=source.rate_hz,
+        lock_feet=lock_feet,
+        times_s=_thinned(np.arange(source.frame_count) / source.rate_hz, step),
+        leg_angles=[_angles(one, step) for one in found.source.angles],
+        source=_walker("source", found.source.walk, step),
+        avatars=[_avatar(one, moved[one.name], found, step) for one in found.avatars],
+        lifts_agree=found.lifts_agree,
+        largest_timing_difference_s=found.largest_timing_difference_s,
+        unmapped_body_joints=[name for name in REFERENCE_JOINT_MAP if name not in joint_map],
+    )
+    return view.model_dump_json().encode()
+
+
+def _walker(name: str, walk: Walk, step: int) -> WalkerView:
+    return WalkerView(
+        name=name,
+        leg_length_m=walk.leg_length_m,
+        thigh_share=walk.thigh_share,
+        toe_paths=[
+            ToePathView(
+                side=foot.side,
+                forward_m=_thinned(foot.forward_m, step),
+                height_m=_thinned(foot.height_m, step),
+                start_height_m=foot.start_height_m,
+            )
+            for foot in walk.feet
+        ],
+        steps=[
+            WalkStepView(
+                side=one.side,
+                lift_s=one.lift_s,
+                contact_s=one.contact_s,
+                length_m=one.length_m,
+                height_m=one.height_m,
+                contact_height_m=one.contact_height_m,
+            )
+            for one in walk.steps
+        ],
+        mean_step_length_m=walk.mean_step_length_m,
+        mean_step_height_m=walk.mean_step_height_m,
+        foot_slide_m_s=walk.slide_m_s,
+    )
+
+
+def _avatar(
+    figures: AvatarFigures, moved: Retargeted, found: Verification, step: int
+) -> AvatarWalkerView:
+    walks = moved.walks
+    locked = None if walks is None else walks.locked
+    before = None if walks is None or locked is None else walks.slide_before_m_s
+    length_ratio = height_ratio = None
+    if walks is not None:
+        # Over the same stretches of time, so that step by step the same is compared.
+        avatar, source = walks.avatar, walks.source
+        length_ratio = _ratio(avatar.mean_step_length_m, source.mean_step_length_m)
+        height_ratio = _ratio(avatar.mean_step_height_m, source.mean_step_height_m)
+    return AvatarWalkerView(
+        **_walker(figures.name, figures.walk, step).model_dump(),
+        stature_m=named_stature_m(figures.name) or 0.0,
+        leg_ratio=figures.leg_ratio,
+        length_ratio=length_ratio,
+        height_ratio=height_ratio,
+        lifts_agree=_lifts(figures.walk) == _lifts(found.source.walk),
+        slide_m_s=figures.slide_m_s,
+        slide_before_m_s=before,
+        lowered_m=None if locked is None else locked.lowered_m,
+        out_of_reach=None if locked is None else locked.out_of_reach,
+    )
+
+
+def _lifts(walk: Walk) -> tuple[int, int]:
+    sides = [one.side for one in walk.steps]
+    return sides.count("left"), sides.count("right")
+
+
+def _ratio(avatar_m: float | None, source_m: float | None) -> float | None:
+    return avatar_m / source_m if avatar_m is not None and source_m else None
+
+
+def _angles(angles: LegAngles, step: int) -> LegAnglesView:
+    return LegAnglesView(
+        side=angles.side,
+        hip_deg=_degrees(angles.hip_rad, step),
+        knee_deg=_degrees(angles.knee_rad, step),
+        ankle_deg=_degrees(angles.ankle_rad, step),
+    )
+
+
+def _degrees(values_rad: FloatArray, step: int) -> list[float]:
+    return _thinned(np.degrees(values_rad), step, _DEGREE_DIGITS)
+
+
+def _thinned(values: FloatArray, step: int, digits: int = _METRE_DIGITS) -> list[float]:
+    return [float(value) for value in np.round(values[::step], digits)]
 
 
 def recorded_positions(store: Store, source: Source, shown: Shown) -> bytes:

@@ -3,7 +3,6 @@
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.features.movement.captures.contents import size_of
 from app.features.movement.captures.schemas import (
     CaptureListed,
     CapturePage,
@@ -12,6 +11,7 @@ from app.features.movement.captures.schemas import (
     ReadingChoice,
 )
 from app.features.movement.captures.service import capture_by_id
+from app.features.movement.files import size_of
 from app.models import CaptureContent, CaptureRow
 
 _COLUMNS = (

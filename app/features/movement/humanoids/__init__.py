@@ -1,1 +1,10 @@
 """Humanoid models that lend avatars their body: uploaded once, measured, named by their hash."""
+
+from app.features.movement.humanoids.service import (
+    figure_by_hash,
+    humanoid_by_hash,
+    is_known,
+    parsed_figure,
+)
+
+__all__ = ["figure_by_hash", "humanoid_by_hash", "is_known", "parsed_figure"]

@@ -6,18 +6,14 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.features.movement.captures.binary import BINARY, BYTES, binary
-from app.features.movement.captures.downloads import attachment, sent
-from app.features.movement.captures.schemas import FileName
+from app.features.movement.files import BODY, BYTES, FileName, attachment, binary, sent
 from app.features.movement.humanoids.schemas import HumanoidPage, HumanoidView
-from app.features.movement.humanoids.service import humanoid_by_hash
+from app.features.movement.humanoids.service import humanoid_by_hash, humanoid_page, humanoid_view
 from app.features.movement.humanoids.taking_in import add_humanoid
-from app.features.movement.humanoids.views import humanoid_page, humanoid_view
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn
 
 router = APIRouter(prefix="/humanoids", tags=["humanoids"])
-BODY = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}
 ContentHash = Annotated[str, Path(pattern=r"^[0-9a-f]{64}$")]
 
 

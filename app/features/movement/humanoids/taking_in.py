@@ -8,12 +8,11 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.movement.captures.contents import store
-from app.features.movement.captures.uploads import Uploaded, uploaded
-from app.features.movement.captures.workbench import Workbench
+from app.features.movement.captures import Workbench
+from app.features.movement.files import Uploaded, store, uploaded
 from app.features.movement.humanoids.service import is_known
 from app.features.movement.humanoids.tasks import Measured, Refused, compressed_beside, measure
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.models import HumanoidRow
 from app.platform.access import Caller
 from app.platform.context import AppContext

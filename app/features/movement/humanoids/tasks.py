@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
-from app.features.movement.captures.contents import compress
+from app.features.movement.files import compress
 from app.protocol.humanoid import figure_json
 from app.science.avatar.body import Figure, HumanoidError, figure_of
 

@@ -21,7 +21,7 @@ from sqlalchemy.orm import Session
 
 from app.clock import Clock
 from app.database import Database
-from app.features.movement.captures.contents import compress, store
+from app.features.movement.files import compress, store
 from app.features.movement.walking.progress import FitFolder, Progress
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
 from app.features.movement.walking.tasks import fit_model

@@ -5,9 +5,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request, Response
 
 from app.errors import InvalidInput
-from app.features.movement.captures.binary import BINARY, BYTES, binary
-from app.features.movement.captures.downloads import attachment
-from app.features.movement.captures.schemas import FileName
+from app.features.movement.files import BODY, BYTES, FileName, attachment, binary
 from app.features.movement.walking.scenes import (
     add_scene,
     remove_scene,
@@ -38,7 +36,6 @@ from app.features.movement.walking.walk_sets import (
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(prefix="/walking", tags=["walking"])
-BODY = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}
 StatureText = Annotated[str, Query(min_length=3, max_length=90, pattern=r"^[^=]+=[0-9.]+$")]
 
 

@@ -7,8 +7,7 @@ from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
-from app.features.movement.captures.binary import BYTES, binary
-from app.features.movement.captures.downloads import attachment, sent
+from app.features.movement.files import BYTES, attachment, binary, sent
 from app.features.movement.walking.bench import Bench
 from app.features.movement.walking.desk import FittingDesk
 from app.features.movement.walking.model_schemas import (

@@ -11,7 +11,7 @@ from app.adapters.captures import CaptureError, Limits, Reading, read_capture
 from app.adapters.walks import load_scene
 from app.adapters.walks.track_table import TrackReading, read_tracks
 from app.database import make_engine
-from app.features.movement.captures.contents import plain_pieces
+from app.features.movement.files import plain_pieces
 from app.features.movement.walking.sources import (
     LABORATORY,
     Cannot,

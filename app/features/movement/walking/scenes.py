@@ -15,7 +15,7 @@ from app.features.movement.walking.schemas import (
     ScenePathView,
     SceneView,
 )
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.models import WalkingScene
 from app.platform.access import Caller
 from app.platform.config_problems import invalid_config

@@ -6,7 +6,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound, NotNow
-from app.features.movement.captures.contents import drop_unused, size_of
+from app.features.movement.files import drop_unused, size_of
 from app.features.movement.walking.desk import FittingDesk
 from app.features.movement.walking.model_schemas import (
     FittedOn,
@@ -21,7 +21,7 @@ from app.features.movement.walking.schemas import FitChoice, Kind, NewModel, Sta
 from app.features.movement.walking.set_sources import source_of_set
 from app.features.movement.walking.sources import FitOrder
 from app.features.movement.walking.walk_sets import walk_set_by_id, walk_set_view
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.models import WalkingModelRow, new_id
 from app.platform.access import Caller
 from app.platform.context import AppContext

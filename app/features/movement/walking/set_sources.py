@@ -3,7 +3,7 @@
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.movement.captures.service import source_of_capture
+from app.features.movement.captures import source_of_capture
 from app.features.movement.walking.scenes import scene_text
 from app.features.movement.walking.schemas import (
     CapturesOrigin,

@@ -11,8 +11,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, NotFound
-from app.features.movement.captures.contents import compress, drop_unused, store
-from app.features.movement.captures.uploads import uploaded
+from app.features.movement.files import compress, drop_unused, store, uploaded
 from app.features.movement.walking.bench import Bench
 from app.features.movement.walking.schemas import (
     CapturesOrigin,
@@ -29,15 +28,13 @@ from app.features.movement.walking.set_sources import (
     population_source,
     tracks_source,
 )
-from app.features.movement.walking.sources import (
-    Store,
-)
+from app.features.movement.walking.sources import Store
 from app.features.movement.walking.tasks import (
     captured_table,
     inspected_population,
     inspected_tracks,
 )
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.models import WalkingModelRow, WalkSetRow
 from app.platform.access import Caller
 from app.platform.context import AppContext

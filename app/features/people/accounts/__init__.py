@@ -1,1 +1,11 @@
-"""Accounts and logins."""
+"""Accounts and logins: who works here, and the tokens by which they are known."""
+
+from app.features.people.accounts.people import give_studies
+from app.features.people.accounts.service import (
+    create_account,
+    ensure_admin,
+    issue_token,
+    revoke_token,
+)
+
+__all__ = ["create_account", "ensure_admin", "give_studies", "issue_token", "revoke_token"]

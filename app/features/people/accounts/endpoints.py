@@ -13,16 +13,11 @@ from app.features.people.accounts.schemas import (
     SignedInView,
     WhoView,
 )
-from app.features.people.accounts.service import (
-    check_password,
-    issue_token,
-    revoke_token,
-)
-from app.features.people.audit.service import record
+from app.features.people.accounts.service import check_password, issue_token, revoke_token
+from app.features.people.audit import record
 from app.models import Account
 from app.platform.access import Caller, caller_of
 from app.platform.context import AppContext
-from app.platform.cookies import delete_cookie, read_cookie, set_cookie
 from app.platform.dependencies import (
     LOGIN_COOKIE,
     Context,
@@ -32,7 +27,7 @@ from app.platform.dependencies import (
     known_caller,
 )
 from app.platform.hub import after_commit
-from app.platform.tokens import hash_token
+from app.platform.tokens import delete_cookie, hash_token, read_cookie, set_cookie
 
 router = APIRouter(tags=["accounts"])
 

@@ -38,7 +38,7 @@ from app.features.people.accounts.schemas import (
     PersonView,
     SignedInView,
 )
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.models import Account, Invitation, Study
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.platform.hub import after_commit

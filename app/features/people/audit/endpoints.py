@@ -1,16 +1,44 @@
-"""The audit trail over HTTP."""
+"""The audit trail over HTTP, and as a page sees it."""
 
 import json
-from typing import Annotated
+from datetime import datetime
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
+from pydantic import BaseModel
 
-from app.features.people.audit.schemas import AuditCheckView, AuditPage, AuditView
 from app.features.people.audit.service import entries_before, verify_trail
 from app.platform.dependencies import Reading, SignedIn
 
 router = APIRouter(tags=["audit"])
 Name = Annotated[str | None, Query(max_length=100)]
+
+
+class AuditView(BaseModel):
+    """One act. `actor` is `account:NAME`, a device, or `nobody` before a login."""
+
+    seq: int
+    at: datetime
+    actor: str
+    action: str
+    subject: str
+    details: dict[str, Any]
+    hash: str
+
+
+class AuditPage(BaseModel):
+    """Entries, newest first; `next_before` asks for the page behind, and is null at the end."""
+
+    entries: list[AuditView]
+    next_before: int | None
+
+
+class AuditCheckView(BaseModel):
+    """Whether every entry is as it was written; `broken_at` is the first that is not."""
+
+    ok: bool
+    entries: int
+    broken_at: int | None
 
 
 @router.get("/audit")

@@ -3,7 +3,7 @@
 from fastapi import APIRouter
 from sqlalchemy import select
 
-from app.features.design.studies.service import study_by_key
+from app.features.design.studies import study_by_key
 from app.features.record.cockpit.commands import command_of, reason_given
 from app.features.record.cockpit.schemas import (
     CommandRequest,

@@ -6,12 +6,8 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session, defer
 
-from app.features.design.studies.service import (
-    instrument_for,
-    instrument_of,
-    protocol_of,
-    versions_of,
-)
+from app.features.design.instruments import instrument_of
+from app.features.design.studies import instrument_for, protocol_of, versions_of
 from app.features.record.alarms import open_alarms
 from app.features.record.cockpit.phase_views import phase_views
 from app.features.record.cockpit.schemas import (

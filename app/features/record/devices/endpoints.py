@@ -6,12 +6,12 @@ from typing import Literal
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.features.record.devices.service import new_code, pair, revoke
 from app.lan import qr_svg
 from app.platform.access import session_by_id
-from app.platform.cookies import set_cookie
 from app.platform.dependencies import TABLET_COOKIE, Context, SignedIn, Writing
+from app.platform.tokens import set_cookie
 
 DeviceKind = Literal["tablet", "headset"]
 

@@ -13,8 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput
-from app.features.movement.avatar.service import configuration_by_hash
-from app.features.movement.humanoids.service import figure_by_hash
+from app.features.movement.avatar import configuration_by_hash
+from app.features.movement.humanoids import figure_by_hash
 from app.features.record.sessions import (
     RecordAvatar,
     apply_command,

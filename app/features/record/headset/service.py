@@ -6,7 +6,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict
-from app.features.design.studies.service import protocol_of
+from app.features.design.studies import protocol_of
 from app.features.record.questionnaires import answers_of
 from app.features.record.sessions import (
     SessionState,

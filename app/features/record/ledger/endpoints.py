@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fastapi import APIRouter
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import newest_version, protocol_of, study_by_key
+from app.features.design.studies import newest_version, protocol_of, study_by_key
 from app.features.record.ledger.schemas import AttemptView, Kind, LedgerView, SequenceRow, SlotRow
 from app.features.record.ledger.service import SlotView, end_reason, ledger_of, planned_slots
 from app.platform.access import Caller, is_blind

@@ -10,7 +10,7 @@ from anyio.to_thread import run_sync
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict
-from app.features.people.audit.service import record
+from app.features.people.audit import record
 from app.features.record.preflight.device_checks import device_checks
 from app.features.record.preflight.latency_check import latency_check
 from app.features.record.preflight.schemas import Check, Override, OverrideRequest, Preflight

@@ -6,8 +6,9 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
-from app.features.design.studies.service import instrument_for, instrument_of, protocol_of
-from app.features.movement.avatar.service import configuration_by_hash
+from app.features.design.instruments import instrument_of
+from app.features.design.studies import instrument_for, protocol_of
+from app.features.movement.avatar import configuration_by_hash
 from app.features.record.preflight.schemas import Check
 from app.features.record.sessions import plan_of
 from app.models import AvatarVersion, StudySession, StudyVersion

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import UsedInstrument, used_instrument
+from app.features.design.studies import UsedInstrument, used_instrument
 from app.features.record.questionnaires.schemas import Administration
 from app.features.record.sessions import plan_of, state_of
 from app.models import StudySession

@@ -12,7 +12,7 @@ from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.design.studies.service import instrument_of
+from app.features.design.instruments import instrument_of
 from app.features.record.questionnaires.hints import hints_of
 from app.features.record.questionnaires.schemas import (
     AnswerValue,

@@ -12,7 +12,7 @@ from typing import Any
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.design.studies.service import protocol_of
+from app.features.design.studies import protocol_of
 from app.features.record.sessions.consent_schemas import (
     ConsentForm,
     ConsentGiven,

@@ -8,7 +8,7 @@ from datetime import datetime
 
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import freeze
+from app.features.design.studies import freeze
 from app.features.record.alarms import Change, Condition, clear_all, store_change
 from app.features.record.ledger import close_attempt
 from app.features.record.sessions.engine import Event

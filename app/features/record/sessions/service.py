@@ -8,14 +8,14 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotNow, StaleVersion
-from app.features.design.studies.service import (
+from app.features.design.studies import (
     newest_version,
     protocol_of,
     require_open,
     study_by_key,
     version_content,
 )
-from app.features.movement.avatar.service import version_of
+from app.features.movement.avatar import version_of
 from app.features.record.ledger import find_or_add_participant, hold_slot, slot_of, take_slot
 from app.features.record.sessions.engine import (
     Command,

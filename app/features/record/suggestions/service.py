@@ -8,7 +8,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, NotFound
-from app.features.design.studies.service import newest_version, protocol_of, study_by_key
+from app.features.design.studies import newest_version, protocol_of, study_by_key
 from app.models import Participant, Study, StudySession, StudyVersion, Suggestion, new_id
 from app.platform.access import session_by_id
 from app.protocol import Step, compile_plan, sequences

@@ -8,7 +8,7 @@ from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
-from app.features.design.studies.service import protocol_of
+from app.features.design.studies import protocol_of
 from app.features.record.questionnaires import Receipt, SubmissionRequest, submit
 from app.features.record.sessions import (
     CompleteStep,

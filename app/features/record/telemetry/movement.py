@@ -13,8 +13,8 @@ from functools import cached_property
 import numpy as np
 from sqlalchemy.orm import Session
 
-from app.features.movement.avatar.service import configuration_by_hash
-from app.features.movement.humanoids.service import figure_by_hash
+from app.features.movement.avatar import configuration_by_hash
+from app.features.movement.humanoids import figure_by_hash
 from app.features.record.telemetry.encoding import DamagedChunkError, Frames
 from app.features.record.telemetry.frames import (
     concatenate,

@@ -2,7 +2,7 @@
 
 from sqlalchemy import select
 
-from app.features.design.studies.service import protocol_of
+from app.features.design.studies import protocol_of
 from app.features.record.alarms import STANDING, clear_all, sessions_with_open_alarms
 from app.features.record.sessions import HeadsetLost, apply_command, state_of
 from app.features.record.telemetry.positions import certain_active_s

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, StringConstraints
 from app.clock import Clock
 from app.database import Database
 from app.errors import Conflict, NotDurable, NotFound
-from app.features.people.accounts.service import issue_token, revoke_token
+from app.features.people.accounts import issue_token, revoke_token
 from app.features.record.tryout.performance import Performance
 from app.models import Account
 from app.platform.access import Caller

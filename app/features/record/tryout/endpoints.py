@@ -3,12 +3,7 @@
 from fastapi import APIRouter
 
 from app.errors import InvalidInput, NotFound
-from app.features.design.studies.service import (
-    newest_version,
-    protocol_of,
-    require_open,
-    study_by_key,
-)
+from app.features.design.studies import newest_version, protocol_of, require_open, study_by_key
 from app.features.record.tryout.desk import TryoutDesk, TryoutView, TryoutWish
 from app.platform.access import Caller, require_object
 from app.platform.context import AppContext

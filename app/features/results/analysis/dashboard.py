@@ -31,11 +31,12 @@ from app.features.results.analysis.figures import (
     progress_time_drawing,
     quality_drawing,
 )
-from app.features.results.analysis.filters import NO_FILTER, FigureFilter
 from app.features.results.analysis.material import Material, read_material
 from app.features.results.analysis.schemas import (
+    NO_FILTER,
     DashboardFigures,
     DashboardKind,
+    FigureFilter,
     FigureGroup,
     FigureView,
     FilterChoices,

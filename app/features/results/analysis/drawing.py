@@ -19,8 +19,12 @@ from typing import Literal, Self
 from sqlalchemy.orm import Session
 
 from app.errors import NotDurable, ReembodyError
-from app.features.results.analysis.filters import NO_FILTER, FigureFilter
-from app.features.results.analysis.schemas import DashboardKind, FigureGroup
+from app.features.results.analysis.schemas import (
+    NO_FILTER,
+    DashboardKind,
+    FigureFilter,
+    FigureGroup,
+)
 from app.features.results.analysis.state import State, state_of_data
 from app.platform.context import AppContext, Part
 from app.platform.workers import Worker

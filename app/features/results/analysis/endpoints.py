@@ -5,9 +5,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path, Query, Response
 
-from app.features.design.studies.service import study_by_key
-from app.features.people.audit.copies import in_browser_of, record_copy, sessions_in
-from app.features.people.audit.service import record
+from app.features.design.studies import study_by_key
+from app.features.people.audit import in_browser_of, record, record_copy, sessions_in
 from app.features.results.analysis.drawing import Drawings, Drawn
 from app.features.results.analysis.schemas import (
     ColumnView,

@@ -15,9 +15,8 @@ from sqlalchemy.orm import Session
 from app.database import make_engine
 from app.errors import NotFound
 from app.features.results.analysis.dashboard import dashboard_of, drawings_of
-from app.features.results.analysis.filters import FigureFilter
 from app.features.results.analysis.material import Material, MaterialStore
-from app.features.results.analysis.schemas import DashboardKind, FigureGroup
+from app.features.results.analysis.schemas import DashboardKind, FigureFilter, FigureGroup
 from app.features.results.analysis.sheets import sheet_of
 from app.features.results.analysis.state import state_of_data
 

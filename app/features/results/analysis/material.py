@@ -13,14 +13,9 @@ import pandas as pd
 from sqlalchemy import URL, select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import (
-    instrument_of,
-    newest_version,
-    protocol_of,
-    study_by_key,
-)
-from app.features.results.analysis.filters import FigureFilter
-from app.features.results.analysis.schemas import DashboardKind
+from app.features.design.instruments import instrument_of
+from app.features.design.studies import newest_version, protocol_of, study_by_key
+from app.features.results.analysis.schemas import DashboardKind, FigureFilter
 from app.features.results.analysis.tables import (
     alarms_table,
     answers_table,

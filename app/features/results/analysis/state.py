@@ -3,7 +3,7 @@
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import newest_version, study_by_key
+from app.features.design.studies import newest_version, study_by_key
 from app.models import (
     AlarmRow,
     JointErrorCourseRow,

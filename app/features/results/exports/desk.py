@@ -19,7 +19,7 @@ from typing import Self
 from app.clock import Clock
 from app.errors import NotFound, NotNow
 from app.features.results.exports.jobs import KEPT, Job
-from app.features.results.exports.orders import Made, NotMade, Order, make_archive
+from app.features.results.exports.orders import Made, NotMade, Order
 from app.features.results.exports.schemas import ExportTrouble, ExportView
 from app.platform.context import AppContext, Part
 
@@ -30,6 +30,14 @@ ENDED = NotMade(
     "the process that made the export ended",
     "Make it again; if that fails too, look at the server's log and memory.",
 )
+
+
+def make_archive(order: Order) -> Made | NotMade:
+    """In the process: write the file, or say why not."""
+    # Loads pandas, which the server does without.
+    from app.features.results.exports.writing import made
+
+    return made(order)
 
 
 @dataclass(eq=False)

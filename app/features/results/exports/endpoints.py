@@ -1,20 +1,28 @@
-"""Exports over HTTP."""
+"""Exports over HTTP: sent while they are made, or ordered as files, watched and fetched."""
 
 from collections.abc import AsyncIterator, Generator
 from typing import Any
 
 from fastapi import APIRouter
-from fastapi.responses import StreamingResponse
+from fastapi.responses import FileResponse, StreamingResponse
+from sqlalchemy.orm import Session
 from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 
-from app.features.design.studies.service import study_by_key
-from app.features.people.audit.copies import in_browser_of, record_copy, sessions_in
-from app.features.people.audit.service import record
-from app.features.results.analysis.schemas import Kind
+from app.errors import NotFound, NotNow
+from app.features.design.studies import study_by_key
+from app.features.people.audit import in_browser_of, record, record_copy, sessions_in
+from app.features.results.analysis import Kind
+from app.features.results.exports.desk import ExportDesk
+from app.features.results.exports.jobs import Job
 from app.features.results.exports.names import archive_name
-from app.platform.dependencies import Context, SignedIn, Writing
+from app.features.results.exports.schemas import ExportView, ExportWish
+from app.models import Participant
+from app.platform.access import Caller, require_object, session_by_id
+from app.platform.context import AppContext
+from app.platform.dependencies import Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["exports"])
+MEDIA_TYPE = "application/zip"
 
 
 @router.get(
@@ -27,7 +35,7 @@ def get_export(
 ) -> StreamingResponse:
     """The study's sessions of one kind as CSV files in a ZIP, sent while it is made."""
     # Loads pandas, which the start of the server need not wait for.
-    from app.features.results.exports.service import study_archive
+    from app.features.results.exports.writing import study_archive
 
     study = study_by_key(db, key)
     now = context.clock.utc_now()
@@ -66,3 +74,110 @@ async def _sent(pieces: Generator[bytes, Any, None]) -> AsyncIterator[bytes]:
     finally:
         # Also when the reader has gone away: the look at the database must end.
         await run_in_threadpool(pieces.close)
+
+
+@router.post("/studies/{key}/exports", status_code=202)
+def post_export(
+    key: str, wish: ExportWish, db: Reading, context: Context, caller: SignedIn
+) -> ExportView:
+    """Have a study's sessions of one kind, or one session, made into a ZIP of CSV files."""
+    study = study_by_key(db, key)
+    what = wish.kind if wish.session_id is None else _code_of(db, study.id, wish)
+    now = context.clock.utc_now()
+    job = Job(
+        owner=caller.account_id,
+        study_key=study.key,
+        kind=wish.kind,
+        session_id=wish.session_id,
+        file_name=archive_name(study.key, what, now.date()),
+        asked_at=now,
+        folder=context.part(ExportDesk).folder,
+    )
+    return context.part(ExportDesk).order(job)
+
+
+@router.get("/exports")
+def get_exports(context: Context, caller: SignedIn) -> list[ExportView]:
+    """The caller's exports, newest first: waiting, under way, ready or failed."""
+    return context.part(ExportDesk).exports_of(caller.account_id)
+
+
+@router.get("/exports/{export_id}")
+def get_one_export(export_id: str, context: Context, caller: SignedIn) -> ExportView:
+    """How far one is."""
+    return context.part(ExportDesk).view(caller.account_id, export_id)
+
+
+@router.delete("/exports/{export_id}", status_code=204)
+def delete_export(export_id: str, context: Context, caller: SignedIn) -> None:
+    """Stop making it, or remove the file."""
+    context.part(ExportDesk).cancel(caller.account_id, export_id)
+
+
+@router.get(
+    "/exports/{export_id}/file",
+    response_class=FileResponse,
+    responses={200: {"content": {MEDIA_TYPE: {}}, "description": "A ZIP of CSV files."}},
+)
+async def get_export_file(export_id: str, context: Context, caller: SignedIn) -> FileResponse:
+    """The file; a download that broke off goes on where it was (`Range`, `If-Range`)."""
+    job = await run_in_threadpool(_ready, context, caller, export_id)
+    if not job.recorded:
+        async with context.database.writing_async() as db:
+            await run_in_threadpool(_put_on_record, db, context, caller, job)
+    job.recorded, job.fetched_at = True, context.clock.utc_now()
+    return FileResponse(
+        job.path,
+        media_type=MEDIA_TYPE,
+        filename=job.file_name,
+        headers={"etag": f'"{job.sha256}"'},
+    )
+
+
+def _code_of(db: Session, study_id: str, wish: ExportWish) -> str:
+    """The participant's code of the one session that is wished for."""
+    session = session_by_id(db, wish.session_id or "")
+    if session.study_id != study_id or session.kind != wish.kind:
+        # In the words for one that was never there.
+        raise NotFound("there is no such session", value=wish.session_id)
+    participant = db.get_one(Participant, session.participant_id)
+    return participant.code
+
+
+def _ready(context: AppContext, caller: Caller, export_id: str) -> Job:
+    job = context.part(ExportDesk).find(caller.account_id, export_id)
+    # Whoever lost the study since loses its files too.
+    with context.database.reading() as db:
+        require_object(db, caller, "/api/studies/{key}", {"key": job.study_key})
+    if job.state != "ready":
+        raise NotNow(
+            "this export is not ready",
+            value=job.state,
+            valid=["ready"],
+            remedy="Wait until it is, or make it again where it failed.",
+        )
+    return job
+
+
+def _put_on_record(db: Session, context: AppContext, caller: Caller, job: Job) -> None:
+    """The copy that leaves now, before its first byte: what breaks off has left, too."""
+    study, now = study_by_key(db, job.study_key), context.clock.utc_now()
+    record_copy(
+        db,
+        kind="export",
+        study_id=study.id,
+        session_kind=job.kind,
+        place=in_browser_of(caller.actor),
+        by=caller.actor,
+        now=now,
+        sessions=job.sessions,
+        size_bytes=job.size_bytes,
+    )
+    record(
+        db,
+        actor=caller.actor,
+        action="study.exported",
+        subject=f"study:{study.key}",
+        details={"kind": job.kind, "session": job.session_id},
+        now=now,
+    )

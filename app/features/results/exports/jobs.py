@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from pathlib import Path
 
-from app.features.results.analysis.schemas import Kind
-from app.features.results.exports.meter import Meter
+from app.features.results.analysis import Kind
+from app.features.results.exports.orders import Meter
 from app.features.results.exports.schemas import ExportState, ExportTrouble, ExportView
 from app.models import new_id
 from app.platform.workers import Worker

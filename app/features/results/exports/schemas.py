@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
-from app.features.results.analysis.schemas import Kind
+from app.features.results.analysis import Kind
 
 ExportState = Literal["queued", "making", "ready", "failed"]
 

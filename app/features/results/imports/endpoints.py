@@ -7,9 +7,8 @@ from fastapi import APIRouter, Response
 from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
-from app.features.design.studies.service import study_by_key
-from app.features.people.audit.copies import in_browser_of, record_copy
-from app.features.people.audit.service import record
+from app.features.design.studies import study_by_key
+from app.features.people.audit import in_browser_of, record, record_copy
 from app.features.record.erasure import expect_erasure, forget_erasure, overwrite
 from app.features.results.imports.looking import check, look
 from app.features.results.imports.schemas import (

@@ -4,11 +4,10 @@ from collections import Counter
 
 from sqlalchemy.orm import Session
 
-from app.features.design.instruments.service import parsed_instruments
-from app.features.design.studies.service import newest_version, protocol_of
+from app.features.design.instruments import parsed_instruments
+from app.features.design.studies import newest_version, protocol_of
 from app.features.results.imports.applying import Applied, Form, apply_mapping
 from app.features.results.imports.proposing import likely_instrument, propose
-from app.features.results.imports.reading import applied_to, known_instrument
 from app.features.results.imports.schemas import (
     CheckView,
     ConditionCount,
@@ -19,6 +18,7 @@ from app.features.results.imports.schemas import (
     Mapping,
     Shift,
 )
+from app.features.results.imports.service import applied_to, known_instrument
 from app.features.results.imports.sheet import Sheet, read_sheet
 from app.features.results.imports.stored import import_view, imports_of, standing
 from app.features.results.imports.warnings import looks_turned, reversed_items, shift_of

@@ -1,8 +1,4 @@
-"""Imports: taking a file of answers in as a whole, undoing that, and forgetting a participant.
-
-An import is one transaction: either every form of the file is stored or none. The same file is not
-taken in twice for the same instrument. Undoing takes the forms away; who did it and why stays.
-"""
+"""Imports: reading a file by its mapping, taking it in whole, undoing that, erasing a person."""
 
 from datetime import datetime
 from typing import Any, cast
@@ -11,18 +7,48 @@ from sqlalchemy import CursorResult, delete, insert, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict, InvalidInput, NotFound
-from app.features.design.instruments.service import newest_instruments
-from app.features.people.audit.service import record
-from app.features.results.imports.applying import Form
-from app.features.results.imports.reading import applied_to
-from app.features.results.imports.schemas import ImportRequest
-from app.features.results.imports.stored import import_files as import_files
+from app.features.design.instruments import newest_instruments, parsed_instruments
+from app.features.design.studies import newest_version, protocol_of
+from app.features.people.audit import record
+from app.features.results.imports.applying import Applied, Form, apply_mapping
+from app.features.results.imports.schemas import ImportRequest, Mapping
+from app.features.results.imports.sheet import read_sheet
 from app.features.results.imports.stored import standing
 from app.features.results.imports.stored import told_of as told_of
 from app.models import AnswerImport, ImportedForm, Study, new_id
 from app.protocol import sha256_of
+from app.science.instruments import Instrument
 
 _SHOWN_PROBLEMS = 200
+
+
+def applied_to(
+    db: Session, study: Study, text: str, mapping: Mapping
+) -> tuple[Instrument, Applied]:
+    """The instrument and the forms; raises InvalidInput for unknown items, conditions, columns."""
+    instrument = known_instrument(parsed_instruments(db), mapping.instrument)
+    for item in [*(key for one in mapping.sets for key in one.items), *mapping.turned]:
+        if item not in instrument.by_key:
+            raise InvalidInput(
+                f"the instrument {instrument.key!r} has no item {item!r}",
+                value=item,
+                valid=list(instrument.by_key),
+            )
+    keys = frozenset(one.key for one in protocol_of(newest_version(db, study)).conditions)
+    unknown = sorted(set(mapping.conditions.values()) - keys)
+    if unknown:
+        raise InvalidInput(
+            f"the study has no condition {unknown[0]!r}", value=unknown[0], valid=sorted(keys)
+        )
+    sheet = read_sheet(text, mapping.header_rows)
+    return instrument, apply_mapping(sheet, mapping, instrument, keys)
+
+
+def known_instrument(instruments: dict[str, Instrument], key: str) -> Instrument:
+    """The instrument of that key; raises NotFound."""
+    if key not in instruments:
+        raise NotFound(f"there is no instrument {key!r}", value=key, valid=sorted(instruments))
+    return instruments[key]
 
 
 def take_in(

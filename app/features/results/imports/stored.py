@@ -9,7 +9,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.errors import NotFound
-from app.features.design.instruments.service import instrument_of
+from app.features.design.instruments import instrument_of
 from app.features.results.imports.schemas import ImportView, Mapping
 from app.models import AnswerImport, ImportedForm, InstrumentVersion, Study
 from app.science.instruments import Instrument

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime
 
-from app.features.design.studies.service import protocol_of
+from app.features.design.studies import protocol_of
 from app.features.results.preregistration.schemas import DeclarationView
 from app.models import StudyVersion
 from app.protocol import ExclusionRule, Preregistration, PrimaryTest

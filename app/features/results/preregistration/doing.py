@@ -5,7 +5,7 @@ from typing import cast
 
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import newest_version, protocol_of, versions_of
+from app.features.design.studies import newest_version, protocol_of, versions_of
 from app.features.results.analysis.tables import Kind, corrections_table
 from app.features.results.preregistration.declared import Declared, declared_in
 from app.features.results.preregistration.deviating import deviations_of

@@ -4,7 +4,7 @@ from typing import Literal
 
 from fastapi import APIRouter, Response
 
-from app.features.results.analysis.schemas import DashboardKind
+from app.features.results.analysis import DashboardKind
 from app.features.results.preregistration.markdown import as_markdown, without_codes
 from app.features.results.preregistration.schemas import PreregistrationView
 from app.features.results.preregistration.service import preregistration_of

@@ -10,7 +10,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import instrument_of
+from app.features.design.instruments import instrument_of
 from app.features.results.analysis.tables import (
     Kind,
     answers_table,

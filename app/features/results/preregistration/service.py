@@ -4,8 +4,8 @@ from datetime import datetime
 
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import study_by_key, versions_of
-from app.features.results.analysis.schemas import DashboardKind
+from app.features.design.studies import study_by_key, versions_of
+from app.features.results.analysis import DashboardKind
 from app.features.results.preregistration.declared import declaration_of
 from app.features.results.preregistration.schemas import PreregistrationView
 

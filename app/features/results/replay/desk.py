@@ -29,7 +29,7 @@ class ReplayDesk(Part):
     def movement(self, session_id: str, phase_id: int, *, full: bool) -> bytes:
         """The bytes of `app.features.results.replay.movement`; waits for them."""
         # Loads the science, which the start of the server need not wait for.
-        from app.features.results.replay.placing import placed_movement
+        from app.features.results.replay.movement import placed_movement
 
         placing = self._pool.submit(placed_movement, self.database, session_id, phase_id, full=full)
         return placing.result()

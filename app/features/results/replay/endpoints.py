@@ -4,7 +4,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Path, Response
 
-from app.features.movement.captures.binary import BYTES, binary
+from app.features.movement.files import BYTES, binary
 from app.features.results.replay.desk import ReplayDesk
 from app.features.results.replay.schemas import Replay
 from app.features.results.replay.service import movement_tag, replayable

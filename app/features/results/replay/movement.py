@@ -26,13 +26,25 @@ import numpy as np
 from numpy.typing import NDArray
 from sqlalchemy.orm import Session
 
-from app.features.record.telemetry import Frames, iter_frames
+from app.database import Database
+from app.features.record.telemetry import Frames, hinges_of, iter_frames
 from app.features.results.replay.errors import RunErrors, no_errors
 from app.features.results.replay.grid import Grid, Sampling, uncovered
+from app.features.results.replay.service import USUAL_STATURE_M, stature_of
+from app.features.results.replay.times import phase_clock
+from app.models import Phase
+from app.platform.access import session_by_id
 from app.science.avatar.targets import HingeReference
 from app.science.joint_error import ERROR_JOINTS
 from app.science.rotations import is_unit
-from app.science.skeleton import JOINT_COUNT, JOINT_NAMES, PARENTS, Skeleton, forward_kinematics
+from app.science.skeleton import (
+    JOINT_COUNT,
+    JOINT_NAMES,
+    PARENTS,
+    Skeleton,
+    build_skeleton,
+    forward_kinematics,
+)
 from app.wire import StreamName
 
 MOST_HZ = 30.0
@@ -161,3 +173,21 @@ def encode(movement: Movement) -> bytes:
 def _rate_hz(duration_s: float, bodies: int) -> float:
     numbers_a_second = 3 * JOINT_COUNT * bodies * max(duration_s, 1e-3)
     return min(MOST_HZ, MOST_NUMBERS / numbers_a_second)
+
+
+def placed_movement(database: Database, session_id: str, phase_id: int, *, full: bool) -> bytes:
+    """The movement of a phase as `movement.encode` makes it; `full`: with the avatar."""
+    with database.reading() as db:
+        session = session_by_id(db, session_id)
+        phase = db.get_one(Phase, (session_id, phase_id))
+        clock = phase_clock(db, session, phase)
+        recording = Recording(
+            session_id,
+            phase_id,
+            clock.offsets_s,
+            clock.duration_s,
+            build_skeleton(stature_of(db, session) or USUAL_STATURE_M),
+            full=full,
+            hinges=hinges_of(db, session_id) if full else None,
+        )
+        return encode(movement_of(db, recording))

@@ -138,7 +138,7 @@ def _walls(
 ) -> dict[int, Wall]:
     """By epoch, when its span began by the server's clock."""
     # Loads pandas, which the start of the server need not wait for.
-    from app.features.results.analysis.clocks import run_clocks
+    from app.features.results.analysis.tables import run_clocks
 
     clocks = run_clocks(db, session.id)
     walls = {}

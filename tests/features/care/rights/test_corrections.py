@@ -6,9 +6,9 @@ import zipfile
 
 from sqlalchemy import select
 
-from app.features.record.headset.service import participant_info
-from app.features.record.sessions.contents import contents_of, salted_hash
-from app.features.record.sessions.journal import events_of, verify_chain
+from app.features.record.headset import participant_info
+from app.features.record.sessions import contents_of, events_of, verify_chain
+from app.features.record.sessions.contents import salted_hash
 from app.models import Answer
 from app.platform.access import session_by_id
 from app.science.instruments import score_answers
@@ -72,7 +72,7 @@ def test_scores_are_those_of_the_answers_that_count(site: Site) -> None:
     form = forms(site, visit)["karas2020"]
     item = "q1"
     after = correct(site, visit, form, item, 7)
-    from app.features.design.studies.service import instrument_of
+    from app.features.design.instruments import instrument_of
     from app.models import InstrumentVersion, Submission
 
     with site.database.reading() as db:

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.people.audit.service import verify_trail
-from app.features.record.sessions.journal import canonical, events_of, verify_chain
+from app.features.people.audit import verify_trail
+from app.features.record.sessions import canonical, events_of, verify_chain
 from app.models import (
     AuditEntry,
     Erasure,

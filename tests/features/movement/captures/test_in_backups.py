@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 from app.database import open_database
-from app.features.movement.captures import contents
-from app.features.movement.captures.contents import plain_pieces
+from app.features.movement.files import contents, plain_pieces
 from app.models import CapturePiece, CaptureRow, SavedJointMap
 from tests.features.care.backups.lab import make, put_back
 from tests.features.lab import Lab, ok

@@ -10,7 +10,7 @@ from httpx2 import Response
 from sqlalchemy import func, select
 
 from app.database import open_database
-from app.features.movement.captures.contents import drop_unused, plain_pieces
+from app.features.movement.files import drop_unused, plain_pieces
 from app.models import CaptureContent, HumanoidRow
 from app.protocol.avatar import avatar_text, file_of, load_avatar, loaded
 from app.protocol.humanoid import figure_json, parse_figure

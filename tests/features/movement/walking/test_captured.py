@@ -7,7 +7,7 @@ import pytest
 from sqlalchemy.orm import Session
 
 from app.database import make_engine
-from app.features.movement.captures.contents import compress, store
+from app.features.movement.files import compress, store
 from app.features.movement.walking.desk import FittingDesk
 from app.features.movement.walking.sources import Cannot, CapturedWalk, Store, TrackSource
 from app.features.movement.walking.tasks import captured_table

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from app.features.results.analysis.tables import calibrations_table
-from app.features.results.exports.service import export_study
+from app.features.results.exports.writing import export_study
 from app.models import Calibration
 from tests.features.lab import STUDY, Json, Lab, error, ok
 

@@ -7,9 +7,9 @@ import pytest
 from fastapi.testclient import TestClient
 from pandas import isna
 
-from app.features.design.studies.service import instrument_of, newest_instruments
+from app.features.design.instruments import instrument_of, newest_instruments
 from app.features.record.questionnaires.hints import hints_of
-from app.features.results.analysis.tables.questionnaires import answers_table
+from app.features.results.analysis.tables import answers_table
 from app.models import Submission
 from app.science.instruments import Instrument
 from tests.features.lab import STUDY, Json, Lab, ok

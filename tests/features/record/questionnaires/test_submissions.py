@@ -6,7 +6,7 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
-from app.features.design.studies.service import instrument_of, newest_instruments
+from app.features.design.instruments import instrument_of, newest_instruments
 from app.features.record.sessions.contents import content_body, contents_of
 from app.features.record.sessions.journal import events_of, verify_chain
 from app.models import StudySession, Submission

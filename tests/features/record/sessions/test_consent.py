@@ -7,7 +7,7 @@ from fastapi.testclient import TestClient
 from sqlalchemy import select
 
 from app.features.record.sessions.contents import salted_hash
-from app.features.results.exports.service import export_study
+from app.features.results.exports.writing import export_study
 from app.models import SessionContent
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.record.sessions.options_lab import joined

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from app.features.results.analysis.tables import KINDS, sessions_table
-from app.features.results.exports.service import export_study, usual_kind
+from app.features.results.exports.writing import export_study, usual_kind
 from tests.features.lab import STUDY, Lab, ok
 
 

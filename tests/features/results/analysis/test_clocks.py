@@ -9,13 +9,13 @@ import pytest
 from sqlalchemy import update
 
 from app.database import Database
-from app.features.results.analysis.clocks import run_clocks
 from app.features.results.analysis.tables import (
     clock_mapping_table,
     clock_probes_table,
     completions_table,
     contacts_table,
 )
+from app.features.results.analysis.tables.clocks import run_clocks
 from app.models import ClockProbe, Contact, StudySession
 from app.science.clock import ClockProbes
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session

@@ -11,11 +11,15 @@ import pytest
 
 from app.database import Database
 from app.errors import NotFound
-from app.features.design.studies.service import add_version, study_by_key, versions_of
+from app.features.design.studies import add_version, study_by_key, versions_of
 from app.features.results.analysis.dashboard import build_dashboard, drawings_of
-from app.features.results.analysis.filters import NO_FILTER, FigureFilter
 from app.features.results.analysis.material import read_material
-from app.features.results.analysis.schemas import DashboardFigures, DashboardKind
+from app.features.results.analysis.schemas import (
+    NO_FILTER,
+    DashboardFigures,
+    DashboardKind,
+    FigureFilter,
+)
 from app.features.results.analysis.sheets import sheet_of
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 

@@ -13,9 +13,9 @@ from app.features.results.analysis.figures import (
     joint_error_map_drawing,
     progress_drawing,
 )
-from app.features.results.analysis.figures.body_parts import BODY_PARTS, JOINTS_BY_PART
+from app.features.results.analysis.figures.by_latency import mean_interval
 from app.features.results.analysis.figures.drawing import Drawing, limb_note
-from app.features.results.analysis.figures.intervals import mean_interval
+from app.features.results.analysis.figures.joint_errors import BODY_PARTS, JOINTS_BY_PART
 from app.science.joint_error import ERROR_JOINTS
 
 

@@ -10,8 +10,8 @@ import pytest
 from app.database import Database
 from app.features.results.analysis.dashboard import drawings_of
 from app.features.results.analysis.figures import Drawing, joint_error_course_drawing
-from app.features.results.analysis.filters import NO_FILTER, FigureFilter
 from app.features.results.analysis.material import read_material
+from app.features.results.analysis.schemas import NO_FILTER, FigureFilter
 from app.features.results.analysis.sheets import sheet_of
 from app.features.results.analysis.state import state_of_data
 from app.models import JointErrorCourseRow

@@ -6,7 +6,7 @@ from sqlalchemy import select
 
 from app.database import Database
 from app.features.results.analysis.tables import phases_table
-from app.features.results.exports.cells import csv_pieces
+from app.features.results.exports.writing.cells import csv_pieces
 from app.models import Phase
 from tests.features.builders import STUDY, SessionSpec, build_session
 from tests.features.latency_builders import measured

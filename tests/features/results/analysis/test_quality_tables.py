@@ -8,8 +8,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.database import Database
-from app.features.record.alarms.alarm import Change, Condition
-from app.features.record.alarms.service import store_change
+from app.features.record.alarms import Change, Condition, store_change
 from app.features.results.analysis.codebook import columns_of
 from app.features.results.analysis.tables import alarms_table, quality_table
 from app.models import Phase, PhaseQuality, StudySession

@@ -3,7 +3,7 @@
 import pytest
 
 from app.database import Database
-from app.features.design.studies.service import add_version, study_by_key
+from app.features.design.studies import add_version, study_by_key
 from app.features.results.analysis.material import read_material
 from app.features.results.analysis.questions import answers_of
 from app.features.results.analysis.questions.answers import DECLARED

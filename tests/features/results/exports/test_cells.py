@@ -8,7 +8,7 @@ import pytest
 
 from app.features.results.analysis.codebook import columns_of
 from app.features.results.analysis.tables.context import finished
-from app.features.results.exports.cells import csv_pieces, safe_text
+from app.features.results.exports.writing.cells import csv_pieces, safe_text
 from tests.faults.figures import note
 
 

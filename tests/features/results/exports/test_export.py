@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 
 from app.database import Database
 from app.features.results.analysis.codebook import CODEBOOK, columns_of
-from app.features.results.exports.service import Exported, study_archive, usual_kind
+from app.features.results.exports.writing.service import Exported, study_archive, usual_kind
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.features.results.exports.whole import FILES, TABLES, export, rows_of, tree_of
 

@@ -14,7 +14,7 @@ from sqlalchemy import select
 
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.exports.jobs import KEPT
-from app.features.results.exports.service import study_archive
+from app.features.results.exports.writing.service import study_archive
 from app.models import CopyMade
 from app.wire import StreamName
 from tests.api.people import sign_in

@@ -8,8 +8,8 @@ import pytest
 from app.database import Database
 from app.errors import Conflict, NotFound
 from app.features.results.exports.names import archive_name, samples_path
-from app.features.results.exports.samples import SampleFile
-from app.features.results.exports.service import export_study
+from app.features.results.exports.writing.samples import SampleFile
+from app.features.results.exports.writing.service import export_study
 from tests.faults.figures import note
 from tests.features.builders import NOW, SessionSpec, build_session
 from tests.features.results.exports.whole import export, tree_of

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.database import Database
 from app.features.results.analysis.codebook import columns_of
-from app.features.results.exports.samples import SampleFile
+from app.features.results.exports.writing.samples import SampleFile
 from app.models import StudySession
 from app.wire import StreamName
 from tests.features.builders import SessionSpec, build_session

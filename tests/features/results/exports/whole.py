@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from app.database import Database
-from app.features.results.exports.service import Exported, export_study
+from app.features.results.exports.writing.service import Exported, export_study
 from tests.features.builders import NOW, STUDY
 
 TABLES = (

@@ -6,7 +6,7 @@ from datetime import timedelta
 import pytest
 
 from app.database import Database, open_database
-from app.features.design.studies.service import add_version, freeze, newest_version, study_by_key
+from app.features.design.studies import add_version, freeze, newest_version, study_by_key
 from app.features.results.preregistration.markdown import as_markdown, without_codes
 from app.features.results.preregistration.schemas import PreregistrationView
 from app.features.results.preregistration.service import preregistration_of

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sqlalchemy import delete, select
 
 from app.features.record.telemetry.frames import phase_frames
-from app.features.results.replay.placing import placed_movement
+from app.features.results.replay.movement import placed_movement
 from app.models import Phase, StudySession, TelemetryChunk, TelemetryStream
 from app.science.joint_error import joint_errors
 from app.science.skeleton import build_skeleton, forward_kinematics

@@ -12,8 +12,9 @@ from app.database import Database
 from app.features.care.rights.access.page import page_of
 from app.features.care.rights.access.summary import visits_of
 from app.features.record.sessions import content_body, contents_of
-from app.features.results.exports.service import Member, person_archive, safe_name
-from app.features.results.imports.service import told_of
+from app.features.results.exports import safe_name
+from app.features.results.exports.writing import Member, person_archive
+from app.features.results.imports import told_of
 from app.models import Participant, StudySession
 
 PAGE, WORDS, IMPORTED = "your-data.html", "words.json", "imported.json"

@@ -10,7 +10,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.features.care.rights.access.words import in_language
-from app.features.design.studies.service import instrument_of
+from app.features.design.instruments import instrument_of
 from app.features.record.questionnaires import StoredAnswers, stored_answers
 from app.features.record.sessions import (
     content_body,

@@ -5,9 +5,12 @@ from dataclasses import asdict, replace
 
 import pandas as pd
 
-from app.features.results.analysis.codebook.calibrations import CALIBRATIONS
-from app.features.results.analysis.codebook.clocks import CLOCK_MAPPING, CLOCK_PROBES
 from app.features.results.analysis.codebook.column import Column, Describe
+from app.features.results.analysis.codebook.equipment import (
+    CALIBRATIONS,
+    CLOCK_MAPPING,
+    CLOCK_PROBES,
+)
 from app.features.results.analysis.codebook.movement import (
     COMPLETIONS,
     CONTACTS,

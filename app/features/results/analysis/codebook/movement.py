@@ -1,8 +1,12 @@
 """The columns of contacts.csv, completions.csv, the files of joint errors and samples/*.csv."""
 
-from app.features.results.analysis.codebook.clocks import epoch_column, mapped_columns
-from app.features.results.analysis.codebook.column import Column, Describe
-from app.features.results.analysis.codebook.common import phase_columns, session_columns
+from app.features.results.analysis.codebook.column import (
+    Column,
+    Describe,
+    phase_columns,
+    session_columns,
+)
+from app.features.results.analysis.codebook.equipment import epoch_column, mapped_columns
 from app.science.skeleton import JOINT_NAMES
 
 _C = Describe("contacts")

@@ -1,7 +1,11 @@
 """The columns of quality.csv and alarms.csv."""
 
-from app.features.results.analysis.codebook.column import Column, Describe
-from app.features.results.analysis.codebook.common import phase_columns, session_columns
+from app.features.results.analysis.codebook.column import (
+    Column,
+    Describe,
+    phase_columns,
+    session_columns,
+)
 
 _Q = Describe("quality")
 _A = Describe("alarms")

@@ -1,7 +1,11 @@
 """The columns of answers.csv, scores.csv and corrections.csv."""
 
-from app.features.results.analysis.codebook.column import Column, Describe
-from app.features.results.analysis.codebook.common import place_columns, session_columns
+from app.features.results.analysis.codebook.column import (
+    Column,
+    Describe,
+    place_columns,
+    session_columns,
+)
 
 _A = Describe("answers")
 _S = Describe("scores")

@@ -1,7 +1,11 @@
 """The columns of sessions.csv, phases.csv and events.csv."""
 
-from app.features.results.analysis.codebook.column import Column, Describe
-from app.features.results.analysis.codebook.common import phase_columns, session_columns
+from app.features.results.analysis.codebook.column import (
+    Column,
+    Describe,
+    phase_columns,
+    session_columns,
+)
 
 _S = Describe("sessions")
 _P = Describe("phases")

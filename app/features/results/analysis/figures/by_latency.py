@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import pandas as pd
 import plotly.graph_objects as go
+from scipy import stats
 
-from app.features.results.analysis.figures.intervals import MeanInterval, mean_interval
 from app.features.results.analysis.figures.theme import (
     BLUE,
     CALM,
@@ -19,6 +19,7 @@ from app.features.results.analysis.figures.theme import (
     quiet,
 )
 
+LEVEL = 0.95
 LIMBS = ("hand", "foot")
 _LOOKS = {"hand": (BLUE, "circle", "solid"), "foot": (VERMILLION, "square", "dash")}
 MEANS = (
@@ -31,6 +32,33 @@ MANY = 60
 """Participants from which on points are left away and lines are fainter."""
 SHAPE_SHARE = 0.16
 """Width of a shape, of the distance between two neighbours on the x axis."""
+
+
+@dataclass(frozen=True)
+class MeanInterval:
+    """Mean of n values with half the width of its 95 % interval; None for fewer than two."""
+
+    mean: float
+    half_width: float | None
+    n: int
+
+    def words(self, unit: str) -> str:
+        """Half the width in words, for a hover text."""
+        if self.half_width is None:
+            return f"{unit} (one participant, no interval)"
+        return f"± {self.half_width:.2g} {unit}"
+
+
+def mean_interval(values: Sequence[float]) -> MeanInterval:
+    """Student's interval: mean +- t(.975, n - 1) s / sqrt(n). Raises ValueError for no values."""
+    if len(values) == 0:
+        raise ValueError("expected at least one value, got none")
+    array = np.asarray(values, np.float64)
+    n, mean = len(array), float(array.mean())
+    if n < 2:
+        return MeanInterval(mean, None, n)
+    quantile = float(stats.t.ppf(0.5 + LEVEL / 2, n - 1))
+    return MeanInterval(mean, quantile * float(array.std(ddof=1)) / n**0.5, n)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from app.features.results.analysis.figures.drawing import (
     too_few,
 )
 from app.features.results.analysis.figures.theme import COLOURS, PATTERNS, hatched, new_figure
-from app.features.results.analysis.red_time import red_spans, total_s
+from app.features.results.analysis.tables.tasks import red_spans, total_s
 
 Contact = tuple[str, float, float]
 KEY, TITLE = "contacts", "Time at the sides of the boxes by added latency"

@@ -3,11 +3,6 @@
 import pandas as pd
 import plotly.graph_objects as go
 
-from app.features.results.analysis.figures.body_parts import (
-    BODY_PARTS,
-    JOINTS_BY_PART,
-    PART_OF_JOINT,
-)
 from app.features.results.analysis.figures.by_latency import cells
 from app.features.results.analysis.figures.drawing import (
     FEWEST_PARTICIPANTS,
@@ -26,7 +21,28 @@ from app.features.results.analysis.figures.theme import (
     latency_axis,
     new_figure,
 )
+from app.science.joint_error import ERROR_JOINTS
 
+_LIMB_PARTS = {
+    "arm": ("Shoulder", "UpperArm", "LowerArm", "Hand"),
+    "leg": ("UpperLeg", "LowerLeg", "Foot", "Toes"),
+}
+BODY_PARTS: dict[str, tuple[str, ...]] = {
+    "head and neck": ("Neck", "Head"),
+    "spine": ("Spine", "Chest", "UpperChest"),
+    **{
+        f"{side.lower()} {limb}": tuple(f"{side}{part}" for part in parts)
+        for limb, parts in _LIMB_PARTS.items()
+        for side in ("Left", "Right")
+    },
+}
+"""Part -> its joints; each of ERROR_JOINTS is in exactly one."""
+PART_OF_JOINT: dict[str, str] = {
+    joint: part for part, joints in BODY_PARTS.items() for joint in joints
+}
+JOINTS_BY_PART: tuple[str, ...] = tuple(
+    joint for joints in BODY_PARTS.values() for joint in joints if joint in ERROR_JOINTS
+)
 WHAT = (
     "Joint error is the angle between the participant's pose at the moment and the body they saw, "
     "averaged over the active time of hand and foot phases. The hips carry no latency and are left "

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from app.features.results.analysis.questions.bootstrapped import interval_words
 from app.features.results.analysis.questions.measures import Measure
-from app.features.results.analysis.questions.words import Said, measured, number
+from app.features.results.analysis.questions.words import Said, interval_words, measured, number
 from app.science.statistics import FloatArray, share_of_maximum
 
 

@@ -1,35 +1,192 @@
-"""What is asked of one measure and one limb: by ranks, exact where possible."""
+"""The rank tests of one measure and one limb, exact where possible.
 
+Whether latencies differ (Friedman), which differ from the smallest (Wilcoxon, Holm), and whether
+the measure goes one way along latency (Page, one-sided where that was predicted).
+"""
+
+import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from app.features.results.analysis.questions.asked import WILCOXON_SOURCE, Asked, apa_of, listwise
-from app.features.results.analysis.questions.bootstrapped import mean_words
-from app.features.results.analysis.questions.floors import friedman_floor, signed_floor
 from app.features.results.analysis.questions.measures import Measure
-from app.features.results.analysis.questions.trends import trend
 from app.features.results.analysis.questions.words import (
     Brief,
     Said,
     against,
     bounded,
+    mean_words,
     measured,
     number,
     p_cell,
     p_words,
 )
 from app.science.statistics import (
+    AgainstReference,
     Comparison,
+    Direction,
+    DirectionalHypothesis,
+    FloatArray,
+    Friedman,
+    PageTrend,
     StatisticsError,
     against_reference,
+    complete_rows,
+    directional,
     friedman,
+    page_trend,
 )
 
+WILCOXON_SOURCE = (
+    "Wilcoxon 1945, Biometrics Bull. 1:80; Holm 1979, Scand. J. Stat. 6:65; Kerby 2014, Compr. "
+    "Psychol. 3:1; Efron 1987, J. Am. Stat. Assoc. 82:171."
+)
+PAGE_SOURCE = "Page 1963, J. Am. Stat. Assoc. 58:216."
 FRIEDMAN_SOURCE = (
     "Friedman 1937, J. Am. Stat. Assoc. 32:675; Kendall and Babington Smith 1939, Ann. Math. Stat. "
     "10:275."
 )
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """One measure at one limb.
+
+    `table`: (n, L) participants x latencies, NaN where there is no value.
+    """
+
+    measure: Measure
+    limb: str
+    table: FloatArray
+    alpha: float
+
+    @property
+    def complete(self) -> FloatArray:
+        """The participants with every latency."""
+        return complete_rows(self.table)[0]
+
+    @property
+    def name(self) -> str:
+        """As a paper names it."""
+        return f"{self.measure.title}, {self.limb} task"
+
+
+def apa_of(one: Comparison) -> str:
+    """A comparison in a line for a paper."""
+    return (
+        f"{one.a} vs. {one.b} ms: W = {number(one.test.w, 1)}, n = {one.test.n}, "
+        f"{p_words(one.test.p)}, Holm-adjusted {p_words(one.p_holm)}, rank-biserial r = "
+        f"{bounded(one.test.rank_biserial, 2)}"
+    )
+
+
+def listwise(asked: Asked) -> str:
+    """How many are left out of tests that need every latency; nothing where nobody is."""
+    left = len(asked.table) - len(asked.complete)
+    return f"{left} participants without every latency are left out." if left else ""
+
+
+def signed_floor(found: AgainstReference) -> str:
+    """Whether n is too small for any result: the smallest p that the test can give."""
+    sides = 1.0 if found.alternative != "two-sided" else 2.0
+    family = len(found.comparisons)
+    most = max((one.test.n - one.test.n_zero for one in found.comparisons), default=0)
+    floor = min(1.0, sides * family * 0.5**most)
+    if floor <= found.alpha:
+        return ""
+    return (
+        f"Too few participants for any result: with {most} differences other than zero and "
+        f"{family} comparisons the smallest possible adjusted p is {bounded(floor)}, above α = "
+        f"{bounded(found.alpha, 2)}."
+    )
+
+
+def friedman_floor(found: Friedman, alpha: float) -> str:
+    """The same of Friedman's test, whose smallest exact p is k!^(1 - n)."""
+    floor = float(math.factorial(found.df + 1)) ** (1 - found.n)
+    if floor <= alpha:
+        return ""
+    return (
+        f"Too few participants for any result: with {found.n} the smallest possible exact p is "
+        f"{bounded(floor)}, above α = {bounded(alpha, 2)}."
+    )
+
+
+def trend(asked: Asked) -> Said:
+    """One-sided where a direction was predicted, else doubled; raises StatisticsError."""
+    predicted, levels = asked.measure.predicted, asked.measure.levels
+    if predicted is None:
+        return _open(asked, page_trend(asked.complete))
+    return _predicted(asked, directional(asked.table, levels, predicted, alpha=asked.alpha))
+
+
+def _open(asked: Asked, found: PageTrend) -> Said:
+    p, way = min(1.0, 2.0 * min(found.p, found.p_falling)), _way(found)
+    cells = (number(found.statistic, 1), p_cell(found.p), p_cell(found.p_falling), p_cell(p))
+    return Said(
+        key=f"trend_{asked.limb}",
+        title=f"{asked.limb.capitalize()}: Is there a trend along latency?",
+        sentence=(
+            f"No direction was predicted, so Page’s test is doubled: {against(p, asked.alpha)}. "
+            f"By ranks the measure {way or 'goes neither way'} with latency."
+        ),
+        apa=(
+            f"{asked.name}: Page’s L = {number(found.statistic, 1)}, N = {found.n}, two-sided "
+            f"{p_words(p)} ({found.method})"
+        ),
+        columns=("L", "p (rises)", "p (falls)", "p (two-sided)", "n"),
+        rows=[(*cells, str(found.n))],
+        method=f"Page’s trend test, {found.method}, doubled one-sided p. {listwise(asked)}",
+        source=PAGE_SOURCE,
+        warnings=(measured("page"),),
+        exploratory=True,
+        brief=Brief(p_words(p), way),
+    )
+
+
+def _way(found: PageTrend) -> Direction | None:
+    if found.p == found.p_falling:
+        return None
+    return "rises" if found.p < found.p_falling else "falls"
+
+
+def _predicted(asked: Asked, found: DirectionalHypothesis) -> Said:
+    support = "supported" if found.supported else "not supported"
+    parts = [apa_of(one) for one in found.against_first.comparisons]
+    return Said(
+        key=f"trend_{asked.limb}",
+        title=f"{asked.limb.capitalize()}: It was predicted that it {found.predicted} with latency",
+        sentence=(
+            f"The prediction is {support}: one-sided {against(found.p, asked.alpha)} (Page’s "
+            f"test, n = {found.trend.n}). The other direction would be no support, whatever its "
+            "size."
+        ),
+        apa=(
+            f"{asked.name}, predicted to {found.predicted[:-1]}: Page’s L = "
+            f"{number(found.trend.statistic, 1)}, N = {found.trend.n}, one-sided "
+            f"{p_words(found.p)}; {'; '.join(parts)}"
+        ),
+        columns=("latency (ms)", "n", "W", "p (one-sided)", "p (Holm)", "rank-biserial"),
+        rows=[
+            (
+                one.a,
+                str(one.test.n),
+                number(one.test.w, 1),
+                p_cell(one.test.p),
+                p_cell(one.p_holm),
+                bounded(one.test.rank_biserial, 2),
+            )
+            for one in found.against_first.comparisons
+        ],
+        method=(
+            "Page’s trend test, one-sided, exact given the ties, then one-sided signed-rank tests "
+            f"against {asked.measure.levels[0]} ms with Holm’s rule. {listwise(asked)}"
+        ),
+        source=f"{PAGE_SOURCE} {WILCOXON_SOURCE} Direction: Waltemate et al. 2016.",
+        warnings=(signed_floor(found.against_first), measured("page_given_ties")),
+        brief=Brief(p_words(found.p), _way(found.trend)),
+    )
 
 
 def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[Said]:

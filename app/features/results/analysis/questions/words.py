@@ -1,7 +1,8 @@
-"""Numbers as papers print them, and results as they travel.
+"""Numbers and means as papers print them, and results as they travel.
 
 p has three decimals and no zero before the point; so have other numbers that cannot exceed 1.
-Nothing is called significant: p is compared with alpha, and the comparison is told.
+Nothing is called significant: p is compared with alpha, and the comparison is told. Intervals come
+from a fixed seed, so whoever computes them again gets the same.
 """
 
 import math
@@ -10,13 +11,25 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 
+import numpy as np
+
 from app.features.results.analysis.schemas import ResultView
-from app.science.statistics import Direction, ErrorRates, error_rates_from_json
+from app.science.statistics import (
+    Direction,
+    ErrorRates,
+    FloatArray,
+    Interval,
+    StatisticsError,
+    bootstrap_interval,
+    error_rates_from_json,
+    mean_of,
+)
 
 _SMALLEST_P = 0.001
 _BOUNDED_DIGITS = 3
 _RATES = "error_rates.json"
 NONE = "–"
+SEED, DRAWS = 20_260_101, 1999
 
 
 @dataclass(frozen=True)
@@ -115,3 +128,29 @@ def measured(test: str) -> str:
 def _rates() -> ErrorRates | None:
     stored = files("app.science.statistics") / _RATES
     return error_rates_from_json(stored.read_text(encoding="utf-8")) if stored.is_file() else None
+
+
+def mean_words(values: FloatArray) -> str:
+    """The mean and its interval in brackets; without an interval where there is too little."""
+    found = _found(values)
+    if found is None:
+        return number(float(values.mean())) if values.size else number(None)
+    return f"{number(found.estimate)} {_ends(found)}"
+
+
+def interval_words(values: FloatArray) -> str:
+    """The interval of the mean; a dash where there is too little."""
+    found = _found(values)
+    return number(None) if found is None else _ends(found)
+
+
+def _found(values: FloatArray) -> Interval | None:
+    rng = np.random.default_rng(SEED)
+    try:
+        return bootstrap_interval(values, mean_of, rng=rng, resamples=DRAWS)
+    except StatisticsError:
+        return None
+
+
+def _ends(found: Interval) -> str:
+    return f"[{number(found.low)}, {number(found.high)}]"

@@ -8,20 +8,26 @@ forms and broken-off sessions are there with `valid` false. Texts are `object`, 
 """
 
 from app.features.results.analysis.schemas import Kind
-from app.features.results.analysis.tables.calibrations import calibrations_table
-from app.features.results.analysis.tables.clocks import clock_mapping_table, clock_probes_table
-from app.features.results.analysis.tables.context import KINDS
-from app.features.results.analysis.tables.corrections import corrections_table
-from app.features.results.analysis.tables.events import events_table
-from app.features.results.analysis.tables.joint_error_course import (
+from app.features.results.analysis.tables.clocks import run_clocks
+from app.features.results.analysis.tables.context import KINDS, of_kind
+from app.features.results.analysis.tables.equipment import (
+    calibrations_table,
+    clock_mapping_table,
+    clock_probes_table,
+)
+from app.features.results.analysis.tables.joint_errors import (
+    joint_angles_table,
     joint_error_course_table,
+    joint_errors_table,
     present_course_table,
 )
-from app.features.results.analysis.tables.joint_errors import joint_angles_table, joint_errors_table
-from app.features.results.analysis.tables.phases import phases_table
-from app.features.results.analysis.tables.quality import alarms_table, quality_table
-from app.features.results.analysis.tables.questionnaires import answers_table, scores_table
-from app.features.results.analysis.tables.sessions import sessions_table
+from app.features.results.analysis.tables.phases import alarms_table, phases_table, quality_table
+from app.features.results.analysis.tables.questionnaires import (
+    answers_table,
+    corrections_table,
+    scores_table,
+)
+from app.features.results.analysis.tables.sessions import events_table, sessions_table
 from app.features.results.analysis.tables.tasks import (
     completions_table,
     contact_spans_table,
@@ -44,9 +50,11 @@ __all__ = [
     "joint_angles_table",
     "joint_error_course_table",
     "joint_errors_table",
+    "of_kind",
     "phases_table",
     "present_course_table",
     "quality_table",
+    "run_clocks",
     "scores_table",
     "sessions_table",
 ]

@@ -1,96 +1,167 @@
-"""The tables of clock readings and of what was made of them."""
+"""The clocks of a session's client runs, brought to UTC from the probes in the record.
+
+A run's clock is mapped on the server's monotonic clock (`app.science.clock`). UTC is fixed to that
+clock once per session, by the first probes: where the server's wall clock is set in mid-session, no
+duration changes and only `server_utc_step_ms` tells of it. It is fixed anew only where the server's
+machine was started again between two runs, so that its monotonic clock began again.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import study_by_key
-from app.features.results.analysis.clocks import NS_PER_S, RunClock, run_clocks
-from app.features.results.analysis.schemas import Kind
-from app.features.results.analysis.tables.context import finished, of_kind, read, sessions_context
 from app.models import ClockProbe, StudySession
+from app.science.clock import ClockMapping, ClockProbes, fit_clock
 
-MS_PER_S = 1000.0
-PPM = 1e6
+NS_PER_S = 1_000_000_000
+_EPOCH_UTC = datetime(1970, 1, 1, tzinfo=UTC)
 
 
-def clock_probes_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per probe, by session, run and the client's time."""
+class Reading(NamedTuple):
+    """A probe as it is stored; times without an answer are None."""
+
+    epoch: int
+    client_sent_s: float
+    server_received_ns: int | None
+    server_sent_ns: int | None
+    client_received_s: float | None
+    server_utc: datetime
+
+
+@dataclass(frozen=True)
+class RunClock:
+    """The clock of one client run.
+
+    Attributes:
+        mapping: from the client's time divided by `time_scale` to the server's monotonic time less
+            `base_s`, both in s.
+        anchor_s: UTC at the server's time `base_s`, in s since 1970 and since `base_utc`.
+    """
+
+    epoch: int
+    mapping: ClockMapping
+    base_s: float
+    base_utc: datetime
+    anchor_s: float
+    time_scale: float
+
+    def to_utc(
+        self, client_s: npt.NDArray[np.float64]
+    ) -> tuple[npt.NDArray[np.datetime64], npt.NDArray[np.float64]]:
+        """UTC, to the microsecond, and its uncertainty in ms of client times (k,).
+
+        The uncertainty is that of the two monotonic clocks; UTC itself is what the server's wall
+        clock said. NaT and NaN where there is no probe.
+        """
+        server_s, uncertainty_s = self.mapping.to_server(client_s / self.time_scale)
+        known = np.isfinite(uncertainty_s)
+        utc = np.full(len(client_s), np.datetime64("NaT"), dtype="datetime64[us]")
+        zero = (self.base_utc - _EPOCH_UTC) // timedelta(microseconds=1)
+        since = np.round((server_s[known] + self.anchor_s) * 1e6).astype(np.int64)
+        utc[known] = (zero + since).astype("datetime64[us]")
+        return utc, np.where(known, 1000.0 * uncertainty_s, np.nan)
+
+
+def run_clocks(db: Session, session_id: str) -> dict[int, RunClock]:
+    """The clocks of a session's client runs, by epoch; runs without a probe are not there."""
     query = (
         select(
-            ClockProbe.session_id,
             ClockProbe.epoch,
             ClockProbe.client_sent_s,
             ClockProbe.server_received_ns,
             ClockProbe.server_sent_ns,
             ClockProbe.client_received_s,
             ClockProbe.server_utc,
-            StudySession.time_scale,
         )
-        .join(StudySession, StudySession.id == ClockProbe.session_id)
-        .where(of_kind(study_by_key(db, study_key), kind))
+        .where(ClockProbe.session_id == session_id)
         .order_by(ClockProbe.epoch, ClockProbe.client_sent_s, ClockProbe.id)
     )
-    server = ("server_received_ns", "server_sent_ns")
-    names = ("session_id", "epoch", "client_sent_s", *server, "client_received_s", "server_utc")
-    probes = read(db, query, (*names, "time_scale"))
-    sent_s, back_s = _number(probes["client_sent_s"]), _number(probes["client_received_s"])
-    received_ns, answered_ns = _number(probes[server[0]]), _number(probes[server[1]])
-    probes["server_received_s"] = received_ns / NS_PER_S
-    probes["server_sent_s"] = answered_ns / NS_PER_S
-    waited_s = (back_s - sent_s) / _number(probes["time_scale"])
-    probes["round_trip_ms"] = MS_PER_S * (waited_s - (answered_ns - received_ns) / NS_PER_S)
-    probes["offset_s"] = 0.5 * ((received_ns + answered_ns) / NS_PER_S - sent_s - back_s)
-    probes["timed_out"] = probes["client_received_s"].isna()
-    sessions = sessions_context(db, study_key, kind)
-    return finished(sessions.merge(probes, on="session_id"), "clock_probes")
+    readings = [Reading(*row) for row in db.execute(query)]
+    answered = [reading for reading in readings if reading.server_received_ns is not None]
+    if not answered:
+        return {}
+    scale = db.scalars(select(StudySession.time_scale).where(StudySession.id == session_id)).one()
+    return {clock.epoch: clock for clock in _fitted(answered, scale)}
 
 
-def clock_mapping_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per segment of a mapping, by session, run and the order of the segments."""
-    sessions = sessions_context(db, study_key, kind)
-    rows = [
-        {"session_id": session_id, **row}
-        for session_id in sessions["session_id"]
-        for clock in run_clocks(db, session_id).values()
-        for row in _segments(clock)
-    ]
-    names = ("session_id", "epoch", "segment", "from_s", "to_s", "from_utc", "to_utc", "offset_s")
-    fitted = ("drift_ppm", "min_round_trip_ms", "uncertainty_ms", "probes", "left_out")
-    steps = ("step_ms", "stepped", "server_utc_step_ms")
-    mapping = pd.DataFrame(rows, columns=[*names, *fitted, *steps], dtype=object)
-    return finished(sessions.merge(mapping, on="session_id"), "clock_mapping")
+def add_utc(db: Session, frame: pd.DataFrame, seconds: str, name: str) -> None:
+    """Add to a table with `session_id` and `epoch` the UTC of its client times `seconds`.
+
+    `name` is the new column; `clock_uncertainty_ms` comes beside it.
+    """
+    frame[name] = pd.Series(pd.NaT, index=frame.index, dtype="datetime64[us]")
+    frame["clock_uncertainty_ms"] = np.nan
+    for session_id, of_session in frame.groupby("session_id"):
+        clocks = run_clocks(db, str(session_id))
+        for epoch, rows in of_session.groupby("epoch"):
+            clock = clocks.get(int(str(epoch)))
+            if clock is not None:
+                utc, uncertainty_ms = clock.to_utc(rows[seconds].to_numpy(dtype=np.float64))
+                frame.loc[rows.index, name] = utc
+                frame.loc[rows.index, "clock_uncertainty_ms"] = uncertainty_ms
 
 
-def _segments(clock: RunClock) -> list[dict[str, object]]:
-    """The segments in the client's own seconds and the server's full time."""
-    rows: list[dict[str, object]] = []
-    for number, segment in enumerate(clock.mapping.segments, start=1):
-        from_s = segment.client_from_s * clock.time_scale
-        to_s = segment.client_to_s * clock.time_scale
-        utc, _ = clock.to_utc(np.array([from_s, to_s]))
-        rows.append(
-            {
-                "epoch": clock.epoch,
-                "segment": number,
-                "from_s": from_s,
-                "to_s": to_s,
-                "from_utc": utc[0],
-                "to_utc": utc[1],
-                "offset_s": clock.base_s + segment.client_from_s + segment.offset_s - from_s,
-                "drift_ppm": PPM * segment.drift,
-                "min_round_trip_ms": MS_PER_S * segment.min_round_trip_s,
-                "uncertainty_ms": MS_PER_S * segment.uncertainty_s,
-                "probes": segment.probes,
-                "left_out": segment.left_out,
-                "step_ms": MS_PER_S * segment.step_s,
-                "stepped": segment.stepped or None,
-                "server_utc_step_ms": MS_PER_S * (segment.wall_s - clock.anchor_s),
-            }
-        )
-    return rows
+def _fitted(answered: Sequence[Reading], scale: float) -> Iterator[RunClock]:
+    base_ns, base_utc = answered[0].server_received_ns or 0, answered[0].server_utc
+    before: RunClock | None = None
+    last: Reading | None = None
+    for epoch, group in groupby(answered, key=lambda reading: reading.epoch):
+        own = _in_order(list(group))
+        mapping = fit_clock(_probes(own, base_ns, base_utc, scale))
+        if not mapping.segments:
+            continue
+        if before is None or last is None or _started_again(last, own[0]):
+            anchor_s = mapping.wall_s
+        else:
+            # What undid jumps of the server's clock in that run is part of the readings of this.
+            anchor_s = before.anchor_s + before.mapping.segments[-1].server_shift_s
+        before = RunClock(epoch, mapping, base_ns / NS_PER_S, base_utc, anchor_s, scale)
+        last = own[-1]
+        yield before
 
 
-def _number(values: "pd.Series[float]") -> "pd.Series[float]":
-    return values.astype("float64")
+def _in_order(readings: list[Reading]) -> list[Reading]:
+    """As they were made. They come by the client's time, which a clock that was set back spoils;
+    the order of storing then tells, which a wall clock that was set back could spoil."""
+    server = [reading.server_received_ns or 0 for reading in readings]
+    if server == sorted(server):
+        return readings
+    return sorted(readings, key=lambda reading: (reading.server_utc, reading.client_sent_s))
+
+
+def _started_again(last: Reading, first: Reading) -> bool:
+    """Whether the server's machine was started between two readings.
+
+    Its monotonic clock is behind, or so little ahead that it began after the earlier reading.
+    """
+    then_ns, now_ns = last.server_received_ns or 0, first.server_received_ns or 0
+    began = first.server_utc - timedelta(microseconds=now_ns / 1000)
+    return now_ns < then_ns or began > last.server_utc
+
+
+def _probes(
+    readings: Sequence[Reading], base_ns: int, base_utc: datetime, scale: float
+) -> ClockProbes:
+    """Readings less their common base, in s; the client's in real seconds."""
+
+    def server(ns: int | None) -> float:
+        return np.nan if ns is None else (ns - base_ns) / NS_PER_S
+
+    def client(seconds: float | None) -> float:
+        return np.nan if seconds is None else seconds / scale
+
+    return ClockProbes(
+        np.array([client(reading.client_sent_s) for reading in readings]),
+        np.array([server(reading.server_received_ns) for reading in readings]),
+        np.array([server(reading.server_sent_ns) for reading in readings]),
+        np.array([client(reading.client_received_s) for reading in readings]),
+        np.array([(reading.server_utc - base_utc).total_seconds() for reading in readings]),
+    )

@@ -11,7 +11,7 @@ import pandas as pd
 from sqlalchemy import ColumnElement, Select, and_, select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import study_by_key
+from app.features.design.studies import study_by_key
 from app.features.record.sessions import plan_of, state_of
 from app.features.results.analysis.codebook import ColumnType, columns_of
 from app.features.results.analysis.schemas import Kind

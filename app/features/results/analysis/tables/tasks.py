@@ -1,17 +1,37 @@
-"""The tables of contacts and completed tasks."""
+"""The tables of contacts and completed tasks, and when the sides of boxes were red."""
+
+from collections.abc import Iterable
 
 import numpy as np
 import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import study_by_key
-from app.features.results.analysis.clocks import add_utc
+from app.features.design.studies import study_by_key
 from app.features.results.analysis.schemas import Kind
+from app.features.results.analysis.tables.clocks import add_utc
 from app.features.results.analysis.tables.context import finished, of_kind, phases_context, read
 from app.models import Completion, Contact, StudySession
+from app.science.tasks import Span, side_unit, union
 
 _KEYS = ["session_id", "phase_id"]
+
+
+def red_spans(contacts: Iterable[tuple[str, float, float]]) -> dict[str, tuple[Span, ...]]:
+    """Spans in which each side was red, such as "hand/2/left": the union over body parts.
+
+    `contacts` are (surface, begin_active_s, end_active_s) of one phase; the bars of a rim are one
+    side.
+    """
+    by_side: dict[str, list[Span]] = {}
+    for surface, begin_s, end_s in contacts:
+        by_side.setdefault(side_unit(surface) or surface, []).append((begin_s, end_s))
+    return {side: union(spans) for side, spans in by_side.items()}
+
+
+def total_s(spans: Iterable[Span]) -> float:
+    """Length of disjoint spans together, in s."""
+    return sum((end - begin for begin, end in spans), 0.0)
 
 
 def contact_spans_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:

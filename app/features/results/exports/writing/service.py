@@ -10,23 +10,12 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.database import Database
-from app.features.design.studies.service import study_by_key
+from app.features.design.studies import study_by_key
 from app.features.results.analysis.tables import Kind
-from app.features.results.exports.archive import zip_pieces
-from app.features.results.exports.contents import Contents, Member
-from app.features.results.exports.folder import Progress, silent, write_folder
-from app.features.results.exports.names import safe_name
+from app.features.results.exports.writing.archive import zip_pieces
+from app.features.results.exports.writing.contents import Contents, Member
+from app.features.results.exports.writing.folder import Progress, silent, write_folder
 from app.models import StudySession
-
-__all__ = [
-    "Exported",
-    "Member",
-    "export_study",
-    "person_archive",
-    "safe_name",
-    "study_archive",
-    "usual_kind",
-]
 
 
 @dataclass(frozen=True)

@@ -1,19 +1,34 @@
-"""Taking an upload: onto the disk as it comes, never whole into memory, hashed on the way."""
+"""Files on their way: an upload is hashed as it comes, onto the disk; a download leaves in pieces.
+
+Neither is ever whole in memory.
+"""
 
 import hashlib
 import tempfile
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Generator
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Annotated, Any, BinaryIO
+from urllib.parse import quote
 
 from anyio.to_thread import run_sync
+from pydantic import StringConstraints
+from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
 from starlette.requests import ClientDisconnect
 
 from app.errors import InvalidInput, NotDurable
+from app.features.movement.files.contents import plain_pieces
+from app.platform.context import AppContext
 
 BLOCK_BYTES = 1024 * 1024
+FileName = Annotated[
+    str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00-\x1f\x7f/\\]+$")
+]
+BYTES = "application/octet-stream"
+BINARY: dict[str, Any] = {"schema": {"type": "string", "format": "binary"}}
+BODY: dict[str, Any] = {"requestBody": {"required": True, "content": {BYTES: BINARY}}}
+"""How the interface's document describes a request whose body is a file."""
 
 
 @dataclass(frozen=True)
@@ -98,3 +113,29 @@ def _measured(path: Path) -> Uploaded:
     with path.open("rb") as file:
         digest: Any = hashlib.file_digest(file, "sha256")
     return Uploaded(path, digest.hexdigest(), path.stat().st_size)
+
+
+def binary(description: str) -> dict[str, Any]:
+    """How the interface's document describes an answer of bytes."""
+    return {"content": {BYTES: BINARY}, "description": description}
+
+
+def attachment(name: str) -> dict[str, str]:
+    """The header that makes a browser keep an answer as a file of this name."""
+    return {"content-disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
+
+
+async def sent(context: AppContext, content_hash: str) -> AsyncIterator[bytes]:
+    """The content, piece by piece as the reader takes it."""
+    pieces = _pieces(context, content_hash)
+    try:
+        async for piece in iterate_in_threadpool(pieces):
+            yield piece
+    finally:
+        # Also when the reader has gone away: the look at the database must end.
+        await run_in_threadpool(pieces.close)
+
+
+def _pieces(context: AppContext, content_hash: str) -> Generator[bytes, None, None]:
+    with context.database.reading() as db:
+        yield from plain_pieces(db, content_hash)

@@ -14,7 +14,7 @@ import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies.service import study_by_key
+from app.features.design.studies import study_by_key
 from app.features.record.receipts import receipt_of
 from app.features.results.analysis.codebook import codebook_frame
 from app.features.results.analysis.tables import (
@@ -35,11 +35,11 @@ from app.features.results.analysis.tables import (
     scores_table,
     sessions_table,
 )
-from app.features.results.exports.cells import csv_pieces
 from app.features.results.exports.names import receipt_path, samples_path
-from app.features.results.exports.readme import FileCount, Origin, readme_text
-from app.features.results.exports.samples import SampleFile
-from app.features.results.imports.service import import_files
+from app.features.results.exports.writing.cells import csv_pieces
+from app.features.results.exports.writing.readme import FileCount, Origin, readme_text
+from app.features.results.exports.writing.samples import SampleFile
+from app.features.results.imports import import_files
 from app.models import StudyVersion
 
 TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {

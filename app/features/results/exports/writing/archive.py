@@ -5,7 +5,7 @@ import zipfile
 from collections.abc import Iterable, Iterator
 from datetime import datetime
 
-from app.features.results.exports.contents import Member
+from app.features.results.exports.writing.contents import Member
 
 LEVEL = 1
 """Digits hardly compress better with more effort, and the reader waits."""

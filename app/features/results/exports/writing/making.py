@@ -17,12 +17,11 @@ from sqlalchemy.orm import Session
 
 from app.database import Database, make_engine
 from app.errors import ReembodyError
-from app.features.design.studies.service import study_by_key
-from app.features.results.analysis.tables.context import of_kind
-from app.features.results.exports.archive import zip_pieces
-from app.features.results.exports.contents import Contents, Member
-from app.features.results.exports.meter import Meter, Progress
-from app.features.results.exports.orders import Made, NotMade, Order
+from app.features.design.studies import study_by_key
+from app.features.results.analysis.tables import of_kind
+from app.features.results.exports.orders import Made, Meter, NotMade, Order, Progress
+from app.features.results.exports.writing.archive import zip_pieces
+from app.features.results.exports.writing.contents import Contents, Member
 from app.models import StudySession, TelemetryStream
 from app.wire import StreamName
 

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from app.errors import Conflict
-from app.features.results.exports.contents import FOLDERS, README, TOP_LEVEL, Member
-from app.features.results.exports.readme import MARK
+from app.features.results.exports.writing.contents import FOLDERS, README, TOP_LEVEL, Member
+from app.features.results.exports.writing.readme import MARK
 
 Progress = Callable[[str], None]
 
