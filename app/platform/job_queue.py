@@ -21,6 +21,8 @@ from app.platform.context import Part
 from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
+WITHIN_S = 120.0
+"""The longest that anything may take, unless a line says otherwise."""
 WAITING = 20
 """How many may wait for their turn before the next is told to come again."""
 P = ParamSpec("P")
@@ -56,8 +58,8 @@ class WorkingLine(Part, ABC):
     fill_the_process: ClassVar[tuple[type[Exception], ...]] = ()
     """Errors after which the process may not have its memory back: it is ended."""
 
-    within_s: float
-    _worker: Worker
+    within_s: float = WITHIN_S
+    _worker: Worker = field(default_factory=Worker)
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _waiting: int = 0
     _kept: "OrderedDict[Hashable, Any]" = field(default_factory=OrderedDict)

@@ -36,7 +36,7 @@ class Quarantine:
             "What to do: see docs/backups.md. Nothing here was changed, and nothing needs it.\n",
             encoding="utf-8",
         )
-        _onto_disk(place, self.folder)
+        flush_to_disk(place, self.folder)
         self._move(place)
         return place
 
@@ -60,14 +60,15 @@ class Quarantine:
             # A part that is there already was moved before the interruption.
             if part.exists() and not (place / part.name).exists():
                 part.rename(place / part.name)
-        _onto_disk(place, self.file.absolute().parent)
+        flush_to_disk(place, self.file.absolute().parent)
         (place / MOVING).rename(place / UNRESOLVED)
-        _onto_disk(place)
+        flush_to_disk(place)
 
 
-def _onto_disk(*folders: Path) -> None:
-    for folder in folders:
-        handle = os.open(folder, os.O_RDONLY)
+def flush_to_disk(*paths: Path) -> None:
+    """Wait until these files and folders are as safe as the disk makes them."""
+    for path in paths:
+        handle = os.open(path, os.O_RDONLY)
         try:
             os.fsync(handle)
         finally:

@@ -1,6 +1,5 @@
 """What happens to the database at every start, before anything works with it."""
 
-import os
 import tempfile
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from app.database import Database, open_database
 from app.errors import Conflict, NotFound
 from app.features.care.backups import ENDING, back_up, stamped
 from app.features.care.opening.inspection import damage_of, foreign_tables, is_open_elsewhere
-from app.features.care.opening.quarantine import Quarantine
+from app.features.care.opening.quarantine import Quarantine, flush_to_disk
 from app.platform.folders import backups_of, database_file
 from app.schema_revisions import known_revisions, migrate, newest_revision, revision_of
 from app.settings import Settings
@@ -167,11 +166,6 @@ def begin(file: Path) -> None:
         fresh = Path(beside) / file.name
         # Its last connection copies the log into the file and removes it.
         migrate(f"sqlite:///{fresh}")
-        for path in (fresh, folder):
-            handle = os.open(path, os.O_RDONLY)
-            try:
-                os.fsync(handle)
-            finally:
-                os.close(handle)
+        flush_to_disk(fresh, folder)
         if not file.exists():
             fresh.rename(file)

@@ -1,11 +1,8 @@
 """Participants' rights over HTTP: who took part, their copy, corrections, erasure, copies made."""
 
-from collections.abc import AsyncIterator, Generator
-from typing import Any
-
 from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
-from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
+from starlette.concurrency import run_in_threadpool
 
 from app.features.care.rights.copies import copies_of_study, mark_destroyed
 from app.features.care.rights.corrections import correct
@@ -20,6 +17,7 @@ from app.features.care.rights.schemas import (
 )
 from app.features.care.rights.service import keep_tombstones
 from app.features.design.studies import study_by_key
+from app.features.movement.files import streamed
 from app.features.people.audit import in_browser_of, record, record_copy
 from app.features.record.erasure import expect_erasure, overwrite
 from app.features.record.questionnaires import StoredAnswers, stored_answers
@@ -118,18 +116,10 @@ def get_access(
     pieces = access_archive(context.database, study.key, participant.id, now=now)
     name = access_name(participant.code)
     return StreamingResponse(
-        _sent(pieces),
+        streamed(pieces),
         media_type="application/zip",
         headers={"content-disposition": f'attachment; filename="{name}"'},
     )
-
-
-async def _sent(pieces: Generator[bytes, Any, None]) -> AsyncIterator[bytes]:
-    try:
-        async for piece in iterate_in_threadpool(pieces):
-            yield piece
-    finally:
-        await run_in_threadpool(pieces.close)
 
 
 @router.post("/sessions/{session_id}/submissions/{submission_id}/corrections", status_code=201)

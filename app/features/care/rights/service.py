@@ -8,11 +8,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import NotDurable
-from app.features.care.rights.erasing import (
-    erase_now,
-    erasure_of,
-    locked_sessions,
-)
+from app.features.care.rights.erasing import erase_now, erasure_of, locked_sessions
 from app.features.care.rights.tombstones import Tombstone, moment, tombstone_file, tombstones_of
 from app.features.people.audit import record
 from app.features.record.erasure import expect_erasure, overwrite_what_is_left

@@ -8,8 +8,8 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app.features.design.instruments import newest_instruments
-from app.features.design.studies.draft_schemas import DifferenceView, InstrumentChange, StudyDiff
 from app.features.design.studies.lifecycle import UNDER_WAY
+from app.features.design.studies.schemas import DifferenceView, InstrumentChange, StudyDiff
 from app.features.design.studies.service import check_study, newest_version, version_by_number
 from app.models import Study, StudySession, StudyVersion
 from app.protocol import differences, path_text

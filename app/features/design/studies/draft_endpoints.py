@@ -5,18 +5,18 @@ from typing import Any
 from fastapi import APIRouter
 
 from app.features.design.studies.comparing import compare_draft
-from app.features.design.studies.draft_schemas import (
+from app.features.design.studies.drafts import check, dry_run, edit, templates
+from app.features.design.studies.schemas import (
     CheckResult,
     DraftFile,
     EditedFile,
     EditRequest,
     StudyDiff,
+    StudyFile,
     TemplateView,
     TimelineRequest,
     TimelineView,
 )
-from app.features.design.studies.drafts import check, dry_run, edit, templates
-from app.features.design.studies.schemas import StudyFile
 from app.features.design.studies.service import study_by_key
 from app.platform.dependencies import Reading, SignedIn
 from app.protocol import study_schema

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.design.instruments import parsed_instruments
-from app.features.design.studies.draft_schemas import (
+from app.features.design.studies.schemas import (
     ChangeRequest,
     CheckResult,
     EstimateRule,

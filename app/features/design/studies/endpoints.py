@@ -11,9 +11,16 @@ from sqlalchemy.orm import Session
 
 from app.features.design.studies.comparing import compare_versions
 from app.features.design.studies.draft_endpoints import router as drafts
-from app.features.design.studies.draft_schemas import DuplicateRequest, StudyDiff, VersionDetail
 from app.features.design.studies.lifecycle import archive, duplicate, restore
-from app.features.design.studies.schemas import StudyFile, StudySummary, StudyView, VersionView
+from app.features.design.studies.schemas import (
+    DuplicateRequest,
+    StudyDiff,
+    StudyFile,
+    StudySummary,
+    StudyView,
+    VersionDetail,
+    VersionView,
+)
 from app.features.design.studies.service import (
     add_version,
     create_study,

@@ -23,13 +23,13 @@ from app.features.movement.captures.schemas import (
     ExportFormat,
     JointMapView,
     JointMapWish,
+    VerificationView,
 )
 from app.features.movement.captures.tasks import (
     retargeted_positions,
     verification_json,
     write_retargeted,
 )
-from app.features.movement.captures.verification_schemas import VerificationView
 from app.features.movement.captures.workbench import Workbench
 from app.features.movement.files import BINARY, BYTES, attachment, binary
 from app.platform.context import AppContext

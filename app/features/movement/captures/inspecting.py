@@ -15,7 +15,7 @@ from app.features.movement.captures.schemas import (
     SkeletonView,
 )
 from app.features.movement.captures.source import Source
-from app.features.movement.files import compress
+from app.features.movement.files import compress, compressed_beside
 from app.science.rig import BodyMotion, MarkerMotion, RigMotion
 
 KIND: dict[type, Literal["skeleton", "markers", "bodies"]] = {
@@ -50,11 +50,6 @@ def inspect_upload(max_bytes: int, source: Source, paths: tuple[Path, ...]) -> I
 def inspect_stored(store: Store, source: Source) -> Inspected:
     """Read a stored capture by other conventions; raises Cannot."""
     return _inspected(open_stored(store, source))
-
-
-def compressed_beside(path: Path) -> Path:
-    """Where the compressed form of an uploaded file is put."""
-    return path.with_name(f"{path.name}.zst")
 
 
 def _inspected(opened: Opened) -> Inspected:

@@ -12,7 +12,6 @@ from sqlalchemy.orm import Session
 from app.errors import InvalidInput, NotFound
 from app.features.movement.captures.inspecting import (
     Inspected,
-    compressed_beside,
     inspect_stored,
     inspect_upload,
 )
@@ -20,7 +19,7 @@ from app.features.movement.captures.opening import Store
 from app.features.movement.captures.schemas import CaptureChange, ReadingChoice
 from app.features.movement.captures.source import Source, source_of
 from app.features.movement.captures.workbench import Workbench
-from app.features.movement.files import Uploaded, drop_unused, store, uploaded
+from app.features.movement.files import Uploaded, compressed_beside, drop_unused, store, uploaded
 from app.features.people.audit import record
 from app.models import CaptureRow, new_id
 from app.platform.access import Caller

@@ -11,16 +11,17 @@ import numpy as np
 from app.adapters.captures import to_bvh, to_csv
 from app.features.movement.captures.opening import Mapped, Store, on_avatar, open_stored
 from app.features.movement.captures.preview import encode, points_of, skeleton_points, step_for
-from app.features.movement.captures.schemas import ExportFormat, Shown
-from app.features.movement.captures.source import Cannot, Source
-from app.features.movement.captures.verification_schemas import (
+from app.features.movement.captures.schemas import (
     AvatarWalkerView,
+    ExportFormat,
     LegAnglesView,
+    Shown,
     ToePathView,
     VerificationView,
     WalkerView,
     WalkStepView,
 )
+from app.features.movement.captures.source import Cannot, Source
 from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
     AvatarFigures,

@@ -3,7 +3,14 @@
 No file is ever whole in memory; one that nothing uses any more is dropped.
 """
 
-from app.features.movement.files.contents import compress, drop_unused, plain_pieces, size_of, store
+from app.features.movement.files.contents import (
+    compress,
+    compressed_beside,
+    drop_unused,
+    plain_pieces,
+    size_of,
+    store,
+)
 from app.features.movement.files.transfer import (
     BINARY,
     BODY,
@@ -13,6 +20,7 @@ from app.features.movement.files.transfer import (
     attachment,
     binary,
     sent,
+    streamed,
     uploaded,
 )
 
@@ -25,10 +33,12 @@ __all__ = [
     "attachment",
     "binary",
     "compress",
+    "compressed_beside",
     "drop_unused",
     "plain_pieces",
     "sent",
     "size_of",
     "store",
+    "streamed",
     "uploaded",
 ]

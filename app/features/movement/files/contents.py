@@ -28,6 +28,11 @@ def compress(file: Path, to: Path) -> None:
         zstandard.ZstdCompressor(level=LEVEL).copy_stream(plain, compressed)
 
 
+def compressed_beside(path: Path) -> Path:
+    """Where the compressed form of an uploaded file is put."""
+    return path.with_name(f"{path.name}.zst")
+
+
 def store(db: Session, content_hash: str, size: int, compressed: Path) -> None:
     """Keep a content, unless it is here already."""
     insert = (postgresql if db.get_bind().dialect.name == "postgresql" else sqlite).insert

@@ -125,9 +125,13 @@ def attachment(name: str) -> dict[str, str]:
     return {"content-disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
 
 
-async def sent(context: AppContext, content_hash: str) -> AsyncIterator[bytes]:
+def sent(context: AppContext, content_hash: str) -> AsyncIterator[bytes]:
     """The content, piece by piece as the reader takes it."""
-    pieces = _pieces(context, content_hash)
+    return streamed(_pieces(context, content_hash))
+
+
+async def streamed(pieces: Generator[bytes, None, None]) -> AsyncIterator[bytes]:
+    """The pieces as the reader takes them, each made in a thread."""
     try:
         async for piece in iterate_in_threadpool(pieces):
             yield piece

@@ -9,9 +9,9 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
 from app.features.movement.captures import Workbench
-from app.features.movement.files import Uploaded, store, uploaded
+from app.features.movement.files import Uploaded, compressed_beside, store, uploaded
 from app.features.movement.humanoids.service import is_known
-from app.features.movement.humanoids.tasks import Measured, Refused, compressed_beside, measure
+from app.features.movement.humanoids.tasks import Measured, Refused, measure
 from app.features.people.audit import record
 from app.models import HumanoidRow
 from app.platform.access import Caller

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
-from app.features.movement.files import compress
+from app.features.movement.files import compress, compressed_beside
 from app.protocol.humanoid import figure_json
 from app.science.avatar.body import Figure, HumanoidError, figure_of
 
@@ -54,8 +54,3 @@ def measure(max_bytes: int, path: Path) -> Measured | Refused:
         return Refused(str(error), "")
     compress(path, compressed_beside(path))
     return measured(figure, read.bones_by)
-
-
-def compressed_beside(path: Path) -> Path:
-    """Where the compressed form of an uploaded file is put."""
-    return path.with_name(f"{path.name}.zst")

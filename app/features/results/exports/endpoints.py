@@ -1,22 +1,23 @@
 """Exports over HTTP: sent while they are made, or ordered as files, watched and fetched."""
 
-from collections.abc import AsyncIterator, Generator
-from typing import Any
+from collections.abc import Mapping
+from datetime import datetime
 
 from fastapi import APIRouter
 from fastapi.responses import FileResponse, StreamingResponse
 from sqlalchemy.orm import Session
-from starlette.concurrency import iterate_in_threadpool, run_in_threadpool
+from starlette.concurrency import run_in_threadpool
 
 from app.errors import NotFound, NotNow
 from app.features.design.studies import study_by_key
+from app.features.movement.files import streamed
 from app.features.people.audit import in_browser_of, record, record_copy, sessions_in
 from app.features.results.analysis import Kind
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.exports.jobs import Job
 from app.features.results.exports.names import archive_name
 from app.features.results.exports.schemas import ExportView, ExportWish
-from app.models import Participant
+from app.models import Participant, Study
 from app.platform.access import Caller, require_object, session_by_id
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
@@ -39,41 +40,16 @@ def get_export(
 
     study = study_by_key(db, key)
     now = context.clock.utc_now()
-    # Before it is sent: one that breaks off has left the database, too.
-    record_copy(
-        db,
-        kind="export",
-        study_id=study.id,
-        session_kind=kind,
-        place=in_browser_of(caller.actor),
-        by=caller.actor,
-        now=now,
-        sessions=sessions_in(db, study, kind),
-    )
-    record(
-        db,
-        actor=caller.actor,
-        action="study.exported",
-        subject=f"study:{study.key}",
-        details={"kind": kind},
-        now=now,
+    _put_on_record(
+        db, caller.actor, study, kind, now, {"kind": kind}, sessions=sessions_in(db, study, kind)
     )
     pieces = study_archive(context.database, study.key, kind, now=now)
     name = archive_name(study.key, kind, now.date())
     return StreamingResponse(
-        _sent(pieces),
+        streamed(pieces),
         media_type="application/zip",
         headers={"content-disposition": f'attachment; filename="{name}"'},
     )
-
-
-async def _sent(pieces: Generator[bytes, Any, None]) -> AsyncIterator[bytes]:
-    try:
-        async for piece in iterate_in_threadpool(pieces):
-            yield piece
-    finally:
-        # Also when the reader has gone away: the look at the database must end.
-        await run_in_threadpool(pieces.close)
 
 
 @router.post("/studies/{key}/exports", status_code=202)
@@ -124,7 +100,7 @@ async def get_export_file(export_id: str, context: Context, caller: SignedIn) ->
     job = await run_in_threadpool(_ready, context, caller, export_id)
     if not job.recorded:
         async with context.database.writing_async() as db:
-            await run_in_threadpool(_put_on_record, db, context, caller, job)
+            await run_in_threadpool(_put_job_on_record, db, context, caller, job)
     job.recorded, job.fetched_at = True, context.clock.utc_now()
     return FileResponse(
         job.path,
@@ -159,25 +135,38 @@ def _ready(context: AppContext, caller: Caller, export_id: str) -> Job:
     return job
 
 
-def _put_on_record(db: Session, context: AppContext, caller: Caller, job: Job) -> None:
-    """The copy that leaves now, before its first byte: what breaks off has left, too."""
+def _put_job_on_record(db: Session, context: AppContext, caller: Caller, job: Job) -> None:
     study, now = study_by_key(db, job.study_key), context.clock.utc_now()
+    details = {"kind": job.kind, "session": job.session_id}
+    _put_on_record(
+        *(db, caller.actor, study, job.kind, now, details),
+        sessions=job.sessions,
+        size_bytes=job.size_bytes,
+    )
+
+
+def _put_on_record(
+    db: Session,
+    actor: str,
+    study: Study,
+    kind: Kind,
+    now: datetime,
+    details: Mapping[str, str | None],
+    *,
+    sessions: int,
+    size_bytes: int | None = None,
+) -> None:
+    """The copy that leaves now, before its first byte: what breaks off has left, too."""
     record_copy(
         db,
         kind="export",
         study_id=study.id,
-        session_kind=job.kind,
-        place=in_browser_of(caller.actor),
-        by=caller.actor,
+        session_kind=kind,
+        place=in_browser_of(actor),
+        by=actor,
         now=now,
-        sessions=job.sessions,
-        size_bytes=job.size_bytes,
+        sessions=sessions,
+        size_bytes=size_bytes,
     )
-    record(
-        db,
-        actor=caller.actor,
-        action="study.exported",
-        subject=f"study:{study.key}",
-        details={"kind": job.kind, "session": job.session_id},
-        now=now,
-    )
+    subject = f"study:{study.key}"
+    record(db, actor=actor, action="study.exported", subject=subject, details=details, now=now)
