@@ -14,7 +14,6 @@ from app.features.results.imports.applying import Applied, Form, apply_mapping
 from app.features.results.imports.schemas import ImportRequest, Mapping
 from app.features.results.imports.sheet import read_sheet
 from app.features.results.imports.stored import standing
-from app.features.results.imports.stored import told_of as told_of
 from app.models import AnswerImport, ImportedForm, Study, new_id
 from app.protocol import sha256_of
 from app.science.instruments import Instrument
