@@ -12,8 +12,8 @@ from app.client import Json, call_again
 from app.protocol.avatar import AvatarFile, configuration_of
 from app.science.avatar.configuration import Configuration
 from app.science.avatar.simulation import Follower, PhysicsAvatar, SurfaceTouches
-from app.science.delay import DelayBuffer
 from app.science.avatar.targets import TargetAngles
+from app.science.delay import DelayBuffer
 from app.science.skeleton import (
     Pose,
     Skeleton,

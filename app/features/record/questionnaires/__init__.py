@@ -1,5 +1,6 @@
 """Forms, answers and scores."""
 
+from app.features.record.questionnaires.due import current_administration
 from app.features.record.questionnaires.schemas import (
     Administration,
     AnswerValue,
@@ -9,14 +10,13 @@ from app.features.record.questionnaires.schemas import (
     StoredScores,
     SubmissionRequest,
 )
-from app.features.record.questionnaires.service import (
+from app.features.record.questionnaires.service import submit
+from app.features.record.questionnaires.stored import (
     answers_of,
     correct_answer,
-    current_administration,
     newest_corrections,
     stored_answers,
     stored_scores,
-    submit,
 )
 
 __all__ = [

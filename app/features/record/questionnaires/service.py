@@ -10,15 +10,9 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotNow
 from app.features.record.questionnaires.due import DueForm, due_form
-from app.features.record.questionnaires.due import current_administration as current_administration
 from app.features.record.questionnaires.refused import keep_refused, request_hash
 from app.features.record.questionnaires.schemas import AnswerValue, Receipt, SubmissionRequest
 from app.features.record.questionnaires.stop_rules import judge, tell
-from app.features.record.questionnaires.stored import answers_of as answers_of
-from app.features.record.questionnaires.stored import correct_answer as correct_answer
-from app.features.record.questionnaires.stored import newest_corrections as newest_corrections
-from app.features.record.questionnaires.stored import stored_answers as stored_answers
-from app.features.record.questionnaires.stored import stored_scores as stored_scores
 from app.features.record.sessions import SubmitForm, apply_command, canonical, require_capture_of
 from app.models import Answer, ScoreValue, StudySession, Submission, new_id
 from app.platform.context import AppContext
