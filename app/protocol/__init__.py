@@ -1,8 +1,8 @@
 """Study and instrument files: strict reading, frozen values, content hashes, plans and orders."""
 
-from app.protocol.common import Provenance, Text, canonical_json, sha256_of
-from app.protocol.conditions import Condition, Orders
-from app.protocol.difference import Difference, differences
+from app.protocol.common import Text, canonical_json, sha256_of
+from app.protocol.conditions import Condition
+from app.protocol.difference import differences
 from app.protocol.durations import (
     BY_HAND_S,
     ITEM_S,
@@ -28,11 +28,11 @@ from app.protocol.loading import (
 from app.protocol.orders import LedgerRow, ledger_block, sequences
 from app.protocol.plan import TIMED_KINDS, Step, StepKind, compile_plan
 from app.protocol.preregistration import ExclusionRule, Preregistration, PrimaryTest
-from app.protocol.procedure import Block, ConsentStep, Procedure, SetupStep, TaskPhase
-from app.protocol.safety import Safety, StopRule
+from app.protocol.procedure import ConsentStep
+from app.protocol.safety import StopRule
 from app.protocol.source import Path, Plain, Source, path_text, read_source
-from app.protocol.study import Blinding, LatencySettings, StudyProtocol
-from app.protocol.tasks import Appearance, Colours, Cues, FootTask, HandTask, Palette, Tasks
+from app.protocol.study import StudyProtocol
+from app.protocol.tasks import Tasks
 
 __all__ = [
     "BY_HAND_S",
@@ -40,40 +40,24 @@ __all__ = [
     "OPENING_S",
     "READING_WORDS_PER_S",
     "TIMED_KINDS",
-    "Appearance",
-    "Blinding",
-    "Block",
-    "Colours",
     "Condition",
     "ConfigError",
     "ConfigProblem",
     "ConsentStep",
-    "Cues",
-    "Difference",
     "ExclusionRule",
-    "FootTask",
-    "HandTask",
-    "LatencySettings",
     "LedgerRow",
     "LoadedInstrument",
     "LoadedStudy",
-    "Orders",
-    "Palette",
     "Path",
     "Plain",
     "PlanError",
     "Preregistration",
     "PrimaryTest",
-    "Procedure",
-    "Provenance",
-    "Safety",
-    "SetupStep",
     "Source",
     "Step",
     "StepKind",
     "StopRule",
     "StudyProtocol",
-    "TaskPhase",
     "Tasks",
     "Text",
     "TimedStep",

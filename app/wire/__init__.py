@@ -2,7 +2,6 @@
 
 from app.wire.batch import (
     ACTIVE,
-    BODY_JOINTS,
     HEADER_BYTES,
     VALUES_PER_FRAME,
     Batch,
@@ -10,7 +9,6 @@ from app.wire.batch import (
     MalformedBatchError,
     StreamName,
     decode_batch,
-    decode_header,
     encode_batch,
 )
 from app.wire.messages import (
@@ -47,7 +45,6 @@ from app.wire.quality import FrameFlags, flag_batches, flag_frames
 
 __all__ = [
     "ACTIVE",
-    "BODY_JOINTS",
     "CLIENT_MESSAGE",
     "HEADER_BYTES",
     "PROTOCOL_VERSION",
@@ -84,7 +81,6 @@ __all__ = [
     "StreamPosition",
     "Welcome",
     "decode_batch",
-    "decode_header",
     "encode_batch",
     "flag_batches",
     "flag_frames",

@@ -4,15 +4,8 @@ What reads a format is loaded when a file of that kind comes.
 """
 
 from app.adapters.captures.bvh_export import to_bvh
-from app.adapters.captures.capture import (
-    Capture,
-    CaptureError,
-    Convention,
-    Conventions,
-    Limits,
-    Reading,
-)
-from app.adapters.captures.reader import FORMATS, CaptureFormat, read_capture, read_capture_file
+from app.adapters.captures.capture import Capture, CaptureError, Limits, Reading
+from app.adapters.captures.reader import FORMATS, read_capture, read_capture_file
 from app.adapters.captures.table_export import to_csv
 from app.adapters.captures.text import text_lines
 
@@ -20,9 +13,6 @@ __all__ = [
     "FORMATS",
     "Capture",
     "CaptureError",
-    "CaptureFormat",
-    "Convention",
-    "Conventions",
     "Limits",
     "Reading",
     "read_capture",

@@ -15,18 +15,14 @@ the one on the other:
 The bound holds on asymmetric paths too, as long as the clocks keep to `ClockLimits`.
 """
 
-from app.science.clock.fit import DEFAULT_LIMITS, fit_clock
-from app.science.clock.mapping import ClockMapping, ClockSegment
-from app.science.clock.placing import Stepped
+from app.science.clock.fit import fit_clock
+from app.science.clock.mapping import ClockMapping
 from app.science.clock.probes import ClockError, ClockLimits, ClockProbes
 
 __all__ = [
-    "DEFAULT_LIMITS",
     "ClockError",
     "ClockLimits",
     "ClockMapping",
     "ClockProbes",
-    "ClockSegment",
-    "Stepped",
     "fit_clock",
 ]

@@ -4,7 +4,7 @@ An `Instrument` that exists is consistent. Tables of answers are read by `instru
 loads pandas.
 """
 
-from app.science.instruments.answers import AnswerProblem, fits, valid_answers, validate_answers
+from app.science.instruments.answers import fits, valid_answers, validate_answers
 from app.science.instruments.errors import (
     AnswerError,
     DefinitionProblem,
@@ -18,22 +18,11 @@ from app.science.instruments.explained import ExplainedScore, explain_scoring
 from app.science.instruments.formula import names_in
 from app.science.instruments.instrument import Instrument, item_order
 from app.science.instruments.item_checks import text_problems
-from app.science.instruments.items import (
-    Answer,
-    Choice,
-    Item,
-    ItemType,
-    Provenance,
-    Scale,
-    Score,
-    Text,
-)
+from app.science.instruments.items import Choice, Item, Provenance, Scale, Score, Text
 from app.science.instruments.scoring import score_answers, scores_of_columns
 
 __all__ = [
-    "Answer",
     "AnswerError",
-    "AnswerProblem",
     "Choice",
     "DefinitionProblem",
     "ExplainedScore",
@@ -43,7 +32,6 @@ __all__ = [
     "InstrumentError",
     "InstrumentTableError",
     "Item",
-    "ItemType",
     "Provenance",
     "Scale",
     "Score",

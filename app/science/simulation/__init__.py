@@ -9,7 +9,7 @@ from app.science.simulation.answers import (
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
 from app.science.simulation.idle import idle_movement, relaxed_pose
 from app.science.simulation.participant import SimulatedParticipant
-from app.science.simulation.traits import MovementTraits, drawn_traits
+from app.science.simulation.traits import MovementTraits
 
 __all__ = [
     "Aspect",
@@ -20,7 +20,6 @@ __all__ = [
     "SimulatedParticipant",
     "SimulationError",
     "agreement",
-    "drawn_traits",
     "idle_movement",
     "relaxed_pose",
     "simulated_answers",

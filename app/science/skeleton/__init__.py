@@ -1,13 +1,7 @@
 """The product's own body: joints, proportions, forward kinematics and movement."""
 
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES, PARENTS
-from app.science.skeleton.kinematics import (
-    BodySegments,
-    Pose,
-    WorldPose,
-    body_part_segments,
-    forward_kinematics,
-)
+from app.science.skeleton.kinematics import Pose, body_part_segments, forward_kinematics
 from app.science.skeleton.model import Skeleton, SkeletonError, build_skeleton
 from app.science.skeleton.movement import (
     Movement,
@@ -24,12 +18,10 @@ __all__ = [
     "JOINT_INDEX",
     "JOINT_NAMES",
     "PARENTS",
-    "BodySegments",
     "Movement",
     "Pose",
     "Skeleton",
     "SkeletonError",
-    "WorldPose",
     "body_part_segments",
     "build_skeleton",
     "continuous",

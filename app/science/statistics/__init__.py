@@ -34,14 +34,10 @@ from app.science.statistics.error_rates import (
     error_rates_from_json,
 )
 from app.science.statistics.errors import ConstantData, StatisticsError, TooFewData, UnusableTable
-from app.science.statistics.exploring import Explored, explore
+from app.science.statistics.exploring import explore
 from app.science.statistics.friedman import Friedman, friedman
 from app.science.statistics.levels import place_of
-from app.science.statistics.mean_intervals import (
-    MeanInterval,
-    mean_interval,
-    within_subject_intervals,
-)
+from app.science.statistics.mean_intervals import mean_interval, within_subject_intervals
 from app.science.statistics.page import PageTrend, page_trend
 from app.science.statistics.pairwise import Comparison, holm, pairwise
 from app.science.statistics.planned import (
@@ -52,12 +48,12 @@ from app.science.statistics.planned import (
     directional,
 )
 from app.science.statistics.power import Expected, rm_anova_power, subjects_needed
-from app.science.statistics.reliability import Cronbach, Omega, cronbach_alpha, mcdonald_omega
+from app.science.statistics.reliability import cronbach_alpha, mcdonald_omega
 from app.science.statistics.rm_anova import RmAnova, rm_anova
-from app.science.statistics.shares import ContactShares, contact_shares, share_of_maximum
-from app.science.statistics.signed_rank import SignedRank, signed_rank
+from app.science.statistics.shares import contact_shares, share_of_maximum
+from app.science.statistics.signed_rank import signed_rank
 from app.science.statistics.spearman import Spearman, spearman
-from app.science.statistics.split_plot import SplitPlot, split_plot_anova
+from app.science.statistics.split_plot import split_plot_anova
 from app.science.statistics.tidy import Cells, Complete, cells_of
 
 __all__ = [
@@ -70,27 +66,20 @@ __all__ = [
     "Comparison",
     "Complete",
     "ConstantData",
-    "ContactShares",
-    "Cronbach",
     "Direction",
     "DirectionalHypothesis",
     "Effect",
     "ErrorRate",
     "ErrorRates",
     "Expected",
-    "Explored",
     "FloatArray",
     "Friedman",
     "IntArray",
     "Interval",
     "Kind",
-    "MeanInterval",
-    "Omega",
     "PageTrend",
     "RmAnova",
-    "SignedRank",
     "Spearman",
-    "SplitPlot",
     "StatisticsError",
     "TooFewData",
     "UnusableTable",

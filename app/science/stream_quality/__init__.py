@@ -6,19 +6,17 @@
 
 from app.science.stream_quality.examination import Examination, examine
 from app.science.stream_quality.limits import USUAL, QualityError, QualityLimits
-from app.science.stream_quality.memory import LastPose, Memory
-from app.science.stream_quality.summary import StreamQuality, assess, summarise, together
+from app.science.stream_quality.memory import Memory
+from app.science.stream_quality.summary import StreamQuality, assess, together
 
 __all__ = [
     "USUAL",
     "Examination",
-    "LastPose",
     "Memory",
     "QualityError",
     "QualityLimits",
     "StreamQuality",
     "assess",
     "examine",
-    "summarise",
     "together",
 ]

@@ -19,15 +19,7 @@ from app.science.tasks.contacts import (
     touching_frames,
 )
 from app.science.tasks.layout import build_layout
-from app.science.tasks.names import (
-    Direction,
-    Laterality,
-    Limb,
-    Side,
-    SurfaceKind,
-    foot_parts,
-    hand_parts,
-)
+from app.science.tasks.names import Direction, Laterality, Limb, Side, SurfaceKind
 from app.science.tasks.rules import advance
 from app.science.tasks.run import TaskRun, rederive, replay
 from app.science.tasks.state import (
@@ -42,14 +34,11 @@ from app.science.tasks.state import (
     TaskState,
 )
 from app.science.tasks.summaries import (
-    Completion,
-    PhaseSummary,
     Span,
     completions,
     part_side_time_s,
     red_spans,
     side_red_time_s,
-    summarise,
     union,
 )
 from app.science.tasks.surfaces import (
@@ -62,17 +51,15 @@ from app.science.tasks.surfaces import (
     side_unit,
 )
 from app.science.tasks.tracker import ContactInterval, ContactTracker
-from app.science.tasks.views import Colour, current_goal, displayed_numbers, surface_state
+from app.science.tasks.views import current_goal, displayed_numbers, surface_state
 
 __all__ = [
     "ActiveClock",
     "BlockSpec",
     "BoxSpec",
     "ClockError",
-    "Colour",
     "Command",
     "CommandKind",
-    "Completion",
     "Contact",
     "ContactChange",
     "ContactInterval",
@@ -82,7 +69,6 @@ __all__ = [
     "Laterality",
     "LayoutError",
     "Limb",
-    "PhaseSummary",
     "Side",
     "Span",
     "Surface",
@@ -100,8 +86,6 @@ __all__ = [
     "completions",
     "current_goal",
     "displayed_numbers",
-    "foot_parts",
-    "hand_parts",
     "part_side_time_s",
     "red_spans",
     "rederive",
@@ -109,7 +93,6 @@ __all__ = [
     "segment_box_distance_m",
     "side_red_time_s",
     "side_unit",
-    "summarise",
     "surface_state",
     "touching",
     "touching_and_near",

@@ -1,7 +1,7 @@
 """Finds gains for every axis of an avatar by relay experiments, and proves them on the body."""
 
 from app.science.avatar.tuning.assessment import Assessment, assess
-from app.science.avatar.tuning.heuristics import HEURISTICS, Heuristic
+from app.science.avatar.tuning.heuristics import HEURISTICS
 from app.science.avatar.tuning.results import (
     AxisTuning,
     TuningCancelled,
@@ -26,7 +26,6 @@ __all__ = [
     "Assessment",
     "AxisTuning",
     "Followed",
-    "Heuristic",
     "Spread",
     "Tracking",
     "TuningCancelled",

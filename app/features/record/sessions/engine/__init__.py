@@ -15,23 +15,15 @@ from app.features.record.sessions.engine.events import (
     event_to_json,
 )
 from app.features.record.sessions.engine.evolve import evolve, initial_state
-from app.features.record.sessions.engine.state import (
-    PhaseState,
-    SessionState,
-    StepState,
-    state_from_json,
-    state_to_json,
-)
+from app.features.record.sessions.engine.state import SessionState, state_from_json, state_to_json
 
 __all__ = [
     "EVENT_TYPES",
     "Command",
     "ContentRef",
     "Event",
-    "PhaseState",
     "Refused",
     "SessionState",
-    "StepState",
     "allowed_commands",
     "decide",
     "event_from_json",
