@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.science.instruments.answers import as_number
-from app.science.instruments.evaluation import evaluate
 from app.science.instruments.formula import names_in
 from app.science.instruments.instrument import Instrument
 from app.science.instruments.items import Score
-from app.science.instruments.scoring import score_answers
+from app.science.instruments.scoring import evaluate, score_answers
 from app.science.instruments.tokens import tokenize
 
 

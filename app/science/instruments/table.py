@@ -17,10 +17,9 @@ import pandas as pd
 
 from app.science.instruments.answers import as_number
 from app.science.instruments.errors import AnswerError, InstrumentTableError, shortened
-from app.science.instruments.evaluation import FloatArray
 from app.science.instruments.instrument import Instrument
 from app.science.instruments.items import Item
-from app.science.instruments.scoring import scores_of_columns
+from app.science.instruments.scoring import FloatArray, scores_of_columns
 
 __all__ = ["score_csv", "score_table"]
 _SEPARATORS = (",", ";", "\t")

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.science.instruments import FormulaError
-from app.science.instruments.evaluation import evaluate
 from app.science.instruments.formula import MAX_DEPTH, names_in, parse_formula
+from app.science.instruments.scoring import evaluate
 from app.science.instruments.tokens import MAX_LENGTH, MAX_TOKENS
 
 NAMES = frozenset({"q1", "q2", "q3"})

@@ -1,6 +1,5 @@
 """Forms, answers and scores."""
 
-from app.features.record.questionnaires.due import current_administration
 from app.features.record.questionnaires.schemas import (
     Administration,
     AnswerValue,
@@ -10,7 +9,7 @@ from app.features.record.questionnaires.schemas import (
     StoredScores,
     SubmissionRequest,
 )
-from app.features.record.questionnaires.service import submit
+from app.features.record.questionnaires.service import current_administration, submit
 from app.features.record.questionnaires.stored import (
     answers_of,
     correct_answer,

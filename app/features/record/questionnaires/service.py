@@ -1,23 +1,95 @@
-"""Forms: storing one once, scoring it, moving the session on."""
+"""Forms: which one is due, storing it once, scoring it, moving the session on.
+
+Answers that come too late or twice are refused, and kept for the record.
+"""
 
 import hashlib
 import secrets
 from collections.abc import Mapping
-from typing import Any, cast
+from dataclasses import dataclass
+from typing import Any, NoReturn, cast
 
+import numpy as np
 from sqlalchemy import Table, bindparam, insert, select
 from sqlalchemy.orm import Session
 
-from app.errors import InvalidInput, NotNow
-from app.features.record.questionnaires.due import DueForm, due_form
-from app.features.record.questionnaires.refused import keep_refused, request_hash
-from app.features.record.questionnaires.schemas import AnswerValue, Receipt, SubmissionRequest
+from app.errors import InvalidInput, KeptConflict, NotNow
+from app.features.design.studies import UsedInstrument, used_instrument
+from app.features.record.questionnaires.schemas import (
+    Administration,
+    AnswerValue,
+    Receipt,
+    SubmissionRequest,
+)
 from app.features.record.questionnaires.stop_rules import judge, tell
-from app.features.record.sessions import SubmitForm, apply_command, canonical, require_capture_of
+from app.features.record.sessions import (
+    KeepRefusedForm,
+    SubmitForm,
+    apply_command,
+    canonical,
+    content_body,
+    contents_of,
+    plan_of,
+    require_capture_of,
+    state_of,
+    store_content,
+)
 from app.models import Answer, ScoreValue, StudySession, Submission, new_id
 from app.platform.context import AppContext
+from app.protocol import Step
 from app.rows import insert_rows
-from app.science.instruments import Instrument, score_answers, validate_answers
+from app.science.instruments import Instrument, item_order, score_answers, validate_answers
+
+FORM_KINDS = ("form", "questionnaire")
+
+
+@dataclass(frozen=True)
+class DueForm:
+    """A step that asks for a form, and the wording it asks for; `attempt` counts from 1."""
+
+    step: Step
+    attempt: int
+    used: UsedInstrument
+
+    @property
+    def key(self) -> str:
+        """The name of one filling-in of a step: doing the step over makes another."""
+        return f"{self.step.key}#{self.attempt}"
+
+
+def due_form(db: Session, session: StudySession) -> DueForm | None:
+    """The form that is due now, or None."""
+    state = state_of(session)
+    if state.current is None:
+        return None
+    step = plan_of(db, session)[state.current]
+    if step.kind not in FORM_KINDS or step.instrument is None:
+        return None
+    used = used_instrument(db, session.study_version_id, step.instrument)
+    return DueForm(step, state.steps[step.index].attempt, used)
+
+
+def current_administration(db: Session, session: StudySession) -> Administration | None:
+    """The form that is due now as a page gets it, or None."""
+    due = due_form(db, session)
+    if due is None:
+        return None
+    instrument, seed = due.used.instrument, _item_seed(session, due)
+    return Administration(
+        key=due.key,
+        step_index=due.step.index,
+        instrument=dict(due.used.definition),
+        item_order=list(item_order(instrument, seed)),
+        seed=seed,
+        language=session.language,
+        languages=list(instrument.languages),
+    )
+
+
+def _item_seed(session: StudySession, due: DueForm) -> int:
+    sequence = np.random.SeedSequence([session.seed, due.step.index, due.attempt])
+    return int(sequence.generate_state(1)[0])
+
 
 Row = dict[str, Any]
 ANSWERS = cast("Table", Answer.__table__)
@@ -189,3 +261,52 @@ def check_answers(
             value=request.language,
             valid=list(instrument.languages),
         )
+
+
+CONTENT = "refused_form"
+
+
+def request_hash(request: SubmissionRequest) -> str:
+    """What makes two requests the same: the form and its answers, not when they were sent."""
+    covered = canonical([request.administration, request.answers, request.shown_order])
+    return hashlib.sha256(covered.encode()).hexdigest()
+
+
+def keep_refused(
+    db: Session,
+    context: AppContext,
+    session: StudySession,
+    request: SubmissionRequest,
+    *,
+    stands: Submission,
+    actor: str,
+) -> NoReturn:
+    """Keep answers that differ from the stored ones, once however often they come, and refuse them.
+
+    Raises KeptConflict, with which this transaction is committed.
+    """
+    hash_ = request_hash(request)
+    if hash_ not in (stands.request_hash, *_known(db, session)):
+        body = {
+            "request_hash": hash_,
+            "idempotency_key": request.idempotency_key,
+            "administration": request.administration,
+            "answers": dict(request.answers),
+        }
+        now = context.clock.utc_now()
+        content = store_content(
+            db, session_id=session.id, kind=CONTENT, body=body, by=actor, now=now
+        )
+        kept = KeepRefusedForm(submission_id=stands.id, content=content)
+        apply_command(db, context, session, kept, actor=actor)
+    raise KeptConflict(
+        "other answers to this form are stored already",
+        value=request.administration,
+        remedy="The first answers stand; these were kept beside them. The experimenter can open "
+        "the form again.",
+    )
+
+
+def _known(db: Session, session: StudySession) -> set[str]:
+    bodies = [content_body(row) for row in contents_of(db, session.id, CONTENT)]
+    return {str(body["request_hash"]) for body in bodies if isinstance(body, dict)}

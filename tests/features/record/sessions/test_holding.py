@@ -11,7 +11,7 @@ from app.features.record.sessions.engine import (
 )
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
-from app.features.record.sessions.engine.holding import GOES_ON
+from app.features.record.sessions.engine.decide import GOES_ON
 from app.features.record.sessions.engine.state import Hold
 from tests.features.record.sessions.engine_run import PLAN, WORDS, Run
 
