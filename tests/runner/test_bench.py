@@ -27,11 +27,14 @@ figure = {{"part": "p", "name": "n", "value": {value}, "unit": "s"}}
 print(json.dumps({{"figures": [figure], "arguments": sys.argv[1:]}}))
 """
 DRIVER = """
+import signal
 import sys
 from itertools import pairwise
 from pathlib import Path
 from tests.benchmarks import __main__, against
 against.REPOSITORY = Path({repository!r})
+# A run in the background hands on that Ctrl+C is ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.exit(__main__.main(["desk", "--against", "HEAD"]))
 """
 WAITS_S = 60.0

@@ -67,8 +67,8 @@ def test_locking_keeps_the_rest_of_the_model() -> None:
 def test_a_server_that_only_writes_models_does_not_load_the_simulator() -> None:
     """MuJoCo is for who simulates; the text is ours."""
     code = (
-        "import sys, app.main; from app.science.avatar.mjcf.defaults import default_configuration;"
-        "from app.science.avatar.mjcf.model import avatar_model;"
+        "import sys, app.main; from app.science.avatar.mjcf import avatar_model;"
+        "from app.science.avatar.mjcf import default_configuration;"
         "avatar_model(default_configuration(), 1.7); print('mujoco' in sys.modules)"
     )
     told = subprocess.run(
