@@ -17,6 +17,9 @@ from tests.architecture.trees import tree_of
 from tests.architecture.walks import walks, written
 
 
+USAGE_ERROR = 2
+
+
 def main(arguments: list[str]) -> int:
     """Print a table, or JSON; returns the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tests.architecture", description=__doc__)
@@ -34,8 +37,13 @@ def main(arguments: list[str]) -> int:
                 result = measure(root)
                 print(json.dumps(result.as_json(), indent=1) if given.json else table(result))
     except subprocess.CalledProcessError as error:
-        print((error.stderr or b"").decode() or error, file=sys.stderr)
-        return 1
+        if given.commit is None or walking:
+            raise
+        print(
+            f"there is no commit {given.commit!r} here; give a hash, a branch or a tag",
+            file=sys.stderr,
+        )
+        return USAGE_ERROR
     return 0
 
 

@@ -1,6 +1,7 @@
 """`npm run dev` serves pages that work against a running server."""
 
 import os
+import re
 import signal
 import subprocess
 import time
@@ -55,6 +56,17 @@ def wait_for(url: str) -> None:
 def test_it_hands_calls_over(dev_server: str) -> None:
     """The interface answers through it."""
     assert httpx2.get(f"{dev_server}/api/health", timeout=30.0).json()["status"] == "ok"
+
+
+@pytest.mark.parametrize("path", ["/", "/console", "/tablet"])
+def test_every_page_comes_with_its_scripts(dev_server: str, path: str) -> None:
+    """What a page names is there: a browser looks for it relative to the page's address."""
+    page = httpx2.get(f"{dev_server}{path}", timeout=30.0)
+    named = re.findall(r'(?:src|href)="([^"]+\.(?:tsx|svg))"', page.text)
+    assert len(named) >= 2
+    for name in named:
+        answer = httpx2.get(page.url.join(name), timeout=60.0)
+        assert answer.status_code == 200, name
 
 
 @pytest.mark.parametrize(
