@@ -16,7 +16,6 @@ from tests.architecture.measure import measure, table
 from tests.architecture.trees import tree_of
 from tests.architecture.walks import walks, written
 
-
 USAGE_ERROR = 2
 
 
@@ -36,7 +35,7 @@ def main(arguments: list[str]) -> int:
             else:
                 result = measure(root)
                 print(json.dumps(result.as_json(), indent=1) if given.json else table(result))
-    except subprocess.CalledProcessError as error:
+    except subprocess.CalledProcessError:
         if given.commit is None or walking:
             raise
         print(
