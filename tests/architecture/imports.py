@@ -1,9 +1,10 @@
 """Which file of a tree imports which, read from the sources: nothing is imported or run.
 
 A graph names files by their path from the tree's root, and holds for each the files it imports.
-Every import counts, wherever it stands: at the top, inside a function, under TYPE_CHECKING, and
-TypeScript's `import type`. Naming a module is an import of that module alone: Python also runs the
-`__init__` of each package above it, but no line of the importing file depends on what those say.
+Every import counts, wherever it stands: at the top, inside a function, under TYPE_CHECKING, by its
+name in `import_module`, and TypeScript's `import type`. Naming a module is an import of that module
+alone: Python also runs the `__init__` of each package above it, but no line of the importing file
+depends on what those say. A name that is put together while the program runs is not followed.
 """
 
 import ast
@@ -126,6 +127,19 @@ def _named(tree: ast.AST, file: str, modules: Mapping[str, str]) -> Iterator[str
                     yield submodule
                 elif source in modules:
                     yield source
+        elif isinstance(node, ast.Call) and (loaded := _loaded_by_name(node)) in modules:
+            yield loaded
+
+
+def _loaded_by_name(call: ast.Call) -> str:
+    """The module that `import_module` or `__import__` is given by name; empty for other calls."""
+    function = call.func.attr if isinstance(call.func, ast.Attribute) else None
+    function = call.func.id if isinstance(call.func, ast.Name) else function
+    match call.args:
+        case [ast.Constant(value=str(name)), *_] if function in ("import_module", "__import__"):
+            return name
+        case _:
+            return ""
 
 
 def _absolute(node: ast.ImportFrom, file: str) -> str:

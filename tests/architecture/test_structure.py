@@ -70,6 +70,20 @@ def test_every_import_counts_wherever_it_stands(build: Build) -> None:
     ]
 
 
+def test_a_module_that_is_loaded_by_name_is_imported(build: Build) -> None:
+    """`import_module` and `__import__` close circles like any import, and count as running up."""
+    root = build(
+        {
+            "app/a.py": "from importlib import import_module\nimport_module('app.b')\n",
+            "app/b.py": "import importlib\nimportlib.import_module('app.a')\n",
+            "app/c.py": "__import__('app.a')\n__import__('os')\nprint('app.b')\n",
+        }
+    )
+    graph = python_imports(root)
+    assert circles(graph) == [["app/a.py", "app/b.py"]]
+    assert graph["app/c.py"] == {"app/a.py"}
+
+
 def test_a_module_is_not_its_package(build: Build) -> None:
     """To import a module is no import of the `__init__` above it, nor is a name in a text."""
     root = build(

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import psutil
 
+from tests.support.unit_tests import needs
+
 REHEARSE = (sys.executable, "-m", "app.cli", "rehearse", "--speed", "5", "--seed", "1")
 TEST_RUN = """
 import pathlib, sys, time
@@ -23,6 +25,7 @@ GENEROUS_S = 120.0
 
 def test_a_killed_rehearsal_leaves_no_process(tmp_path: Path) -> None:
     """In the middle of a session: its server goes, and with it the server's own processes."""
+    needs("a server")
     environment = {**os.environ, "TMPDIR": str(tmp_path)}
     with subprocess.Popen(
         REHEARSE, env=environment, stderr=subprocess.PIPE, text=True, start_new_session=True
@@ -40,6 +43,7 @@ def test_a_killed_rehearsal_leaves_no_process(tmp_path: Path) -> None:
 
 def test_a_killed_test_run_leaves_no_server(tmp_path: Path) -> None:
     """The server was forked by another process, which ends with the test run."""
+    needs("a server")
     command = [sys.executable, "-c", TEST_RUN, str(tmp_path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as run:
         assert run.stdout is not None

@@ -8,7 +8,7 @@ with a single thread that forks a worker whenever it is asked over a socket:
 
 Tasks and answers are pickled as with `spawn`, but a worker does not inherit the environment, the
 limits or the output of the process that asked for it. `spawn` itself is covered by the tests that
-start a Python of their own (tests/platform/test_workers.py, tests/lan, tests/house).
+start a Python of their own (tests/platform/test_workers.py, tests/lan, tests/architecture).
 """
 
 import multiprocessing

@@ -25,7 +25,7 @@ def get_replay(session_id: str, phase_id: PhaseId, db: Reading, caller: SignedIn
     "/movement",
     response_class=Response,
     responses={
-        200: binary("Places of the joints over time: app/features/results/replay/movement.py."),
+        200: binary("Places of the joints over time."),
         304: {"description": "The movement is the one that is there already."},
     },
 )

@@ -10817,7 +10817,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
-            /** @description Places of the joints over time: app/features/results/replay/movement.py. */
+            /** @description Places of the joints over time. */
             readonly 200: {
                 headers: {
                     readonly [name: string]: unknown;
