@@ -28,7 +28,7 @@ app.command()(analyse)
 app.command()(serve)
 
 
-def _tell_version(asked: bool) -> None:
+def _print_version(asked: bool) -> None:
     if asked:
         print(f"reembody {__version__}")
         raise typer.Exit
@@ -37,7 +37,7 @@ def _tell_version(asked: bool) -> None:
 @app.callback()
 def reembody(
     version: Annotated[
-        bool, typer.Option("--version", callback=_tell_version, help="Print the version.")
+        bool, typer.Option("--version", callback=_print_version, help="Print the version.")
     ] = False,
 ) -> None:
     """Runs, watches and analyses VR re-embodiment studies."""

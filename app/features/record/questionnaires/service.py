@@ -41,6 +41,19 @@ from app.rows import insert_rows
 from app.science.instruments import Instrument, item_order, score_answers, validate_answers
 
 FORM_KINDS = ("form", "questionnaire")
+CONTENT = "refused_form"
+Row = dict[str, Any]
+ANSWERS = cast("Table", Answer.__table__)
+SCORES = cast("Table", ScoreValue.__table__)
+_STORED = (
+    select(Submission)
+    .where(
+        Submission.session_id == bindparam("session_id"),
+        (Submission.idempotency_key == bindparam("idempotency_key"))
+        | (Submission.administration == bindparam("administration")),
+    )
+    .limit(1)
+)
 
 
 @dataclass(frozen=True)
@@ -89,20 +102,6 @@ def current_administration(db: Session, session: StudySession) -> Administration
 def _item_seed(session: StudySession, due: DueForm) -> int:
     sequence = np.random.SeedSequence([session.seed, due.step.index, due.attempt])
     return int(sequence.generate_state(1)[0])
-
-
-Row = dict[str, Any]
-ANSWERS = cast("Table", Answer.__table__)
-SCORES = cast("Table", ScoreValue.__table__)
-_STORED = (
-    select(Submission)
-    .where(
-        Submission.session_id == bindparam("session_id"),
-        (Submission.idempotency_key == bindparam("idempotency_key"))
-        | (Submission.administration == bindparam("administration")),
-    )
-    .limit(1)
-)
 
 
 def submit(
@@ -261,9 +260,6 @@ def check_answers(
             value=request.language,
             valid=list(instrument.languages),
         )
-
-
-CONTENT = "refused_form"
 
 
 def request_hash(request: SubmissionRequest) -> str:
