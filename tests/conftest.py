@@ -14,9 +14,8 @@ from tests.support import postgres, shared_run
 from tests.support.forked_workers import use_fork_server
 from tests.support.nursery import CHEAP_PASSWORDS, make_passwords_cheap, nursery
 from tests.support.server import LiveServer
+from tests.support.shared_data import SHARED_DATA_VARIABLE, shared_data_folder
 from tests.support.sqlite import fresh_sqlite
-
-SHARED_DATA_VARIABLE = "REEMBODY_SHARED_DATA"
 
 # How long an example takes says something about the machine, nothing about the code.
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -79,8 +78,7 @@ def _is_worker(config: pytest.Config) -> bool:
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
     """The published data that tests compare with; they are not part of the repository."""
-    beside = Path(__file__).resolve().parents[2] / "shared" / "data"
-    folder = Path(os.environ.get(SHARED_DATA_VARIABLE) or beside)
+    folder = shared_data_folder()
     if not folder.is_dir():
         pytest.skip(f"no shared data in {folder}; {SHARED_DATA_VARIABLE} can name the folder")
     return folder

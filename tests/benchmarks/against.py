@@ -29,10 +29,10 @@ from pathlib import Path
 from typing import Any
 
 from tests.benchmarks.report import CannotMeasure, Figure, Report
+from tests.support.shared_data import SHARED_DATA_VARIABLE
 from tests.support.warden import run_warded
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-SHARED_DATA_VARIABLE = "REEMBODY_SHARED_DATA"
 LOCK = "requirements-dev.lock"
 PAIRS = 6
 """The fewest whose extremes hold the median with a confidence of 95 %."""

@@ -9,7 +9,6 @@ between the tracked parts (geodesic angle of each to its parent, mean).
 """
 
 import json
-import os
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -29,10 +28,10 @@ from app.science.skeleton import (
     resample,
 )
 from tests.benchmarks.report import Figure, Report
-from tests.conftest import SHARED_DATA_VARIABLE
 from tests.science.avatar.ik import bodies
 from tests.science.avatar.ik.vector_files import FOLDER, goals_from, read
 from tests.support.node import install_packages, run_node
+from tests.support.shared_data import shared_data_folder
 
 PARTS = ("python", "javascript", "captures")
 ROUNDS = 15
@@ -98,8 +97,7 @@ def _javascript() -> dict[str, FloatArray]:
 
 
 def _clips() -> Iterator[tuple[str, Path]]:
-    beside = REPOSITORY.parent / "shared" / "data"
-    folder = Path(os.environ.get(SHARED_DATA_VARIABLE) or beside) / "motion"
+    folder = shared_data_folder() / "motion"
     return ((name, folder / file) for name, file in CLIPS.items() if (folder / file).is_file())
 
 

@@ -1,13 +1,12 @@
 """The real movements that benchmarks follow, where the shared data are there."""
 
-import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 from app.science.skeleton import Movement
-from tests.conftest import SHARED_DATA_VARIABLE
 from tests.science.avatar.captured import LONG, REACH, TURN, WALK, movement_of
+from tests.support.shared_data import SHARED_DATA_VARIABLE, shared_data_folder
 
 CLIPS = {"walk": (WALK, False), "reach": (REACH, False), "turn": (TURN, True)}
 """File, and whether it travels: CMU 02_01 in place; a person who inspects objects on tables; CMU
@@ -24,8 +23,7 @@ def movement(name: str, *, travels: bool = False) -> Movement | None:
 
 def shared_file(kind: str, name: str) -> Path | None:
     """A file of the shared data; None, with that told, where it is missing."""
-    beside = Path(__file__).resolve().parents[3] / "shared" / "data"
-    path = Path(os.environ.get(SHARED_DATA_VARIABLE) or beside) / kind / name
+    path = shared_data_folder() / kind / name
     if path.is_file():
         return path
     print(f"  {kind}/{name} is left out: {SHARED_DATA_VARIABLE} has no such file", file=sys.stderr)

@@ -8,11 +8,9 @@ of 0.01 degrees and 0.1 mm of its own; and one made up, all joints swinging, tra
 chunks. Every chunk is compared with what went in, bit by bit.
 """
 
-import os
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +20,6 @@ from app.features.record.telemetry.encodings.columns import Columns
 from tests.benchmarks.codecs import Codec, own_codecs
 from tests.benchmarks.report import Figure, Report
 from tests.benchmarks.rival_codecs import rival_codecs
-from tests.conftest import SHARED_DATA_VARIABLE
 from tests.features.record.telemetry.followed_movement import (
     CHUNK_FRAMES,
     OWN_NOISE_DEG,
@@ -33,10 +30,10 @@ from tests.features.record.telemetry.followed_movement import (
     followed,
     made_movement,
 )
+from tests.support.shared_data import shared_data_folder
 
 PARTS = ("codecs", "noise", "lengths")
-BESIDE = Path(__file__).resolve().parents[3] / "shared" / "data"
-CAPTURES = Path(os.environ.get(SHARED_DATA_VARIABLE) or BESIDE) / "motion" / "cmu_bvh"
+CAPTURES = shared_data_folder() / "motion" / "cmu_bvh"
 MADE_S, REPEATS = 20.0, 3
 LIMIT_MB, LIMIT_MS = 3.0, 2.0
 IN_USE = f"{f32_predicted.NAME}, zstd {f32_predicted.LEVEL}"

@@ -1,10 +1,8 @@
 """How well a phase's latency is found again: known latencies, real flaws, the usual way too."""
 
-import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
@@ -20,6 +18,7 @@ from tests.science.moving_bodies import (
     made_movement,
     record,
 )
+from tests.support.shared_data import shared_data_folder
 
 LATENCIES_S = (0.0, 0.0073, 0.125, 0.35)
 SEEDS, DURATION_S, PHASE_S = 20, 20.0, 60.0
@@ -76,8 +75,7 @@ def _made(flaws: Flaws) -> Make:
 
 def _captures() -> Make | None:
     """Captured people through the avatar's own delay buffer; None without the published data."""
-    beside = Path(__file__).resolve().parents[3] / "shared" / "data"
-    folder = Path(os.environ.get("REEMBODY_SHARED_DATA") or beside) / "motion" / "cmu_bvh"
+    folder = shared_data_folder() / "motion" / "cmu_bvh"
     if not folder.is_dir():
         return None
     loops = [looped_capture(folder / f"{name}.bvh", DURATION_S) for name in CAPTURES]

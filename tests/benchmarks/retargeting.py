@@ -8,11 +8,9 @@ where the shared data are there, else one made up) beside SciPy's Rotation and P
 same work. Rates are medians of several rounds, so that others on the machine spoil one and not all.
 """
 
-import os
 import resource
 import time
 from collections.abc import Callable, Iterator
-from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -23,8 +21,8 @@ from app.science.rig import Rig, RigMotion
 from app.science.rotations import FloatArray, geodesic_angle, identity
 from tests.benchmarks import retargeting_peers as peers
 from tests.benchmarks.report import Figure, Report
-from tests.conftest import SHARED_DATA_VARIABLE
 from tests.science.retargeting.bodies import SAME, own_body, random_movement, scaled
+from tests.support.shared_data import shared_data_folder
 
 PARTS = ("frame", "batch", "peers")
 ROUNDS, CALLS, FRAMES = 7, 10_000, 20_000
@@ -131,9 +129,7 @@ def _frames_per_s(work: Callable[[], object], frames: int, repeat: int = 1) -> f
 
 
 def _walk() -> tuple[str, RigMotion]:
-    beside = Path(__file__).resolve().parents[3] / "shared" / "data"
-    folder = Path(os.environ.get(SHARED_DATA_VARIABLE) or beside)
-    path = folder / "motion" / "cmu_bvh" / "02_01.bvh"
+    path = shared_data_folder() / "motion" / "cmu_bvh" / "02_01.bvh"
     if not path.is_file():
         return "made-up walk", _made_up()
     clip = read_bvh(path, metres_per_unit=METRES_PER_CMU_UNIT)

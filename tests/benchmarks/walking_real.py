@@ -12,7 +12,6 @@ is left out. CMU 05_06 turns by 326 degrees on the way: no walk from a start to 
 Both rules were made after a look at the files and at a first comparison with the table.
 """
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -36,7 +35,7 @@ from app.science.walking.records import LENGTH, TURNING, PlannedWalk, Walk
 from app.science.walking.scene import open_scene
 from app.science.walking.synthetic import straight_path
 from tests.benchmarks.walking_cells import FOLLOWER, made
-from tests.conftest import SHARED_DATA_VARIABLE
+from tests.support.shared_data import shared_data_folder
 from tests.support.short_walks import DISTANCES_M, read_foot_walk, read_short_walk_table
 
 METRES_PER_CMU_UNIT = 0.056444
@@ -83,8 +82,7 @@ class RealWalks:
 
 def shared_folder() -> Path | None:
     """The published data, where they are."""
-    beside = Path(__file__).resolve().parents[3] / "shared" / "data"
-    folder = Path(os.environ.get(SHARED_DATA_VARIABLE) or beside)
+    folder = shared_data_folder()
     return folder if folder.is_dir() else None
 
 

@@ -12,7 +12,7 @@ import psutil
 
 from tests.support.unit_tests import needs
 
-REHEARSE = (sys.executable, "-m", "app.cli", "rehearse", "--speed", "5", "--seed", "1")
+REHEARSE = (sys.executable, "-m", "app.cli", "rehearse", "--speed", "20", "--seed", "1")
 TEST_RUN = """
 import pathlib, sys, time
 from tests.support.server import LiveServer

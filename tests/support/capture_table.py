@@ -4,7 +4,6 @@
 data; a test compares file by file.
 """
 
-import os
 import re
 import sys
 from collections.abc import Iterator, Mapping
@@ -14,6 +13,7 @@ from pathlib import Path
 from app.adapters.captures import FORMATS, Capture, CaptureError, Reading, read_capture
 from app.science.fitting import FitError, fit_skeleton
 from app.science.rig import MarkerMotion, RigMotion
+from tests.support.shared_data import shared_data_folder
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGE = REPOSITORY / "docs" / "capture-formats.md"
@@ -232,5 +232,4 @@ def _together(kind: str, some: list[Row]) -> Row:
 
 
 if __name__ == "__main__":
-    folder = os.environ.get("REEMBODY_SHARED_DATA") or REPOSITORY.parent / "shared" / "data"
-    sys.stdout.write(page(Path(folder)))
+    sys.stdout.write(page(shared_data_folder()))
