@@ -114,6 +114,7 @@ def _sentence(done: BackedUp) -> str:
         f"{done.path}: {done.rows} rows, {size_mb:.1f} MB in {done.duration_s:.1f} s "
         f"({size_mb / done.duration_s:.0f} MB/s)\n"
         f"sha256 {done.sha256}"
+        + ("" if done.audit_head is None else f"\naudit head {done.audit_head}")
     )
 
 

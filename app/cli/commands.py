@@ -72,16 +72,23 @@ def export(
 
 @app.command()
 def verify(
-    session: Annotated[str, typer.Option(help="Id of the session.")],
-    as_json: Annotated[bool, typer.Option("--json", help="Print the receipt as JSON.")] = False,
+    session: Annotated[str | None, typer.Option(help="Id of a session.")] = None,
+    head: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Head of the audit trail, SEQ:HASH, as a backup or an export printed it; may be "
+            "given more than once."
+        ),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON.")] = False,
 ) -> None:
-    """Prove from the record what of a session is there; exit code 1 if anything is missing."""
-    from app.cli.record import verify_session
+    """Prove what of a session is there, or that the audit trail is whole; exit code 1 if not."""
+    from app.cli.record import verify_record
 
     with reported():
-        text, complete = verify_session(session, as_json=as_json)
+        text, holds = verify_record(session, head or (), as_json=as_json)
     print(text)
-    if not complete:
+    if not holds:
         raise typer.Exit(INCOMPLETE)
 
 

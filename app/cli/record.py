@@ -1,16 +1,28 @@
-"""What leaves the record from the command line: a study as a folder, a session's receipt."""
+"""What leaves the record from the command line: a study as a folder, and proofs of wholeness."""
 
 import json
 import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from sqlalchemy.orm import Session
 
 from app.cli.installation import opened_database
 from app.clock import Clock
 from app.database import Database
 from app.errors import NotFound
 from app.features.design.studies import study_by_key
-from app.features.people.audit import COMMAND_LINE, record_copy
-from app.features.record.receipts import receipt_of, receipt_text
+from app.features.people.audit import (
+    COMMAND_LINE,
+    AuditCheck,
+    TrailHead,
+    holds_head,
+    record_copy,
+    verify_trail,
+)
+from app.features.record.receipts import SessionReceipt, receipt_of, receipt_text
 from app.features.results.analysis.tables import KINDS, Kind
 from app.features.results.exports.writing import Exported, export_study, usual_kind
 
@@ -26,7 +38,10 @@ def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
         chosen = usual_kind(db, study) if kind is None else _known(kind)
         done = export_study(db, study, chosen, to, now=Clock().utc_now(), progress=_tell_progress)
         _put_on_record(database, study, done)
-    return f"{done.sessions} session(s) of kind {done.kind} in {done.files} files: {to}"
+    return (
+        f"{done.sessions} session(s) of kind {done.kind} in {done.files} files: {to}\n"
+        f"audit head {done.audit_head}"
+    )
 
 
 def _put_on_record(database: Database, study: str, done: Exported) -> None:
@@ -57,19 +72,79 @@ def _tell_progress(path: str) -> None:
         sys.stderr.flush()
 
 
-def verify_session(session_id: str, *, as_json: bool) -> tuple[str, bool]:
-    """The receipt of a session of this installation as text or JSON, and whether it is complete.
+def verify_record(
+    session_id: str | None, heads: Sequence[str], *, as_json: bool
+) -> tuple[str, bool]:
+    """Check a session, the audit trail or both; the findings as text or JSON, and whether all hold.
 
-    Reads beside a running server. Raises ReembodyError for an unknown session.
+    The trail is checked if no session is named, or if there are `heads`, SEQ:HASH as backups and
+    exports print them: each must still be in it. Reads beside a running server. Raises
+    ReembodyError for an unknown session, and for a head that cannot be one.
     """
+    wanted = [TrailHead.parse(head) for head in heads]
+    parts: list[str] = []
+    found: dict[str, Any] = {}
+    holds = True
     with opened_database() as database, database.reading() as db:
-        try:
-            receipt = receipt_of(db, session_id)
-        except NotFound as error:
-            raise NotFound(
-                f"there is no session {session_id!r}",
-                value=session_id,
-                remedy="Its id stands at the end of the address of its page, and in sessions.csv.",
-            ) from error
-    text = json.dumps(receipt.as_json(), indent=2) if as_json else receipt_text(receipt)
-    return text, receipt.complete
+        if session_id is not None:
+            receipt = _receipt(db, session_id)
+            found, holds = receipt.as_json(), receipt.complete
+            parts.append(receipt_text(receipt))
+        if session_id is None or wanted:
+            trail = _check_trail(db, wanted)
+            holds = holds and trail.holds
+            parts.append(trail.text())
+            found = {**found, "audit": trail.as_json()}
+    return json.dumps(found, indent=2) if as_json else "\n\n".join(parts), holds
+
+
+def _receipt(db: Session, session_id: str) -> SessionReceipt:
+    try:
+        return receipt_of(db, session_id)
+    except NotFound as error:
+        raise NotFound(
+            f"there is no session {session_id!r}",
+            value=session_id,
+            remedy="Its id stands at the end of the address of its page, and in sessions.csv.",
+        ) from error
+
+
+@dataclass(frozen=True)
+class _Trail:
+    """What was found of the audit trail: its chain, and which heads are still in it."""
+
+    check: AuditCheck
+    heads: tuple[tuple[TrailHead, bool], ...]
+
+    @property
+    def holds(self) -> bool:
+        return self.check.ok and all(there for _, there in self.heads)
+
+    def text(self) -> str:
+        check = self.check
+        lines = [
+            f"The audit trail verifies: {check.entries} entries, each as it was written."
+            if check.ok
+            else f"The audit trail does not verify: entry {check.broken_at} was changed or is gone."
+        ]
+        for head, there in self.heads:
+            lines.append(
+                f"Head {head} is in it: nothing up to that entry was changed or cut off."
+                if there
+                else f"Head {head} is not in it: entries were cut off or written anew, or a backup "
+                "from before that moment was restored."
+            )
+        return "\n".join([*lines, f"audit head {check.head}"])
+
+    def as_json(self) -> dict[str, Any]:
+        return {
+            "ok": self.holds,
+            "entries": self.check.entries,
+            "broken_at": self.check.broken_at,
+            "head": str(self.check.head),
+            "heads": [{"head": str(head), "found": there} for head, there in self.heads],
+        }
+
+
+def _check_trail(db: Session, heads: Sequence[TrailHead]) -> _Trail:
+    return _Trail(verify_trail(db), tuple((head, holds_head(db, head)) for head in heads))

@@ -17,8 +17,9 @@ from app.features.care.backups.reading import Backup, as_newest, opened_backup
 from app.features.care.backups.restoring import hold_still, is_empty, replace_rows
 from app.features.care.backups.rows import Progress, silent
 from app.features.care.backups.writing import write_backup
+from app.features.people.audit import head_of
 from app.features.record.devices import devices_of_session, revoke
-from app.models import Participant, StudySession
+from app.models import AuditHead, Participant, StudySession
 
 ENDING = ".reembody"
 _S_PER_NS = 1e-9
@@ -26,7 +27,11 @@ _S_PER_NS = 1e-9
 
 @dataclass(frozen=True)
 class BackedUp:
-    """A backup that is on the disk. `sha256` is over its content: equal for equal content."""
+    """A backup that is on the disk. `sha256` is over its content: equal for equal content.
+
+    `audit_head`: the newest entry of the audit trail in it, as SEQ:HASH; None in a schema that had
+    no trail yet.
+    """
 
     path: Path
     made_at: datetime
@@ -35,6 +40,7 @@ class BackedUp:
     size_bytes: int
     duration_s: float
     sha256: str
+    audit_head: str | None
 
 
 @dataclass(frozen=True)
@@ -75,6 +81,7 @@ def back_up(database: Database, to: Path, *, clock: Clock, progress: Progress = 
     began_ns = clock.monotonic_ns()
     with database.reading() as db:
         manifest = write_backup(db.connection(), to, now=clock.utc_now(), progress=progress)
+        head = str(head_of(db)) if AuditHead.__tablename__ in manifest.tables else None
     return BackedUp(
         path=to,
         made_at=manifest.made_at,
@@ -83,6 +90,7 @@ def back_up(database: Database, to: Path, *, clock: Clock, progress: Progress = 
         size_bytes=to.stat().st_size,
         duration_s=(clock.monotonic_ns() - began_ns) * _S_PER_NS,
         sha256=manifest.sha256,
+        audit_head=head,
     )
 
 

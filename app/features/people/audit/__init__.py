@@ -11,11 +11,22 @@ from app.features.people.audit.copies import (
     record_copy,
     sessions_in,
 )
-from app.features.people.audit.service import record, verify_trail
+from app.features.people.audit.service import (
+    AuditCheck,
+    TrailHead,
+    head_of,
+    holds_head,
+    record,
+    verify_trail,
+)
 
 __all__ = [
     "COMMAND_LINE",
     "LONGEST_PLACE",
+    "AuditCheck",
+    "TrailHead",
+    "head_of",
+    "holds_head",
     "in_browser_of",
     "record",
     "record_copy",

@@ -34,10 +34,14 @@ class AuditPage(BaseModel):
 
 
 class AuditCheckView(BaseModel):
-    """Whether every entry is as it was written; `broken_at` is the first that is not."""
+    """Whether every entry is as it was written; `broken_at` is the first that is not.
+
+    `head` is the newest entry as SEQ:HASH: kept elsewhere, it shows later that the end is missing.
+    """
 
     ok: bool
     entries: int
+    head: str
     broken_at: int | None
 
 
@@ -74,4 +78,6 @@ def get_audit(
 def get_audit_check(db: Reading, _: SignedIn) -> AuditCheckView:
     """Recompute the whole chain."""
     check = verify_trail(db)
-    return AuditCheckView(ok=check.ok, entries=check.entries, broken_at=check.broken_at)
+    return AuditCheckView(
+        ok=check.ok, entries=check.entries, head=str(check.head), broken_at=check.broken_at
+    )

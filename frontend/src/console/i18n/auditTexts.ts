@@ -31,6 +31,8 @@ export const auditEn = {
   "audit.check": "Check the chain",
   "audit.check.ok_one": "Intact: the entry is as it was written.",
   "audit.check.ok_other": "Intact: all {{count}} entries are as they were written.",
+  "audit.check.head":
+    "To be able to prove later that nothing was cut off, keep the newest entry outside this server:",
   "audit.check.broken": "Broken at entry {{number}}",
   "audit.check.brokenBody":
     "Somebody has changed or removed entries in the database. Keep a copy of it as it is, and compare with a backup.",
@@ -118,6 +120,8 @@ export const auditDe: Readonly<Record<keyof typeof auditEn, string>> = {
   "audit.check.ok_one": "Unversehrt: der Eintrag ist so, wie er geschrieben wurde.",
   "audit.check.ok_other":
     "Unversehrt: alle {{count}} Einträge sind so, wie sie geschrieben wurden.",
+  "audit.check.head":
+    "Um später belegen zu können, dass nichts abgeschnitten wurde, bewahren Sie den neuesten Eintrag außerhalb dieses Servers auf:",
   "audit.check.broken": "Gebrochen bei Eintrag {{number}}",
   "audit.check.brokenBody":
     "Jemand hat Einträge in der Datenbank geändert oder entfernt. Bewahren Sie eine Kopie auf, wie sie ist, und vergleichen Sie mit einem Backup.",

@@ -15,6 +15,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies import study_by_key
+from app.features.people.audit import TrailHead, head_of
 from app.features.record.receipts import receipt_of
 from app.features.results.analysis.codebook import codebook_frame
 from app.features.results.analysis.tables import (
@@ -88,6 +89,10 @@ class Contents:
     only: frozenset[str] | None = None
     files: list[FileCount] = field(default_factory=list)
     sessions: int = 0
+    audit_head: TrailHead = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.audit_head = head_of(self.db)
 
     def members(self) -> Iterator[Member]:
         """Tables, codebook, frames and receipt of each session, and the README last."""
@@ -142,5 +147,5 @@ class Contents:
             row.number: row.content_hash for row in versions if not used or row.number in used
         }
         statuses = {str(key): int(n) for key, n in sessions["status"].value_counts().items()}
-        origin = Origin(self.study_key, self.kind, self.now, hashes, statuses)
+        origin = Origin(self.study_key, self.kind, self.now, self.audit_head, hashes, statuses)
         return readme_text(origin, self.files)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from app import __version__
+from app.features.people.audit import TrailHead
 
 MARK = "Reembody export"
 """How an export's README begins, by which we know our own folders again."""
@@ -29,6 +30,8 @@ Reading the files
   calibrations.csv tells as far as it was measured.
   consent_given and consent_at_utc in sessions.csv say that and when consent was given. The signed
   records hold names: they stay with the lab and are in no export.
+  Audit head is the newest entry of the lab's audit trail when this was written. The lab proves with
+  it that nothing was cut from the trail since: reembody verify --head SEQ:HASH.
   Rows with phase_kind = practice or free_roam come before the blocks: never analyse them with
   those of tasks.
 """
@@ -36,11 +39,15 @@ Reading the files
 
 @dataclass(frozen=True)
 class Origin:
-    """Where an export comes from: `versions` maps numbers to content hashes."""
+    """Where an export comes from: `versions` maps numbers to content hashes.
+
+    `audit_head`: the newest entry of the audit trail at that moment.
+    """
 
     study_key: str
     kind: str
     now: datetime
+    audit_head: TrailHead
     versions: Mapping[int, str]
     statuses: Mapping[str, int]
 
@@ -68,6 +75,7 @@ def readme_text(origin: Origin, files: Sequence[FileCount]) -> str:
         f"Kind of sessions  {origin.kind}",
         f"Sessions          {sum(origin.statuses.values())}"
         + (f" ({statuses})" if statuses else ""),
+        f"Audit head        {origin.audit_head}",
         *_warning(origin.kind),
         "",
     ]

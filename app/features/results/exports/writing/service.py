@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 
 from app.database import Database
 from app.features.design.studies import study_by_key
+from app.features.people.audit import TrailHead
 from app.features.results.analysis.tables import Kind
 from app.features.results.exports.writing.archive import zip_pieces
 from app.features.results.exports.writing.contents import Contents, Member
@@ -20,12 +21,13 @@ from app.models import StudySession
 
 @dataclass(frozen=True)
 class Exported:
-    """What was written where."""
+    """What was written where, and the head of the audit trail then."""
 
     to: Path
     kind: Kind
     sessions: int
     files: int
+    audit_head: TrailHead
 
 
 def export_study(
@@ -44,7 +46,7 @@ def export_study(
     """
     contents = Contents(db, study_key, kind, now)
     write_folder(contents.members(), to, progress=progress)
-    return Exported(to, kind, contents.sessions, len(contents.files) + 1)
+    return Exported(to, kind, contents.sessions, len(contents.files) + 1, contents.audit_head)
 
 
 def study_archive(

@@ -42,7 +42,9 @@ export function AuditTab(): JSX.Element {
               tone="info"
               icon="check"
               title={t("audit.check.ok", { count: check.data.entries })}
-            />
+            >
+              {t("audit.check.head")} <code style={{ overflowWrap: "anywhere" }}>{check.data.head}</code>
+            </Notice>
           ) : (
             <Notice
               tone="bad"
