@@ -8,6 +8,7 @@ import contextlib
 import multiprocessing
 import os
 import signal
+import threading
 from dataclasses import dataclass, field
 from datetime import datetime
 from multiprocessing.connection import Connection
@@ -37,6 +38,8 @@ class Encoder:
     _context: SpawnContext = field(default_factory=lambda: multiprocessing.get_context("spawn"))
     _process: SpawnProcess | None = None
     _line: "Connection[Any, Any] | None" = None
+    # On a slow machine a server may stop while the process is still being started.
+    _changing: threading.RLock = field(default_factory=threading.RLock)
 
     @property
     def pid(self) -> int | None:
@@ -59,28 +62,30 @@ class Encoder:
 
     def end(self) -> None:
         """Let it go; it may be asked again."""
-        if self._line is not None:
-            self._line.close()
-        if self._process is not None:
-            self._process.join(ENDS_WITHIN_S)
-            if self._process.is_alive():
-                self._process.kill()
-                self._process.join()
-        self._line = self._process = None
+        with self._changing:
+            if self._line is not None:
+                self._line.close()
+            if self._process is not None:
+                self._process.join(ENDS_WITHIN_S)
+                if self._process.is_alive():
+                    self._process.kill()
+                    self._process.join()
+            self._line = self._process = None
 
     def begin(self) -> "Connection[Any, Any]":
         """Start the process, unless it runs: where movement is to come, before there is any."""
-        if self._line is not None:
-            return self._line
-        ours, theirs = self._context.Pipe()
-        self._process = self._context.Process(
-            target=serve, args=(theirs, self.url), name="telemetry-encoder", daemon=True
-        )
-        self._process.start()
-        # Only the process holds the other end now, so each notices the death of the other.
-        theirs.close()
-        self._line = ours
-        return ours
+        with self._changing:
+            if self._line is not None:
+                return self._line
+            ours, theirs = self._context.Pipe()
+            process = self._context.Process(
+                target=serve, args=(theirs, self.url), name="telemetry-encoder", daemon=True
+            )
+            process.start()
+            # Only the process holds the other end now, so each notices the death of the other.
+            theirs.close()
+            self._process, self._line = process, ours
+            return ours
 
 
 def serve(line: "Connection[Any, Any]", url: str) -> None:
