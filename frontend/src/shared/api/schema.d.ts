@@ -2819,12 +2819,16 @@ export interface components {
         /**
          * AuditCheckView
          * @description Whether every entry is as it was written; `broken_at` is the first that is not.
+         *
+         *     `head` is the newest entry as SEQ:HASH: kept elsewhere, it shows later that the end is missing.
          */
         readonly AuditCheckView: {
             /** Broken At */
             readonly broken_at: number | null;
             /** Entries */
             readonly entries: number;
+            /** Head */
+            readonly head: string;
             /** Ok */
             readonly ok: boolean;
         };

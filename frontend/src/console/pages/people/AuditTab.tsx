@@ -43,7 +43,8 @@ export function AuditTab(): JSX.Element {
               icon="check"
               title={t("audit.check.ok", { count: check.data.entries })}
             >
-              {t("audit.check.head")} <code style={{ overflowWrap: "anywhere" }}>{check.data.head}</code>
+              {t("audit.check.head")}{" "}
+              <code style={{ overflowWrap: "anywhere" }}>{check.data.head}</code>
             </Notice>
           ) : (
             <Notice
