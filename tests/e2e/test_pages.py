@@ -7,12 +7,14 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.e2e.people import PATIENCE_MS, Experimenter, Participant
+from tests.rehearsal.performed import Lengths
 from tests.support.browser import ColorScheme, PageWatch
 from tests.support.nursery import Wish, nursery
-from tests.support.server import ADMIN_PASSWORD, LiveServer
+from tests.support.server import LiveServer
 from tests.support.traffic import Traffic
 
-STUDY = "reembodiment-latency"
+LENGTHS = Lengths(15.0, 15.0)
+"""Of the phases: pages look alike after a session of any length."""
 TABS = ("", "ledger", "sessions", "participants", "dashboard", "export", "protocol")
 
 
@@ -20,8 +22,7 @@ TABS = ("", "ledger", "sessions", "participants", "dashboard", "export", "protoc
 def played_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServer]:
     """A server on which a simulated participant has been through a session."""
     with LiveServer(tmp_path_factory.mktemp("played")) as server:
-        with server.client() as api:
-            api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
+        LENGTHS.store(server)
         environment = {**os.environ, "REEMBODY_DATA_DIR": str(server.data_dir)}
         said = tmp_path_factory.mktemp("commands") / "said.txt"
 
@@ -31,7 +32,8 @@ def played_server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveServ
             return said.read_text()
 
         token = run("token").strip()
-        run("rehearse", "--url", server.url, "--token", token, "--speed", "60")
+        study = ("--study", LENGTHS.key)
+        run("rehearse", "--url", server.url, "--token", token, "--speed", "60", *study)
         yield server
 
 
@@ -55,7 +57,7 @@ def test_every_console_page_is_accessible(
     assert axe(page) == []
     screenshot(page, f"console-studies-{scheme}")
     for tab in TABS:
-        experimenter.open_tab(STUDY, tab)
+        experimenter.open_tab(LENGTHS.key, tab)
         if tab in ("dashboard", "sessions", "ledger"):
             page.get_by_text("Simulated", exact=True).first.click()
         if tab == "dashboard":
@@ -64,7 +66,7 @@ def test_every_console_page_is_accessible(
         traffic.settle()
         assert axe(page) == [], tab
         screenshot(page, f"console-{tab or 'overview'}-{scheme}")
-    experimenter.open_tab(STUDY, "sessions")
+    experimenter.open_tab(LENGTHS.key, "sessions")
     page.get_by_text("Simulated", exact=True).first.click()
     page.get_by_text("SIM-0001").first.click()
     expect(page.get_by_text("Session completed")).to_be_visible(timeout=PATIENCE_MS)
@@ -95,7 +97,7 @@ def test_the_tablet_is_accessible(
     assert axe(tablet.page) == []
     screenshot(tablet.page, f"tablet-pairing-{size[0]}")
     console.log_in()
-    console.open_tab(STUDY)
+    console.open_tab("reembodiment-latency")
     console.create_session()
     tablet.pair(console.code_for("tablet"))
     console.start()

@@ -32,13 +32,17 @@ class Lengths:
     roam_s: float
     task_s: float
 
+    @property
+    def key(self) -> str:
+        """Of the study with these lengths."""
+        return STUDY if self == SHIPPED else f"{STUDY}-{self.task_s:g}-s"
+
     def store(self, server: LiveServer) -> str:
         """Store the study with these lengths; its key."""
         if self == SHIPPED:
             return STUDY
-        key = f"{STUDY}-{self.task_s:g}-s"
         text = edited(
-            (f"key: {STUDY}", f"key: {key}"),
+            (f"key: {STUDY}", f"key: {self.key}"),
             ("duration_s: 120", f"duration_s: {self.roam_s}"),
             *[("duration_s: 60\n", f"duration_s: {self.task_s}\n")] * 2,
         )
@@ -46,11 +50,11 @@ class Lengths:
             credentials = {"username": "admin", "password": ADMIN_PASSWORD}
             client.post("/api/login", json=credentials).raise_for_status()
             client.post("/api/studies", json={"yaml": text}).raise_for_status()
-        return key
+        return self.key
 
 
 SHIPPED = Lengths(120.0, 60.0)
-SHORT = Lengths(30.0, 30.0)
+SHORT = Lengths(15.0, 30.0)
 """Long enough for a task with each limb, and for a latency to be measured in every phase."""
 
 

@@ -38,7 +38,7 @@ def short() -> str:
     """The shipped study with short phases."""
     text = edited(("key: reembodiment-latency", f"key: {KEY}"))
     text = text.replace("duration_s: 120", "duration_s: 2")
-    text = text.replace("duration_s: 60", "duration_s: 12")
+    text = text.replace("duration_s: 60", "duration_s: 6")
     return re.sub(r"(preparation_s|freeze_s): 5", r"\1: 0.5", text)
 
 

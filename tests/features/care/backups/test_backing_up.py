@@ -15,7 +15,7 @@ from app.models import Account, SessionEvent
 from tests.faults.bench import SqliteBench
 from tests.faults.interrupted import steps
 from tests.features.care.backups.lab import NOW, make
-from tests.features.care.opening.older import OLDER, older_database
+from tests.features.care.opening.older import EACH_OLDER, older_database
 from tests.support.filled import ROWS, contents, fill, tables_of
 
 
@@ -163,7 +163,7 @@ def test_a_database_without_tables_is_told_apart(tmp_path: Path) -> None:
     wrong.close()
 
 
-@pytest.mark.parametrize("revision", OLDER)
+@pytest.mark.parametrize("revision", EACH_OLDER)
 def test_an_older_schema_is_backed_up_as_it_is(tmp_path: Path, revision: str) -> None:
     """The way back from a migration."""
     bench = SqliteBench(tmp_path)

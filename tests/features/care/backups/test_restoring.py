@@ -14,7 +14,7 @@ from app.models import Account, Device, StudySession
 from tests.faults.bench import SqliteBench
 from tests.faults.interrupted import found
 from tests.features.care.backups.lab import make, put_back
-from tests.features.care.opening.older import OLDER, older_database
+from tests.features.care.opening.older import EACH_OLDER, older_database
 from tests.features.lab import Lab
 from tests.support.filled import contents
 
@@ -92,7 +92,7 @@ def test_rows_that_do_not_come_out_alike_are_refused(
 
 
 @pytest.mark.one_engine
-@pytest.mark.parametrize("revision", OLDER)
+@pytest.mark.parametrize("revision", EACH_OLDER)
 def test_an_older_backup_is_migrated_in_a_copy(
     database_url: str, tmp_path: Path, revision: str
 ) -> None:

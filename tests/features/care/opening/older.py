@@ -3,6 +3,8 @@
 import pickle
 from dataclasses import dataclass
 
+import pytest
+
 from app.database import open_database
 from tests.faults.bench import Bench, SqliteBench
 from tests.faults.interrupted import Found, found, steps, upgrade
@@ -11,6 +13,12 @@ from tests.support.shared_run import once, run_folder
 
 NEWEST = steps()[-1][1]
 OLDER = [after for _, after in steps()][:-1]
+FEW = (OLDER[0], OLDER[len(OLDER) // 2], OLDER[-1])
+EACH_OLDER = [
+    pytest.param(revision, marks=() if revision in FEW else pytest.mark.long) for revision in OLDER
+]
+"""Every older revision, for a test's parameters: the first, one in the middle and the last in the
+short form, whose migrations pass through all others."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from app.settings import Settings
 from tests.faults.bench import Bench, PostgresBench, SqliteBench
 from tests.faults.interrupted import found, steps
 from tests.features.care.opening.files import filled
-from tests.features.care.opening.older import NEWEST, OLDER, older_database
+from tests.features.care.opening.older import EACH_OLDER, NEWEST, older_database
 from tests.support.filled import fill
 from tests.support.postgres import running_cluster
 
@@ -58,7 +58,7 @@ def test_where_there_is_none_a_database_is_begun(bench: Bench, tmp_path: Path) -
         assert backups_in(tmp_path) == []
 
 
-@pytest.mark.parametrize("revision", OLDER)
+@pytest.mark.parametrize("revision", EACH_OLDER)
 def test_an_older_database_is_backed_up_and_migrated(
     bench: Bench, tmp_path: Path, revision: str
 ) -> None:
@@ -76,7 +76,7 @@ def test_an_older_database_is_backed_up_and_migrated(
         assert rows == {name: len(those) for name, those in older.old.contents.items()}
 
 
-@pytest.mark.parametrize("revision", OLDER)
+@pytest.mark.parametrize("revision", EACH_OLDER)
 def test_without_a_backup_nothing_is_migrated(
     bench: Bench, tmp_path: Path, revision: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -1,11 +1,14 @@
-"""A database with the shipped study, on both engines."""
+"""Databases with the shipped study, on both engines."""
 
 from collections.abc import Iterator
+from contextlib import ExitStack
 
 import pytest
 
 from app.database import Database, open_database
-from tests.features.builders import build_study
+from tests.features.builders import SessionSpec, build_session, build_study
+from tests.support.postgres import fresh_postgres
+from tests.support.sqlite import fresh_sqlite
 
 
 @pytest.fixture
@@ -16,3 +19,23 @@ def database(database_url: str) -> Iterator[Database]:
         build_study(db)
     yield database
     database.close()
+
+
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+def three_kinds(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Iterator[Database]:
+    """A session of a person, a simulated one and a test, for tests that only read."""
+    with ExitStack() as stack:
+        if request.param == "sqlite":
+            url = fresh_sqlite(tmp_path_factory.mktemp("kinds") / "reembody.sqlite")
+        else:
+            url = stack.enter_context(fresh_postgres())
+        database = open_database(url)
+        stack.callback(database.close)
+        with database.writing() as db:
+            build_study(db)
+            build_session(db, SessionSpec("P-0001"))
+            build_session(db, SessionSpec("SIM-0001", kind="simulated"))
+            build_session(db, SessionSpec("TEST-0001", kind="test"))
+        yield database

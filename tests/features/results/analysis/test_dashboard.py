@@ -86,6 +86,7 @@ def test_every_figure_is_valid_and_travels_as_plain_json(database: Database) -> 
 
 
 @pytest.mark.one_engine
+@pytest.mark.one_engine
 def test_every_figure_says_what_it_shows(database: Database) -> None:
     """Title, caption, units on the axes, hover texts, a clear background, and how many people."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
@@ -106,6 +107,7 @@ def test_every_figure_says_what_it_shows(database: Database) -> None:
         assert any("(" in title for title in titles)
 
 
+@pytest.mark.one_engine
 def test_simulated_data_are_marked_and_alone(database: Database) -> None:
     """Every title begins with Simulated; people's sessions are not in it, nor the reverse."""
     _build(
@@ -124,6 +126,7 @@ def test_simulated_data_are_marked_and_alone(database: Database) -> None:
     assert "SIM-" not in people.model_dump_json()
 
 
+@pytest.mark.one_engine
 def test_nobody_gives_a_sentence_instead_of_a_plot(database: Database) -> None:
     """Without participants every entry says in words what is missing."""
     _build(database)
@@ -134,6 +137,7 @@ def test_nobody_gives_a_sentence_instead_of_a_plot(database: Database) -> None:
 
 
 @pytest.mark.one_engine
+@pytest.mark.one_engine
 def test_one_participant_is_drawn_without_an_interval(database: Database) -> None:
     """The first participant is shown, and the caption says that an interval is missing."""
     _build(database, SessionSpec("P-1"))
@@ -143,6 +147,7 @@ def test_one_participant_is_drawn_without_an_interval(database: Database) -> Non
     assert "no interval yet" in agency.caption
 
 
+@pytest.mark.one_engine
 def test_only_valid_data_are_drawn(database: Database) -> None:
     """A withdrawn session and a first attempt change no measure."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
@@ -160,6 +165,7 @@ def test_the_counts_are_those_of_the_study(database: Database) -> None:
     assert (view.n_sessions, view.n_completed, view.avatar) == (2, 1, ["delayed_copy"])
 
 
+@pytest.mark.one_engine
 def test_a_blinded_dashboard_tells_nothing_about_open_sessions(database: Database) -> None:
     """Their measures are left out, and orders are not told apart."""
     with database.writing() as db:
@@ -186,6 +192,7 @@ def test_a_blinded_dashboard_tells_nothing_about_open_sessions(database: Databas
     assert {tuple(trace["x"]) for trace in _figures(view)["progress"]["data"]} == {("all orders",)}
 
 
+@pytest.mark.one_engine
 def test_a_filter_leaves_only_what_was_chosen_and_says_so(database: Database) -> None:
     """By participant, limb and day; every caption tells it, and what is left is all there is."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
@@ -203,6 +210,7 @@ def test_a_filter_leaves_only_what_was_chosen_and_says_so(database: Database) ->
     assert all((one.empty or "").startswith("Among what was chosen: ") for one in none.figures)
 
 
+@pytest.mark.one_engine
 @pytest.mark.one_engine
 def test_rows_that_do_not_count_are_drawn_only_when_asked_for(database: Database) -> None:
     """A withdrawn session is in the figures of all rows, and the captions say so."""
@@ -236,6 +244,7 @@ def test_the_rows_of_a_figure_are_those_drawn(database: Database) -> None:
     assert frame["participant_code"].nunique() == 3
 
 
+@pytest.mark.one_engine
 def test_an_unknown_study_has_no_dashboard(database: Database) -> None:
     """The error names the studies there are."""
     with database.reading() as db, pytest.raises(NotFound):

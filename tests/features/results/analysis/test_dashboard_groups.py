@@ -34,6 +34,7 @@ def test_a_group_has_the_figures_that_all_have_and_reads_no_other_table(
     assert sum(map(len, groups)) == len(whole)
 
 
+@pytest.mark.one_engine
 def test_kept_tables_are_read_anew_in_another_state_and_by_database(database: Database) -> None:
     """The same state reads nothing twice; another one, and another study's kind, begins anew."""
     _build(database, SessionSpec("P-0001"))
@@ -50,6 +51,7 @@ def test_kept_tables_are_read_anew_in_another_state_and_by_database(database: Da
         assert store.get(db, STUDY, "simulated", newer).sessions.empty
 
 
+@pytest.mark.one_engine
 def test_joint_error_over_a_session_is_the_mean_over_those_who_had_the_latency_then(
     database: Database,
 ) -> None:

@@ -163,6 +163,7 @@ def test_the_figure_of_a_study_is_filtered_and_its_rows_are_those_drawn(
     assert "participants SIM-1, the foot task" in chosen.caption
 
 
+@pytest.mark.one_engine
 def test_figures_are_drawn_anew_when_a_phase_gets_its_course(database: Database) -> None:
     """As those of an older version do after an update."""
     with database.writing() as db:

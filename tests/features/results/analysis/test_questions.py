@@ -43,6 +43,7 @@ def _result(found: StatisticsResults, measure: str, key: str) -> ResultView:
     return next(one for one in _measure(found, measure).results if one.key == key)
 
 
+@pytest.mark.one_engine
 def test_everybody_alike_gives_the_smallest_p_there_is(database: Database) -> None:
     """Six people of one mind: Friedman's exact p is 6^-5, W is 1, both latencies differ."""
     found = _found(database, 6, status="withdrawn")
@@ -65,6 +66,7 @@ def test_everybody_alike_gives_the_smallest_p_there_is(database: Database) -> No
     ]
 
 
+@pytest.mark.one_engine
 @pytest.mark.one_engine
 def test_a_glance_tells_where_a_measure_goes_and_not_where_it_should(database: Database) -> None:
     """Agency was predicted to fall; here it rises: that is told, and p is nearly 1."""
@@ -89,6 +91,7 @@ def test_a_glance_tells_where_a_measure_goes_and_not_where_it_should(database: D
 
 
 @pytest.mark.one_engine
+@pytest.mark.one_engine
 def test_what_does_not_change_goes_neither_way(database: Database) -> None:
     """Completed tasks are the same everywhere: no direction is told, and p is 1."""
     found = _found(database, 4)
@@ -108,6 +111,7 @@ def test_nothing_is_significant_and_alpha_is_told(database: Database) -> None:
 
 
 @pytest.mark.one_engine
+@pytest.mark.one_engine
 def test_alpha_is_the_one_that_was_declared(database: Database) -> None:
     """What is here beside the declared test is said to be exploratory."""
     declared = SECTION.replace("alpha: 0.05", "alpha: 0.01")
@@ -119,11 +123,13 @@ def test_alpha_is_the_one_that_was_declared(database: Database) -> None:
     assert "α = .05" not in found.model_dump_json()
 
 
+@pytest.mark.one_engine
 def test_one_person_is_no_sample(database: Database) -> None:
     """No measure, no error: two are needed for anything."""
     assert _found(database, 1).measures == []
 
 
+@pytest.mark.one_engine
 def test_a_rescaled_score_is_not_tested_twice(database: Database) -> None:
     """soe_rescaled is soe_thesis times 1.5: every rank test of both is the same."""
     keys = [one.key for one in _found(database, 3).measures]
