@@ -181,6 +181,8 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/tablet/live": TABLET,
     "PUT /api/tablet/language": TABLET,
     "PUT /api/tablet/help": TABLET,
+    "PUT /api/tablet/question": TABLET,
+    "PUT /api/tablet/refusal": TABLET,
     "POST /api/tablet/acknowledge": TABLET,
     "POST /api/tablet/submissions": TABLET,
     "POST /api/vr/avatar": HEADSET,

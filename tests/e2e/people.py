@@ -32,7 +32,8 @@ class Experimenter:
         """Make a session for a participant and open it."""
         self.page.get_by_role("button", name="New session").first.click()
         self.page.get_by_role("button", name="Create session").click()
-        expect(self.page.get_by_role("heading", name="Ready to start")).to_be_visible()
+        # Nothing is paired yet, so the pre-flight is open.
+        expect(self.page.get_by_role("heading", name="Before the start")).to_be_visible()
 
     def code_for(self, device: str) -> str:
         """Show the pairing code of the tablet or the headset, and read it."""

@@ -148,7 +148,8 @@ def log_in_and_create(keyboard: Keyboard, url: str) -> None:
     keyboard.choose(page.get_by_role("button", name="New session").first, "new session")
     expect(page.get_by_role("dialog").get_by_role("textbox").first).to_be_focused()
     keyboard.press("Enter", "create the session")
-    expect(page.get_by_role("heading", name="Ready to start")).to_be_visible(timeout=PATIENCE_MS)
+    planned = page.get_by_role("heading", name="Before the start")
+    expect(planned).to_be_visible(timeout=PATIENCE_MS)
 
 
 def start(keyboard: Keyboard) -> None:

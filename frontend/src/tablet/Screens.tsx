@@ -9,12 +9,13 @@ import { Mark } from "@shared/ui/Mark";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef } from "react";
 import callForHelpClasses from "./CallForHelp.module.css";
+import { type Refusal, useRefusal } from "./drafts/refusal";
 import { useSweep } from "./drafts/useKept";
 import { useTexts } from "./i18n";
 import classes from "./Screens.module.css";
 import { Consent } from "./screens/Consent";
 import { FormScreen } from "./screens/FormScreen";
-import { Finished, Held, Waiting } from "./screens/NothingToDo";
+import { Finished, Held, Refused, Waiting } from "./screens/NothingToDo";
 import { Reading } from "./screens/Reading";
 import { useTextSize } from "./textSize";
 import { STATE_KEY } from "./useTabletState";
@@ -27,7 +28,8 @@ interface ScreensProps {
 
 export function Screens({ state, connected, refresh }: ScreensProps): JSX.Element {
   const { t, setLanguage, language } = useTexts();
-  const content = useFocusOnNews(state);
+  const refusal = useRefusal(state);
+  const content = useFocusOnNews(state, refusal);
   useSweep(state, connected);
   useEffect(() => {
     const spoken = state.language === "de" ? "de" : "en";
@@ -51,16 +53,17 @@ export function Screens({ state, connected, refresh }: ScreensProps): JSX.Elemen
         </div>
       </header>
       <main className={classes.content} ref={content} tabIndex={-1}>
-        <Screen state={state} refresh={refresh} />
+        <Screen state={state} connected={connected} refresh={refresh} refusal={refusal} />
       </main>
     </div>
   );
 }
 
 /** Another screen is read from its beginning, also by somebody who hears it or goes by keys. */
-function useFocusOnNews({ screen, step_index, administration }: TabletState) {
+function useFocusOnNews(state: TabletState, refusal: Refusal) {
+  const { screen, step_index, administration } = state;
   const content = useRef<HTMLElement>(null);
-  const shown = `${screen} ${step_index} ${administration?.key ?? ""}`;
+  const shown = `${isRefused(state, refusal) ? "refused" : screen} ${step_index} ${administration?.key ?? ""}`;
   const before = useRef(shown);
   useEffect(() => {
     if (before.current === shown) return;
@@ -70,15 +73,27 @@ function useFocusOnNews({ screen, step_index, administration }: TabletState) {
   return content;
 }
 
-function Screen({ state, refresh }: Omit<ScreensProps, "connected">): JSX.Element {
+/** Refused is what the participant said last, whether or not the server knows of it yet. */
+const isRefused = ({ screen }: TabletState, { waiting }: Refusal): boolean =>
+  screen !== "finished" && (screen === "refused" || waiting?.refused === true);
+
+interface ScreenProps extends ScreensProps {
+  readonly refusal: Refusal;
+}
+
+function Screen({ state, connected, refresh, refusal }: ScreenProps): JSX.Element {
+  if (isRefused(state, refusal)) return <Refused connected={connected} refusal={refusal} />;
+  const refuse = () => refusal.say(true);
   switch (state.screen) {
     case "held":
       return <Held />;
     case "consent":
       if (state.consent != null && asksMore(state.consent)) {
-        return <Consent key={state.step_index} state={state} form={state.consent} />;
+        return (
+          <Consent key={state.step_index} state={state} form={state.consent} onRefuse={refuse} />
+        );
       }
-      return <Reading key={state.step_index} state={state} screen="consent" />;
+      return <Reading key={state.step_index} state={state} screen="consent" onRefuse={refuse} />;
     case "instructions":
       return (
         <Reading key={`${state.screen} ${state.step_index}`} state={state} screen={state.screen} />
@@ -95,6 +110,7 @@ function Screen({ state, refresh }: Omit<ScreensProps, "connected">): JSX.Elemen
       );
     case "finished":
       return <Finished state={state} />;
+    case "refused":
     case "waiting":
       return <Waiting state={state} />;
   }

@@ -28,7 +28,7 @@ class Lab:
 
 
 def make_lab(server: LiveServer, count: int, first: int = 0) -> Lab:
-    """Make `count` sessions, numbered from `first`: begun, materialised, their headset paired."""
+    """Make `count` sessions, numbered from `first`: begun, their headset paired."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()
@@ -39,11 +39,12 @@ def make_lab(server: LiveServer, count: int, first: int = 0) -> Lab:
 
 
 def call_phases(server: LiveServer, lab: Lab) -> None:
-    """Begin the phase of every session; their headsets must be connected."""
+    """Let every avatar appear and begin its phase; the headsets must be connected."""
     with server.client() as client:
         client.cookies.update(lab.cookies)
         for seat in lab.seats:
-            _command(client, f"/api/sessions/{seat.session_id}", "begin_phase")
+            for command in ("materialise", "begin_phase"):
+                _command(client, f"/api/sessions/{seat.session_id}", command)
 
 
 def study_text() -> str:
@@ -60,8 +61,7 @@ def _seat(client: httpx2.Client, number: int) -> Seat:
     at = f"/api/sessions/{view['id']}"
     shown = _post(client, f"{at}/pairings", {"device": "headset"})
     token = str(_post(client, "/api/devices/pair", {"code": shown["code"]})["token"])
-    for command in ("start", "materialise"):
-        view = _command(client, at, command)
+    view = _command(client, at, "start")
     return Seat(number, str(view["id"]), token)
 
 

@@ -26,11 +26,22 @@ SEVERITIES: dict[str, Severity] = {
     "stop_rule_near": "warning",
     "stop_rule_unknown": "warning",
     "help_asked": "critical",
+    "question_asked": "critical",
+    "consent_refused": "critical",
+    "refusal_retracted": "warning",
 }
-"""Every alarm there is. Critical: data are being lost, a phase stands, or somebody is unwell or
-calls."""
+"""Every alarm there is. Critical: data are being lost, a phase stands, or somebody is unwell, calls
+or does not want to take part."""
 
-STANDING = ("stop_rule_met", "stop_rule_near", "stop_rule_unknown", "help_asked")
+STANDING = (
+    "stop_rule_met",
+    "stop_rule_near",
+    "stop_rule_unknown",
+    "help_asked",
+    "question_asked",
+    "consent_refused",
+    "refusal_retracted",
+)
 """Alarms about the participant: they hold until a person or a form says otherwise, whatever becomes
 of the server and the headset in between."""
 

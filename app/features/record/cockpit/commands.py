@@ -17,7 +17,7 @@ from app.models import StudySession
 from app.platform.context import AppContext
 from app.protocol import Step
 
-_NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop")
+_NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop", "reopen_consent")
 _STARTS = ("start", "begin_phase")
 
 
@@ -43,7 +43,7 @@ def command_of(
         case "begin_phase":
             return c.BeginPhase(headset_connected=connected)
         case "materialise":
-            return c.Materialise(by="operator")
+            return c.Materialise(by="operator", headset_connected=connected)
         case "pause":
             # Asking again adds no event, so there would be nothing to hold the words.
             phase = state_of(session).phase
@@ -77,6 +77,8 @@ def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:
             return c.Skip(content=reason)
         case "override_stop":
             return c.OverrideStop(content=reason)
+        case "reopen_consent":
+            return c.RetractRefusal(by="operator", content=reason)
         case "abort":
             return c.Stop(status="aborted", content=reason)
         case _:

@@ -28,6 +28,7 @@ CommandType = Literal[
     "abort",
     "withdraw",
     "override_stop",
+    "reopen_consent",
     "note",
 ]
 
@@ -128,6 +129,16 @@ class HeldView(BaseModel):
     is_rise: bool
 
 
+class RefusalView(BaseModel):
+    """The participant does not want to take part: said at the consent of this step, at this time.
+
+    `at` is null in a log that was restored without its alarms.
+    """
+
+    step: int
+    at: datetime | None
+
+
 class DeviceView(BaseModel):
     """A paired device."""
 
@@ -213,6 +224,7 @@ class SessionView(SessionSummary):
     steps: list[StepView]
     current: CurrentView | None
     held: HeldView | None
+    refusal: RefusalView | None
     allowed: list[AllowedType]
     devices: list[DeviceView]
     alarms: list[AlarmView]

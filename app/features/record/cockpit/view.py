@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session, defer
 
 from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for, protocol_of, versions_of
-from app.features.record.alarms import open_alarms
+from app.features.record.alarms import AlarmView, open_alarms
 from app.features.record.cockpit.phase_views import phase_views
 from app.features.record.cockpit.schemas import (
     CurrentView,
@@ -16,6 +16,7 @@ from app.features.record.cockpit.schemas import (
     EventView,
     HeldView,
     NoteView,
+    RefusalView,
     SessionSummary,
     SessionView,
     SlotInfo,
@@ -48,7 +49,7 @@ def session_view(
     protocol = protocol_of(version)
     blinded = is_blind(db, caller, protocol, session)
     state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
-    reasons = _reasons(db, session)
+    reasons, alarms = _reasons(db, session), open_alarms(db, session.id)
     summary = _summary(
         session, protocol, version, _code(db, session), slot.sequence, blinded=blinded
     )
@@ -66,9 +67,10 @@ def session_view(
         steps=[_step(step, state, reasons, blinded=blinded) for step in plan],
         current=_current(plan, state),
         held=held_view(db, version, protocol, state),
+        refusal=_refusal(state, alarms),
         allowed=allowed_commands(plan, state),
         devices=_devices(db, context, session),
-        alarms=open_alarms(db, session.id),
+        alarms=alarms,
         phases=phase_views(db, session, blinded=blinded),
         notes=_notes(db, session),
         scores=stored_scores(db, session),
@@ -239,6 +241,14 @@ def _reasons(db: Session, session: StudySession) -> dict[int, str]:
             if payload["content_id"] in bodies:
                 reasons[payload["step"]] = str(bodies[payload["content_id"]])
     return reasons
+
+
+def _refusal(state: SessionState, alarms: Sequence[AlarmView]) -> RefusalView | None:
+    """The refusal that holds the session; None where there is none, or the session is over."""
+    if state.refused_consent is None or state.current is None:
+        return None
+    since = (alarm.since for alarm in alarms if alarm.code == "consent_refused")
+    return RefusalView(step=state.refused_consent, at=next(since, None))
 
 
 def held_view(

@@ -81,11 +81,17 @@ def headset_state(db: Session, session: StudySession) -> HeadsetState:
         step_index=state.current,
         step_kind=None if step is None else step.kind,
         materialised=state.materialised,
-        # Recording runs from the avatar's appearance to the debriefing.
-        recording=active and state.materialised and (step is None or step.kind != "debrief"),
+        recording=active and _records(state, step),
         phase=_phase_order(db, session, state, plan),
         participant=participant_info(db, session),
     )
+
+
+def _records(state: SessionState, step: Step | None) -> bool:
+    """Recording runs from the avatar's appearance to the debriefing, and never of somebody who
+    does not want to take part."""
+    is_debriefing = step is not None and step.kind == "debrief"
+    return state.materialised and state.refused_consent is None and not is_debriefing
 
 
 def participant_info(db: Session, session: StudySession) -> ParticipantInfo:

@@ -24,6 +24,8 @@ from app.features.record.sessions.engine import (
     commands,
 )
 from app.features.record.sessions.engine.commands import (
+    AskQuestion,
+    CloseQuestion,
     CompleteStep,
     CorrectAnswers,
     EraseData,
@@ -33,7 +35,9 @@ from app.features.record.sessions.engine.commands import (
     Materialise,
     OverrideCheck,
     RecordAvatar,
+    RefuseConsent,
     Report,
+    RetractRefusal,
     SubmitForm,
 )
 from app.features.record.sessions.journal import ChainCheck, canonical, events_of, verify_chain
@@ -47,7 +51,9 @@ from app.features.record.sessions.service import (
 )
 
 __all__ = [
+    "AskQuestion",
     "ChainCheck",
+    "CloseQuestion",
     "Command",
     "CompleteStep",
     "ConsentDesk",
@@ -64,7 +70,9 @@ __all__ = [
     "OverrideCheck",
     "PaperConsent",
     "RecordAvatar",
+    "RefuseConsent",
     "Report",
+    "RetractRefusal",
     "SessionState",
     "SubmitForm",
     "allowed_commands",

@@ -75,19 +75,16 @@ class ConsentDesk:
         )
 
     def from_operator(self, step: Step, paper: PaperConsent | None) -> ContentRef:
-        """A consent on paper, or one that was said and needs no more than that."""
-        wanted = _wanted(step)
-        needs = wanted.signature != "none" or any(not one.optional for one in wanted.statements)
-        if paper is None and needs:
+        """A consent on paper: nobody else can agree in the participant's place."""
+        _wanted(step)
+        if paper is None:
             raise InvalidInput(
-                "this study wants the participant's own consent",
+                "consent is the participant's own to give",
                 value=None,
                 valid="the form on the tablet, or paper_consent with place and reason",
-                remedy="Let the participant fill it in on the tablet, or have it signed on paper "
-                "and write down where the sheet is.",
+                remedy="Let the participant agree on the tablet, or have it signed on paper and "
+                "write down where the sheet is.",
             )
-        if paper is None:
-            return self._store(step, mode="operator", ticked=[])
         return self._store(step, mode="paper", ticked=None, paper=paper.model_dump())
 
     def _store(self, step: Step, *, mode: str, ticked: list[int] | None, **more: Any) -> ContentRef:

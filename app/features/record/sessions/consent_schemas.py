@@ -32,7 +32,7 @@ class ConsentGiven(BaseModel):
 class PaperConsent(BaseModel):
     """A consent that was signed on paper: where the sheet is kept, and why on paper."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", str_strip_whitespace=True)
 
     place: str = Field(min_length=1, max_length=200)
     reason: str = Field(min_length=1, max_length=1000)

@@ -5,6 +5,7 @@ They hold nothing that the events do not; they could be rebuilt at any time.
 
 from collections.abc import Sequence
 from datetime import datetime
+from typing import Literal
 
 from sqlalchemy.orm import Session
 
@@ -33,6 +34,12 @@ def project(
         case e.StopRuleOverridden():
             over = Condition("stop_rule_met", "the operator went on, with a reason on record")
             store_change(db, session.id, Change("cleared", over, now))
+        case e.ConsentRefused() | e.RefusalRetracted() | e.QuestionAsked() | e.QuestionClosed():
+            _note_said(db, session, event, now)
+        case e.StepCompleted(step=step) | e.StepSkipped(step=step):
+            if plan[step].kind == "consent":
+                over = Condition("refusal_retracted", "the consent has been decided on")
+                store_change(db, session.id, Change("cleared", over, now))
         case e.PhasePrepared():
             db.add(_phase_row(session, plan[event.step], event, now))
             db.flush()
@@ -40,6 +47,29 @@ def project(
             phase_id = getattr(event, "phase_id", None)
             if phase_id is not None:
                 _update_phase(db.get_one(Phase, (session.id, phase_id)), event, now)
+
+
+def _note_said(db: Session, session: StudySession, event: Event, now: datetime) -> None:
+    """The alarms that follow from what the participant said, by hand or on the tablet."""
+
+    def change(state: Literal["raised", "cleared"], code: str, message: str) -> None:
+        store_change(db, session.id, Change(state, Condition(code, message), now))
+
+    match event:
+        case e.ConsentRefused():
+            change("cleared", "refusal_retracted", "the participant refused again")
+            change("raised", "consent_refused", "The participant does not want to take part.")
+        case e.RefusalRetracted(by="tablet"):
+            change("cleared", "consent_refused", "the participant took it back on the tablet")
+            change("raised", "refusal_retracted", "The participant took the refusal back.")
+        case e.RefusalRetracted():
+            change("cleared", "consent_refused", "the operator showed the consent again")
+        case e.QuestionAsked():
+            change("raised", "question_asked", "The participant has a question about the text.")
+        case e.QuestionClosed(outcome="taken_back"):
+            change("cleared", "question_asked", "The participant took the question back.")
+        case _:
+            change("cleared", "question_asked", "The experimenter went to the participant.")
 
 
 def _phase_row(session: StudySession, step: Step, event: e.PhasePrepared, now: datetime) -> Phase:

@@ -11,9 +11,13 @@ from app.errors import InvalidInput
 from app.features.design.studies import protocol_of
 from app.features.record.questionnaires import Receipt, SubmissionRequest, submit
 from app.features.record.sessions import (
+    AskQuestion,
+    CloseQuestion,
     CompleteStep,
     ConsentDesk,
     ConsentGiven,
+    RefuseConsent,
+    RetractRefusal,
     apply_command,
     plan_of,
     state_of,
@@ -22,6 +26,7 @@ from app.features.record.tablet.schemas import (
     Acknowledgement,
     HelpWish,
     LanguageChoice,
+    RefusalWish,
     TabletState,
 )
 from app.features.record.tablet.service import may_ask, note_help, tablet_state
@@ -78,6 +83,39 @@ def put_help(wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet
     session = session_by_id(db, tablet.session_id, lock=True)
     if may_ask(state_of(session)):
         note_help(db, context, session, "asked" if wish.asked else "taken_back")
+    return tablet_state(db, session)
+
+
+@router.put("/question")
+def put_question(
+    wish: HelpWish, db: Writing, context: Context, tablet: PairedTablet
+) -> TabletState:
+    """Ask the experimenter about the text on the screen, or take the question back."""
+    session = session_by_id(db, tablet.session_id, lock=True)
+    if may_ask(state_of(session)):
+        command = AskQuestion() if wish.asked else CloseQuestion(outcome="taken_back")
+        apply_command(db, context, session, command, actor=f"tablet:{tablet.id}")
+    return tablet_state(db, session)
+
+
+@router.put("/refusal")
+def put_refusal(
+    wish: RefusalWish, db: Writing, context: Context, tablet: PairedTablet
+) -> TabletState:
+    """Refuse to take part, or take the refusal back; each wish counts once, however often it comes.
+
+    Until the operator has decided, nobody can go on with the session. Raises NotNow where the
+    session is over.
+    """
+    session = session_by_id(db, tablet.session_id, lock=True)
+    command = (
+        RefuseConsent(by="tablet", step=wish.step_index)
+        if wish.refused
+        else RetractRefusal(by="tablet")
+    )
+    apply_command(
+        db, context, session, command, actor=f"tablet:{tablet.id}", command_id=wish.wish_id
+    )
     return tablet_state(db, session)
 
 
@@ -175,6 +213,11 @@ def _seen(context: AppContext, device_id: str) -> ServerSentEvent | None:
 
 
 @calls.post("/sessions/{session_id}/help/answered", status_code=204)
-def post_help_answered(session_id: str, db: Writing, context: Context, _: SignedIn) -> None:
-    """Say that somebody went to the participant; the tablet says so, too."""
-    note_help(db, context, session_by_id(db, session_id, lock=True), "answered")
+def post_help_answered(session_id: str, db: Writing, context: Context, caller: SignedIn) -> None:
+    """Say that somebody went to the participant, who called or had a question; the tablet says so,
+    too."""
+    session = session_by_id(db, session_id, lock=True)
+    note_help(db, context, session, "answered")
+    if may_ask(state_of(session)):
+        closed = CloseQuestion(outcome="answered")
+        apply_command(db, context, session, closed, actor=caller.actor)

@@ -2,7 +2,8 @@
 
 The screen tells of its own session's current step and nothing about the condition. A call is an
 alarm of the session: it is on record with its times, no page can miss it, and it stands until
-somebody answers it, the participant takes it back or the session ends.
+somebody answers it, the participant takes it back or the session ends. A question about a text and
+a refused consent are alarms too, which the session's engine raises: they are events of its log.
 """
 
 from collections.abc import Mapping, Sequence
@@ -25,6 +26,7 @@ from app.platform.context import AppContext
 from app.protocol import Step, StudyProtocol
 
 CODE = "help_asked"
+QUESTION = "question_asked"
 _OVER = ("completed", "aborted", "withdrawn")
 _CALL_WORDS = {
     "asked": "The participant calls the experimenter from the tablet.",
@@ -45,8 +47,10 @@ def tablet_state(db: Session, session: StudySession) -> TabletState:
     plan, state = plan_of(db, session), state_of(session)
     step = None if state.current is None else plan[state.current]
     ended = state.status in ("completed", "aborted", "withdrawn")
-    screen = _screen(step, ended=ended, held=state.held is not None)
+    screen = _screen(step, state, ended=ended)
     language = session.language
+    called = {row.code for row in open_rows(db, session.id)}
+    own = _own_text(step, screen)
     return TabletState(
         session_id=session.id,
         version=session.version,
@@ -56,37 +60,47 @@ def tablet_state(db: Session, session: StudySession) -> TabletState:
         screen=screen,
         step_index=state.current,
         title=None if step is None else _text(step.title, language),
-        text=_words(protocol, plan, step, language, screen),
-        next=None if screen == "held" else _next(plan, state, language),
+        text=_words(protocol, plan, own, state, language, screen),
+        is_own_text=own is not None,
+        next=None if screen in ("held", "refused") else _next(plan, state, language),
         administration=current_administration(db, session) if screen == "form" else None,
         consent=consent_form(step, language) if step and screen == "consent" else None,
-        help_asked=help_asked(db, session.id),
+        help_asked=CODE in called,
+        question_asked=QUESTION in called,
+        is_refused=state.refused_consent is not None,
     )
 
 
-def _screen(step: Step | None, *, ended: bool, held: bool) -> Screen:
+def _screen(step: Step | None, state: SessionState, *, ended: bool) -> Screen:
     if ended:
         return "finished"
-    if held:
+    if state.refused_consent is not None:
+        return "refused"
+    if state.held is not None:
         return "held"
     return "waiting" if step is None else _SCREENS.get(step.kind, "waiting")
+
+
+def _own_text(step: Step | None, screen: Screen) -> Step | None:
+    """The step whose text is read; None where it has none, or nobody is to read it now."""
+    nothing = step is None or step.text is None or screen in ("held", "refused", "finished")
+    return None if nothing else step
 
 
 def _words(
     protocol: StudyProtocol,
     plan: Sequence[Step],
-    step: Step | None,
+    own: Step | None,
+    state: SessionState,
     language: str,
     screen: Screen,
 ) -> str | None:
     """The text of the step, or the study's calm waiting text; the tablet's own when held."""
-    if screen == "held":
-        return None
-    if screen == "finished":
-        # Debriefing is the last thing a participant reads.
-        step = next((late for late in reversed(plan) if late.kind == "debrief"), None)
-    if step is not None and step.text is not None:
-        return _text(protocol.texts[step.text], language)
+    if screen == "finished" and state.refused_consent is None:
+        # Debriefing is the last thing a participant reads; who refused was part of nothing.
+        own = next((late for late in reversed(plan) if late.kind == "debrief"), None)
+    if own is not None and own.text is not None:
+        return _text(protocol.texts[own.text], language)
     if screen == "waiting" and "waiting" in protocol.texts:
         return _text(protocol.texts["waiting"], language)
     return None
@@ -102,11 +116,6 @@ def _next(plan: Sequence[Step], state: SessionState, language: str) -> str | Non
 
 def _text(text: Mapping[str, str], language: str) -> str:
     return text.get(language) or next(iter(text.values()), "")
-
-
-def help_asked(db: Session, session_id: str) -> bool:
-    """Whether a call waits for an answer."""
-    return any(row.code == CODE for row in open_rows(db, session_id))
 
 
 def may_ask(state: SessionState) -> bool:

@@ -95,7 +95,8 @@ def _act(intake: Intake, session_id: str, message: ReportMessage, outcome: Outco
             _act_on_phase(db, intake.context, session_id, body, outcome)
         case MaterialisedReport():
             session = session_by_id(db, session_id, lock=True)
-            command = Materialise(by="headset", client_t_s=body.t_s)
+            # It says so itself, and by its journal also of what it did while nobody heard it.
+            command = Materialise(by="headset", client_t_s=body.t_s, headset_connected=True)
             apply_command(db, intake.context, session, command, actor="headset")
         case CompletionReport():
             _require_new(db, session_id, body)

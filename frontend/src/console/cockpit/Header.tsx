@@ -48,7 +48,7 @@ export function Header({ session, feed, onChecks, onLog, onHelp }: HeaderProps):
         <Order sequence={session.sequence} />
       )}
       <div className={classes.tools} data-tour="head">
-        <Feed state={feed} />
+        <Feed state={feed} ended={session.ended_at !== null} />
         {may("run") && hasConsent(session) && (
           <Button
             component={Link}
@@ -108,13 +108,20 @@ const hasConsent = ({ steps }: SessionView): boolean =>
 /** A short break of the line is not worth a warning; one that lasts is. */
 const WARN_AFTER_MS = 1500;
 
-function Feed({ state }: { readonly state: FeedState }): JSX.Element {
+interface FeedProps {
+  readonly state: FeedState;
+  /** Nothing of a session that is over is live; that the line is broken is still said. */
+  readonly ended: boolean;
+}
+
+function Feed({ state, ended }: FeedProps): JSX.Element | null {
   const { t } = useTexts();
   const [shown, setShown] = useState(state);
   useEffect(() => {
     const timer = setTimeout(() => setShown(state), state === "lost" ? WARN_AFTER_MS : 0);
     return () => clearTimeout(timer);
   }, [state]);
+  if (ended && shown !== "lost") return null;
   return (
     <span className={`${classes.feed} ${shown === "lost" ? classes.feedLost : ""}`} role="status">
       <svg width="10" height="10" viewBox="0 0 10 10" aria-hidden="true">

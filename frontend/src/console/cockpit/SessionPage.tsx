@@ -1,10 +1,8 @@
 /** The cockpit: everything one experimenter needs while a participant is in the headset. */
-import { Button } from "@mantine/core";
 import { useDisclosure } from "@mantine/hooks";
 import type { SessionView } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
-import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { useMay } from "../may";
 import { AfterWithdrawal } from "../rights/AfterWithdrawal";
@@ -30,10 +28,11 @@ import { ScoresPanel } from "./record/ScoresPanel";
 import { SuggestionsPanel } from "./record/SuggestionsPanel";
 import { Timeline } from "./record/Timeline";
 import { currentStep, primaryAction, type Reasoned } from "./session/action";
+import { CommandFailure } from "./session/CommandFailure";
 import { KeyboardHelp, useKeys } from "./session/keys";
 import { type Send, useSession } from "./session/useSession";
 import { CurrentStep } from "./step/CurrentStep";
-import { HeldCard } from "./step/HeldCard";
+import { HeldCard, RefusedCard } from "./step/HeldCard";
 import { OperatorEntry } from "./step/OperatorEntry";
 import { ReasonDialog } from "./step/ReasonDialog";
 
@@ -122,10 +121,18 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
         {!may("run") && <Notice tone="info" icon="info" title={t("read.only")} />}
         {ended && may("rights") && <AfterWithdrawal session={session} send={live.send} />}
         <CommandFailure live={live} />
-        {session.held === null ? (
-          <CurrentStep session={session} live={live} onAsk={ask} onEnterAnswers={entries.open} />
-        ) : (
+        {session.refusal !== null ? (
+          <RefusedCard refusal={session.refusal} onAsk={ask} />
+        ) : session.held !== null ? (
           <HeldCard held={session.held} onAsk={ask} />
+        ) : (
+          <CurrentStep
+            session={session}
+            live={live}
+            isReady={flight.isClear}
+            onAsk={ask}
+            onEnterAnswers={entries.open}
+          />
         )}
         {isPlanned && <PreflightCard session={session} flight={flight} />}
         {hasMovement(session) && <LiveCard session={session} store={live.store} />}
@@ -155,31 +162,4 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
       />
     </div>
   );
-}
-
-/** Why the last command was not carried out: refused, or overtaken by another operator. */
-function CommandFailure({
-  live,
-}: {
-  readonly live: ReturnType<typeof useSession>;
-}): JSX.Element | null {
-  const { t } = useTexts();
-  if (live.overtaken !== null) {
-    const { command, changes } = live.overtaken;
-    return (
-      <Notice
-        tone="warn"
-        title={t("stale.title")}
-        remedy={t("stale.remedy", { command: t(`command.${command.type}`) })}
-        actions={
-          <Button size="xs" variant="default" onClick={live.dismiss}>
-            {t("action.understood")}
-          </Button>
-        }
-      >
-        {changes.map(({ key, values }) => t(key, values)).join(" ")}
-      </Notice>
-    );
-  }
-  return live.error === null ? null : <Failure error={live.error} />;
 }

@@ -2,7 +2,7 @@ import type { Allowed, Current, SessionView } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { at, session, steps } from "./example";
 import { groupSteps } from "./record/Timeline";
-import { guidance, primaryAction, redoable, redoTarget } from "./session/action";
+import { guidance, lacksHeadset, primaryAction, redoable, redoTarget } from "./session/action";
 import { changesBetween } from "./session/useSession";
 
 const view = (
@@ -25,14 +25,18 @@ describe("the primary action", () => {
     const typeOf = (current: Current | null, allowed: Allowed) =>
       primaryAction(view(current, [allowed]))?.command.type;
     expect(typeOf(null, "start")).toBe("start");
-    expect(typeOf(at(0), "complete_step")).toBe("complete_step");
+    expect(typeOf(at(5), "complete_step")).toBe("complete_step");
     expect(typeOf(at(2), "begin_phase")).toBe("begin_phase");
     expect(typeOf(at(2, { status: "paused" }), "resume")).toBe("resume");
   });
 
   it("names the step it completes, so that a late click does not complete another", () => {
-    const action = primaryAction(view(at(0), ["complete_step"]));
-    expect(action?.command.step_index).toBe(0);
+    const action = primaryAction(view(at(5), ["complete_step"]));
+    expect(action?.command.step_index).toBe(5);
+  });
+
+  it("is never a consent: one press of the experimenter is nobody's agreement", () => {
+    expect(primaryAction(view(at(0), ["complete_step"]))).toBeNull();
   });
 
   it("leaves height to its form and answers to the participant", () => {
@@ -49,6 +53,26 @@ describe("the guidance", () => {
   });
 });
 
+describe("what needs a headset", () => {
+  const headset = (connected: boolean) => ({
+    id: "h",
+    kind: "headset" as const,
+    name: "",
+    paired_at: "2026-01-01T12:00:00Z",
+    connected,
+    last_seen_at: null,
+  });
+
+  it("is said before it is pressed, and only there", () => {
+    for (const type of ["materialise", "begin_phase", "resume"] as const) {
+      expect(lacksHeadset(view(at(2), [type]))).toBe(true);
+      expect(lacksHeadset(view(at(2), [type], { devices: [headset(false)] }))).toBe(true);
+      expect(lacksHeadset(view(at(2), [type], { devices: [headset(true)] }))).toBe(false);
+    }
+    expect(lacksHeadset(view(at(0), ["complete_step", "skip"]))).toBe(false);
+  });
+});
+
 describe("what another operator changed", () => {
   const keys = (before: SessionView, after: SessionView) =>
     changesBetween(before, after).map(({ key }) => key);
@@ -61,6 +85,14 @@ describe("what another operator changed", () => {
     expect(keys(running, view(at(3), []))).toEqual(["change.step"]);
     expect(keys(running, { ...running, notes: [note] })).toEqual(["change.notes"]);
     expect(keys(running, view(null, [], { status: "aborted" }))).toEqual(["change.status.aborted"]);
+  });
+
+  it("is told where it was the participant who changed it", () => {
+    const refused = { ...session, refusal: { step: 0, at: null } };
+    expect(keys(session, refused)).toEqual(["change.refused"]);
+    expect(keys(refused, session)).toEqual(["change.retracted"]);
+    const alarm = { code: "question_asked" } as SessionView["alarms"][number];
+    expect(keys(session, { ...session, alarms: [alarm] })).toEqual(["change.question"]);
   });
 
   it("is never nothing", () => {

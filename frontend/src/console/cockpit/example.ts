@@ -50,6 +50,7 @@ export const session: SessionView = {
   kind: "people",
   simulated: false,
   held: null,
+  refusal: null,
   blinded: false,
   avatar: "delayed_copy",
   avatar_configuration_hash: null,

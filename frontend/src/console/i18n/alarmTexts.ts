@@ -60,6 +60,14 @@ export const alarmsEn = {
   "alarm.help_asked": "The participant calls you",
   "alarm.help_asked.do": "Go and see. Press when you are there: the tablet says so, too.",
   "alarm.help_asked.answer": "I am there",
+  "alarm.question_asked": "The participant has a question",
+  "alarm.question_asked.do": "Go and answer it. Press when you are there: the tablet says so, too.",
+  "alarm.consent_refused": "Consent refused",
+  "alarm.consent_refused.do":
+    "Go to the participant; then end the session, or show the consent again.",
+  "alarm.refusal_retracted": "Refusal taken back",
+  "alarm.refusal_retracted.do":
+    "The consent is on the tablet again. Make sure it is a free choice.",
   "alarm.other": "Something is wrong",
   "alarm.other.do": "See the list of alarms.",
   "alarm.stream.target": "tracking",
@@ -138,6 +146,15 @@ export const alarmsDe: Readonly<Record<keyof typeof alarmsEn, string>> = {
   "alarm.help_asked": "Die Person ruft Sie",
   "alarm.help_asked.do": "Nachsehen. Drücken, wenn Sie da sind: Das Tablet zeigt es auch.",
   "alarm.help_asked.answer": "Ich bin da",
+  "alarm.question_asked": "Die Person hat eine Frage",
+  "alarm.question_asked.do":
+    "Hingehen und antworten. Drücken, wenn Sie da sind: Das Tablet zeigt es auch.",
+  "alarm.consent_refused": "Einwilligung abgelehnt",
+  "alarm.consent_refused.do":
+    "Zur Person gehen; dann die Sitzung beenden oder die Einwilligung erneut zeigen.",
+  "alarm.refusal_retracted": "Ablehnung zurückgenommen",
+  "alarm.refusal_retracted.do":
+    "Die Einwilligung ist wieder auf dem Tablet. Vergewissern Sie sich, dass die Wahl frei ist.",
   "alarm.other": "Etwas stimmt nicht",
   "alarm.other.do": "Siehe die Liste der Alarme.",
   "alarm.stream.target": "Tracking",

@@ -44,6 +44,22 @@ export const consentEn = {
   "consent.earlier_one": "{{count}} earlier record of this session is kept.",
   "consent.earlier_other": "{{count}} earlier records of this session are kept.",
   "consent.waiting": "Waiting for the participant to agree on the tablet",
+  "refused.title": "The participant does not want to take part",
+  "refused.at": "Said on the tablet at {{time}}, at step {{number}}.",
+  "refused.body":
+    "The session is held, and the tablet says that you know. Nobody needs a reason to refuse: thank the participant and end the session; the slot becomes free again. Show the consent again only if the participant wants to read it once more.",
+  "refused.end": "End the session",
+  "do.reopen_consent": "Show the consent again",
+  "command.reopen_consent": "show the consent again",
+  "ask.reopen_consent": "Show the consent again?",
+  "ask.reopen_consent.body":
+    "Only if the participant has changed their mind. Nothing is agreed to before they do so on the tablet. The reason becomes part of the record.",
+  "reason.refused": "Refused consent",
+  "reason.changedMind": "The participant changed their mind",
+  "reason.misread": "Pressed by mistake",
+  "change.refused": "The participant does not want to take part.",
+  "change.retracted": "The refusal was taken back.",
+  "change.question": "The participant calls you.",
 };
 
 export const consentDe: Readonly<Record<keyof typeof consentEn, string>> = {
@@ -91,4 +107,20 @@ export const consentDe: Readonly<Record<keyof typeof consentEn, string>> = {
   "consent.earlier_one": "{{count}} früherer Nachweis dieser Sitzung ist aufbewahrt.",
   "consent.earlier_other": "{{count}} frühere Nachweise dieser Sitzung sind aufbewahrt.",
   "consent.waiting": "Die Person kann jetzt am Tablet einwilligen",
+  "refused.title": "Die Person möchte nicht teilnehmen",
+  "refused.at": "Am Tablet gesagt um {{time}}, bei Schritt {{number}}.",
+  "refused.body":
+    "Die Sitzung ist angehalten, und das Tablet sagt, dass Sie es wissen. Niemand braucht einen Grund, um abzulehnen: Danken Sie der Person und beenden Sie die Sitzung; der Platz wird wieder frei. Zeigen Sie die Einwilligung nur dann erneut, wenn die Person sie noch einmal lesen möchte.",
+  "refused.end": "Sitzung beenden",
+  "do.reopen_consent": "Einwilligung erneut zeigen",
+  "command.reopen_consent": "Einwilligung erneut zeigen",
+  "ask.reopen_consent": "Einwilligung erneut zeigen?",
+  "ask.reopen_consent.body":
+    "Nur wenn die Person es sich anders überlegt hat. Eingewilligt ist erst, wenn sie es am Tablet tut. Die Begründung wird Teil des Protokolls.",
+  "reason.refused": "Einwilligung abgelehnt",
+  "reason.changedMind": "Die Person hat es sich anders überlegt",
+  "reason.misread": "Versehentlich gedrückt",
+  "change.refused": "Die Person möchte nicht teilnehmen.",
+  "change.retracted": "Die Ablehnung wurde zurückgenommen.",
+  "change.question": "Die Person ruft Sie.",
 };

@@ -16,6 +16,7 @@ import type {
   Pairing,
   Preflight,
   Receipt,
+  RefusalWish,
   SessionEvent,
   SessionSummary,
   SessionView,
@@ -127,6 +128,10 @@ export const tablet = {
     answer<Receipt>(server.POST("/api/tablet/submissions", { body: submission })),
   help: (asked: boolean) =>
     answer<TabletState>(server.PUT("/api/tablet/help", { body: { asked } })),
+  question: (asked: boolean) =>
+    answer<TabletState>(server.PUT("/api/tablet/question", { body: { asked } })),
+  refuse: (wish: RefusalWish) =>
+    answer<TabletState>(server.PUT("/api/tablet/refusal", { body: wish })),
   acknowledge: (stepIndex: number) =>
     answer<TabletState>(
       server.POST("/api/tablet/acknowledge", { body: { step_index: stepIndex } }),

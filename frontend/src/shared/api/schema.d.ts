@@ -1102,7 +1102,8 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Help Answered
-         * @description Say that somebody went to the participant; the tablet says so, too.
+         * @description Say that somebody went to the participant, who called or had a question; the tablet says so,
+         *     too.
          */
         readonly post: operations["post_help_answered_api_sessions__session_id__help_answered_post"];
         readonly delete?: never;
@@ -2198,6 +2199,49 @@ export interface paths {
          */
         readonly get: operations["get_live_api_tablet_live_get"];
         readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/tablet/question": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        /**
+         * Put Question
+         * @description Ask the experimenter about the text on the screen, or take the question back.
+         */
+        readonly put: operations["put_question_api_tablet_question_put"];
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/tablet/refusal": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly get?: never;
+        /**
+         * Put Refusal
+         * @description Refuse to take part, or take the refusal back; each wish counts once, however often it comes.
+         *
+         *     Until the operator has decided, nobody can go on with the session. Raises NotNow where the
+         *     session is over.
+         */
+        readonly put: operations["put_refusal_api_tablet_refusal_put"];
         readonly post?: never;
         readonly delete?: never;
         readonly options?: never;
@@ -3648,7 +3692,7 @@ export interface components {
              * Type
              * @enum {string}
              */
-            readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "note";
+            readonly type: "start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "note";
         };
         /**
          * CompletionReceipt
@@ -4606,7 +4650,7 @@ export interface components {
         };
         /**
          * HelpWish
-         * @description Whether the experimenter is wanted.
+         * @description Whether the experimenter is wanted, for any reason or to answer a question.
          */
         readonly HelpWish: {
             /** Asked */
@@ -6480,6 +6524,32 @@ export interface components {
             readonly value: unknown;
         };
         /**
+         * RefusalView
+         * @description The participant does not want to take part: said at the consent of this step, at this time.
+         *
+         *     `at` is null in a log that was restored without its alarms.
+         */
+        readonly RefusalView: {
+            /** At */
+            readonly at: string | null;
+            /** Step */
+            readonly step: number;
+        };
+        /**
+         * RefusalWish
+         * @description Whether the participant refuses the consent of a step, or takes the refusal back.
+         *
+         *     `wish_id` is made at the press: the same wish may come any number of times, also late.
+         */
+        readonly RefusalWish: {
+            /** Refused */
+            readonly refused: boolean;
+            /** Step Index */
+            readonly step_index: number;
+            /** Wish Id */
+            readonly wish_id: string;
+        };
+        /**
          * Replay
          * @description One phase. Latency, contacts, completions and scene are left out of a `participant` view.
          *
@@ -6967,7 +7037,7 @@ export interface components {
             /** Alarms */
             readonly alarms: readonly components["schemas"]["AlarmView"][];
             /** Allowed */
-            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "note") | "enter_answers")[];
+            readonly allowed: readonly (("start" | "complete_step" | "begin_phase" | "materialise" | "pause" | "resume" | "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent" | "note") | "enter_answers")[];
             /** Avatar */
             readonly avatar: string;
             /** Avatar Configuration Hash */
@@ -7000,6 +7070,7 @@ export interface components {
             readonly participant_code: string;
             /** Phases */
             readonly phases: readonly components["schemas"]["PhaseView"][];
+            readonly refusal: components["schemas"]["RefusalView"] | null;
             /** Scores */
             readonly scores: readonly components["schemas"]["StoredScores"][];
             /** Sequence */
@@ -7626,7 +7697,11 @@ export interface components {
          * @description What the tablet shows now; `next` says what comes next, in the participant's language.
          *
          *     `held`: the participant waits for the experimenter, and nothing on the tablet goes on.
-         *     `help_asked`: the experimenter was called and has not come yet.
+         *     `refused`: the participant does not want to take part and the experimenter knows; `is_refused`
+         *     says so also where the session has ended since.
+         *     `is_own_text`: `text` belongs to the step, so its title stands above it; else it is the study's
+         *     waiting text.
+         *     `help_asked`, `question_asked`: the experimenter was called and has not come yet.
          */
         readonly TabletState: {
             readonly administration: components["schemas"]["Administration"] | null;
@@ -7636,6 +7711,16 @@ export interface components {
              * @default false
              */
             readonly help_asked: boolean;
+            /**
+             * Is Own Text
+             * @default false
+             */
+            readonly is_own_text: boolean;
+            /**
+             * Is Refused
+             * @default false
+             */
+            readonly is_refused: boolean;
             /** Language */
             readonly language: string;
             /** Languages */
@@ -7643,10 +7728,15 @@ export interface components {
             /** Next */
             readonly next: string | null;
             /**
+             * Question Asked
+             * @default false
+             */
+            readonly question_asked: boolean;
+            /**
              * Screen
              * @enum {string}
              */
-            readonly screen: "waiting" | "held" | "consent" | "instructions" | "form" | "finished";
+            readonly screen: "waiting" | "held" | "refused" | "consent" | "instructions" | "form" | "finished";
             /** Session Id */
             readonly session_id: string;
             /** Simulated */
@@ -13173,6 +13263,90 @@ export interface operations {
                 };
                 content: {
                     readonly "text/event-stream": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_question_api_tablet_question_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["HelpWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TabletState"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly put_refusal_api_tablet_refusal_put: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody: {
+            readonly content: {
+                readonly "application/json": components["schemas"]["RefusalWish"];
+            };
+        };
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TabletState"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };

@@ -39,6 +39,9 @@ export type CommandType = Schemas["CommandRequest"]["type"];
 /** What the operator may do now: a command, or entering a form that is due. */
 export type Allowed = SessionView["allowed"][number];
 
+/** A participant who refuses the consent of a step, or takes the refusal back. */
+export type RefusalWish = Schemas["RefusalWish"];
+
 export type Network = Schemas["NetworkView"];
 export type Account = Schemas["AccountView"];
 export type StudySummary = Schemas["StudySummary"];

@@ -5,6 +5,7 @@ import { uuid } from "@shared/uuid";
 import { openDB } from "idb";
 import { beforeEach, describe, expect, it } from "vitest";
 import { deliver } from "./deliver";
+import { isFinal } from "./refusal";
 import { DraftStore, type Kept } from "./store";
 
 const NOW = new Date("2026-01-01T12:00:00Z");
@@ -145,10 +146,13 @@ describe("the last screen", () => {
     step_index: 2,
     title: "Embodiment",
     text: null,
+    is_own_text: false,
     next: "The task",
     administration: { key: "form#1" } as TabletState["administration"],
     consent: null,
     help_asked: false,
+    question_asked: false,
+    is_refused: false,
     ...changed,
   });
 
@@ -236,5 +240,34 @@ describe("a tablet of an older version", () => {
     database.close();
     const opened = await new DraftStore(old).open("session", "form#1", NOW);
     expect(opened.draft).toEqual({ ...DRAFT, traces: {} });
+  });
+});
+
+describe("a refusal that waits", () => {
+  const wish = (refused: boolean) => ({ wish_id: uuid(), step_index: 0, refused });
+
+  it("comes back after a restart, the newest of its session alone", async () => {
+    const [first, second] = [wish(true), wish(false)];
+    await store.keepWish("session", first);
+    await store.keepWish("session", second);
+    expect(await new DraftStore(name).wish("session")).toEqual(second);
+    expect(await store.wish("other")).toBeUndefined();
+  });
+
+  it("is forgotten by its own id, so that a late answer leaves a newer one", async () => {
+    const [first, second] = [wish(true), wish(false)];
+    await store.keepWish("session", first);
+    await store.keepWish("session", second);
+    await store.forgetWish("session", first.wish_id);
+    expect(await store.wish("session")).toEqual(second);
+    await store.forgetWish("session", second.wish_id);
+    expect(await store.wish("session")).toBeUndefined();
+  });
+
+  it("is sent again until the server has looked at it", () => {
+    const answered = (status: number) => new ApiError(status, { code: "x", message: "x" });
+    expect([409, 422].map((status) => isFinal(answered(status)))).toEqual([true, true]);
+    for (const status of [401, 429, 500, 503]) expect(isFinal(answered(status))).toBe(false);
+    expect(isFinal(new Unreachable("no network"))).toBe(false);
   });
 });

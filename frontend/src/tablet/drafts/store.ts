@@ -7,11 +7,14 @@
  * sent, after a lost answer or a reload, the server stores it once. The record is deleted when the
  * server has confirmed it, and not before.
  *
+ * A refusal to take part waits in the same way until the server knows of it: the newest wish of a
+ * session replaces the one before.
+ *
  * The screen is the newest one of the session that the tablet is paired with; it goes with the end
  * of the session or of the pairing. A consent that somebody is about to give is kept with its lines
  * and its signature for as long as it is on the screen, and is never sent by itself.
  */
-import type { Submission, TabletState } from "@shared/api/types";
+import type { RefusalWish, Submission, TabletState } from "@shared/api/types";
 import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
 import { uuid } from "@shared/uuid";
 import { type DBSchema, type IDBPDatabase, openDB } from "idb";
@@ -33,6 +36,7 @@ interface Tables extends DBSchema {
   kept: { key: string; value: Kept };
   screen: { key: string; value: TabletState };
   signing: { key: string; value: Signing };
+  wish: { key: string; value: RefusalWish };
 }
 
 /** There is one screen. */
@@ -50,11 +54,12 @@ export class DraftStore {
   readonly #database: Promise<IDBPDatabase<Tables>>;
 
   constructor(name = "reembody-tablet") {
-    this.#database = openDB<Tables>(name, 3, {
+    this.#database = openDB<Tables>(name, 4, {
       upgrade: (database, before) => {
         if (before < 1) database.createObjectStore("kept", { keyPath: "id" });
         if (before < 2) database.createObjectStore("screen");
         if (before < 3) database.createObjectStore("signing");
+        if (before < 4) database.createObjectStore("wish");
       },
       // A page of a newer version waits to open it.
       blocking: (_current, _wanted, event) => (event.target as IDBDatabase).close(),
@@ -133,12 +138,17 @@ export class DraftStore {
 
   /** Keep what the server wants to be shown; with the end of the session nothing more is. */
   async keepScreen(state: TabletState): Promise<void> {
-    const tables = ["kept", "screen", "signing"] as const;
+    const tables = ["kept", "screen", "signing", "wish"] as const;
     const transaction = (await this.#database).transaction(tables, "readwrite");
     const signings = transaction.objectStore("signing");
     for (const key of await signings.getAllKeys()) {
       // It was given, or nobody asks for it any more.
       if (state.screen !== "consent" || key !== signingKey(state)) await signings.delete(key);
+    }
+    const wishes = transaction.objectStore("wish");
+    for (const key of await wishes.getAllKeys()) {
+      // The tablet is paired with another session now, or this one is over.
+      if (key !== state.session_id || state.screen === "finished") await wishes.delete(key);
     }
     const screens = transaction.objectStore("screen");
     if (state.screen === "finished") {
@@ -173,6 +183,27 @@ export class DraftStore {
   /** How far it had come, before a reload or the browser's end. */
   async signing(state: TabletState): Promise<Signing | undefined> {
     return (await this.#database).get("signing", signingKey(state));
+  }
+
+  /** Keep what the participant says about taking part, until the server knows of it. */
+  async keepWish(sessionId: string, wish: RefusalWish): Promise<void> {
+    const options = { durability: "strict" } as const;
+    const transaction = (await this.#database).transaction("wish", "readwrite", options);
+    await transaction.store.put(wish, sessionId);
+    await transaction.done;
+  }
+
+  /** What still waits to be sent, also after a reload or the browser's end. */
+  async wish(sessionId: string): Promise<RefusalWish | undefined> {
+    return (await this.#database).get("wish", sessionId);
+  }
+
+  /** The server knows of it; a newer wish stays. */
+  async forgetWish(sessionId: string, wishId: string): Promise<void> {
+    const transaction = (await this.#database).transaction("wish", "readwrite");
+    const known = await transaction.store.get(sessionId);
+    if (known?.wish_id === wishId) await transaction.store.delete(sessionId);
+    await transaction.done;
   }
 
   /** Drafts that nobody went on with for two days leave the tablet; what waits to be sent stays. */

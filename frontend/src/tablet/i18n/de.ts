@@ -63,11 +63,15 @@ export const de: Record<keyof typeof en, string> = {
   "reading.more": "Weiterlesen",
   "ask.question": "Ich habe eine Frage",
   "ask.decline": "Ich möchte nicht teilnehmen",
-  "ask.question.title": "Bitte fragen Sie",
-  "ask.question.body": "Sprechen Sie die Versuchsleitung an. Danach können Sie hier weitermachen.",
-  "ask.decline.title": "Das ist in Ordnung",
-  "ask.decline.body":
-    "Bitte sagen Sie es der Versuchsleitung. Sie müssen keinen Grund nennen und haben keinen Nachteil.",
+  "ask.question.title": "Die Versuchsleitung ist gerufen",
+  "ask.question.body": "Bitte stellen Sie Ihre Frage. Danach können Sie hier weitermachen.",
+  "refused.title": "Das ist in Ordnung",
+  "refused.told":
+    "Die Versuchsleitung weiß, dass Sie nicht teilnehmen möchten, und kommt zu Ihnen.",
+  "refused.untold":
+    "Dieses Tablet hat gerade keine Verbindung. Bitte sagen Sie der Versuchsleitung, dass Sie nicht teilnehmen möchten.",
+  "refused.free": "Sie müssen keinen Grund nennen, und Sie haben keinen Nachteil.",
+  "refused.takeBack": "Ich habe es mir anders überlegt",
   "unit.years": "Jahre",
   "form.yes": "Ja",
   "form.no": "Nein",
@@ -90,6 +94,9 @@ export const de: Record<keyof typeof en, string> = {
   "held.body": "Sie bleiben auf diesem Tablet. Bitte sagen Sie der Versuchsleitung Bescheid.",
   "sent.title": "Danke, Ihre Antworten sind gespeichert",
   "sent.body": "Gleich geht es weiter.",
+  "finished.refused.title": "Danke für Ihre Zeit",
+  "finished.refused.body":
+    "Sie haben nicht teilgenommen. Bitte geben Sie das Tablet der Versuchsleitung zurück, die Ihre Fragen gern beantwortet.",
   "finished.title": "Danke für Ihre Teilnahme",
   "finished.body":
     "Sie sind fertig. Bitte geben Sie das Tablet der Versuchsleitung zurück, die Ihre Fragen gern beantwortet.",

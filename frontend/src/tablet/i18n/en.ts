@@ -58,11 +58,14 @@ export const en = {
   "reading.more": "Read on",
   "ask.question": "I have a question",
   "ask.decline": "I do not want to take part",
-  "ask.question.title": "Please ask",
-  "ask.question.body": "Speak to the experimenter. You can go on here afterwards.",
-  "ask.decline.title": "That is all right",
-  "ask.decline.body":
-    "Please tell the experimenter. You need not give a reason, and there is no disadvantage.",
+  "ask.question.title": "The experimenter has been called",
+  "ask.question.body": "Please ask your question. You can go on here afterwards.",
+  "refused.title": "That is all right",
+  "refused.told": "The experimenter knows that you do not want to take part, and will come to you.",
+  "refused.untold":
+    "This tablet has no connection at the moment. Please tell the experimenter that you do not want to take part.",
+  "refused.free": "You do not have to give a reason, and there is no disadvantage.",
+  "refused.takeBack": "I have changed my mind",
   "unit.years": "years",
   "form.yes": "Yes",
   "form.no": "No",
@@ -85,6 +88,9 @@ export const en = {
   "held.body": "They are kept on this tablet. Please tell the experimenter.",
   "sent.title": "Thank you, your answers are stored",
   "sent.body": "It goes on in a moment.",
+  "finished.refused.title": "Thank you for your time",
+  "finished.refused.body":
+    "You did not take part. Please give the tablet back to the experimenter, who will gladly answer your questions.",
   "finished.title": "Thank you for taking part",
   "finished.body":
     "You are done. Please give the tablet back to the experimenter, who will gladly answer your questions.",

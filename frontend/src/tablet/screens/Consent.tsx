@@ -10,6 +10,7 @@ import { useKeptSigning } from "../drafts/useKept";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { STATE_KEY } from "../useTabletState";
+import { Asking, QuestionNotice, useQuestion } from "./Asking";
 import classes from "./Consent.module.css";
 import { Prose, ScrollHint } from "./Prose";
 import { SignaturePad } from "./SignaturePad";
@@ -19,13 +20,14 @@ import { givenOf, missingOf, type Signing } from "./signed";
 interface ConsentProps {
   readonly state: TabletState;
   readonly form: ConsentForm;
+  readonly onRefuse: () => void;
 }
 
-export function Consent({ state, form }: ConsentProps): JSX.Element {
+export function Consent({ state, form, onRefuse }: ConsentProps): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
   const [signing, setSigning] = useKeptSigning(state);
-  const [asking, setAsking] = useState<"question" | "decline" | null>(null);
+  const question = useQuestion(state);
   const [shown, setShown] = useState(false);
   const give = useMutation({
     mutationFn: () => consents.give(givenOf(form, signing, state.step_index ?? 0)),
@@ -46,11 +48,7 @@ export function Consent({ state, form }: ConsentProps): JSX.Element {
       <Statements form={form} signing={signing} onChange={setSigning} />
       <Sign form={form} signing={signing} onChange={setSigning} />
       <div className={screen.ask} aria-live="polite">
-        {asking !== null && (
-          <Notice tone="info" icon="talk" title={t(`ask.${asking}.title`)}>
-            {t(`ask.${asking}.body`)}
-          </Notice>
-        )}
+        <QuestionNotice question={question} />
         {shown && missing !== null && (
           <Notice tone="warn" title={t(`consent.missing.${missing}`)} />
         )}
@@ -58,14 +56,7 @@ export function Consent({ state, form }: ConsentProps): JSX.Element {
       </div>
       <ScrollHint />
       <div className={screen.foot}>
-        <div>
-          <Button variant="subtle" color="gray" size="sm" onClick={() => setAsking("question")}>
-            {t("ask.question")}
-          </Button>
-          <Button variant="subtle" color="gray" size="sm" onClick={() => setAsking("decline")}>
-            {t("ask.decline")}
-          </Button>
-        </div>
+        <Asking question={question} onRefuse={onRefuse} />
         <Button
           type="submit"
           size="lg"

@@ -1,12 +1,14 @@
-/** Screens without a task: waiting, held by a stop rule, and finished. */
+/** Screens without a task: waiting, held by a stop rule, not taking part, and finished. */
+import { Button } from "@mantine/core";
 import type { TabletState } from "@shared/api/types";
 import { Mark } from "@shared/ui/Mark";
 import type { JSX } from "react";
+import type { Refusal } from "../drafts/refusal";
 import { useTexts } from "../i18n";
 import { Prose } from "./Prose";
 import classes from "./screens.module.css";
 
-/** Nothing to do here at the moment: say so calmly, and what comes. */
+/** Nothing to press here at the moment: say so calmly, and what comes; or a step's own text. */
 export function Waiting({ state }: { readonly state: TabletState }): JSX.Element {
   const { t } = useTexts();
   return (
@@ -14,7 +16,9 @@ export function Waiting({ state }: { readonly state: TabletState }): JSX.Element
       <span className={classes.breathing}>
         <Mark size={64} />
       </span>
-      <h1 className={classes.calmTitle}>{t("waiting.title")}</h1>
+      <h1 className={classes.calmTitle}>
+        {state.is_own_text && state.title !== null ? state.title : t("waiting.title")}
+      </h1>
       <div className={classes.calmText}>
         {state.text === null ? t("waiting.body") : <Prose text={state.text} />}
       </div>
@@ -42,15 +46,45 @@ export function Held(): JSX.Element {
   );
 }
 
+interface RefusedProps {
+  readonly connected: boolean;
+  readonly refusal: Refusal;
+}
+
+/** The participant does not want to take part: the experimenter knows, and nothing else is asked. */
+export function Refused({ connected, refusal }: RefusedProps): JSX.Element {
+  const { t } = useTexts();
+  const { waiting, say } = refusal;
+  // Said on this tablet, and not known to the experimenter yet.
+  const untold = waiting?.refused === true && !connected;
+  return (
+    <div className={classes.calm} role="status">
+      <Mark size={64} />
+      <h1 className={classes.calmTitle}>{t("refused.title")}</h1>
+      <p className={classes.calmText}>{t(untold ? "refused.untold" : "refused.told")}</p>
+      <p className={classes.calmText}>{t("refused.free")}</p>
+      <Button
+        variant="subtle"
+        color="gray"
+        loading={waiting !== null && connected}
+        onClick={() => say(false)}
+      >
+        {t("refused.takeBack")}
+      </Button>
+    </div>
+  );
+}
+
 /** The end of the visit. */
 export function Finished({ state }: { readonly state: TabletState }): JSX.Element {
   const { t } = useTexts();
+  const words = state.is_refused ? "finished.refused" : "finished";
   return (
     <div className={classes.calm}>
       <Mark size={64} />
-      <h1 className={classes.calmTitle}>{t("finished.title")}</h1>
+      <h1 className={classes.calmTitle}>{t(`${words}.title`)}</h1>
       <div className={classes.calmText}>
-        {state.text === null ? t("finished.body") : <Prose text={state.text} />}
+        {state.text === null ? t(`${words}.body`) : <Prose text={state.text} />}
       </div>
     </div>
   );

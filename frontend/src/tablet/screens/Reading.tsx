@@ -5,22 +5,24 @@ import type { TabletState } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQueryClient } from "@tanstack/react-query";
-import { type JSX, useState } from "react";
+import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import { STATE_KEY } from "../useTabletState";
+import { Asking, QuestionNotice, useQuestion } from "./Asking";
 import { Prose, ScrollHint } from "./Prose";
 import classes from "./screens.module.css";
 
 interface ReadingProps {
   readonly state: TabletState;
   readonly screen: "consent" | "instructions";
+  readonly onRefuse?: (() => void) | undefined;
 }
 
-export function Reading({ state, screen }: ReadingProps): JSX.Element {
+export function Reading({ state, screen, onRefuse }: ReadingProps): JSX.Element {
   const { t } = useTexts();
   const queries = useQueryClient();
-  const [asking, setAsking] = useState<"question" | "decline" | null>(null);
+  const question = useQuestion(state);
   const goOn = useMutation({
     mutationFn: () => tablet.acknowledge(state.step_index ?? 0),
     onSuccess: (answer) => queries.setQueryData(STATE_KEY, answer),
@@ -30,30 +32,17 @@ export function Reading({ state, screen }: ReadingProps): JSX.Element {
       <h1 className={classes.readingTitle}>{state.title ?? t(`${screen}.title`)}</h1>
       <Prose text={state.text ?? ""} />
       <div className={classes.ask} aria-live="polite">
-        {screen === "instructions" && asking === null && (
+        {screen === "instructions" && !question.asked && (
           <Notice tone="info" icon="talk" title={t("instructions.ask")}>
             {t("instructions.askBody")}
           </Notice>
         )}
-        {asking !== null && (
-          <Notice tone="info" icon="talk" title={t(`ask.${asking}.title`)}>
-            {t(`ask.${asking}.body`)}
-          </Notice>
-        )}
+        <QuestionNotice question={question} />
         {goOn.isError && <Failure error={goOn.error} onRetry={() => goOn.mutate()} />}
       </div>
       <ScrollHint />
       <div className={classes.foot}>
-        <div>
-          <Button variant="subtle" color="gray" size="sm" onClick={() => setAsking("question")}>
-            {t("ask.question")}
-          </Button>
-          {screen === "consent" && (
-            <Button variant="subtle" color="gray" size="sm" onClick={() => setAsking("decline")}>
-              {t("ask.decline")}
-            </Button>
-          )}
-        </div>
+        <Asking question={question} onRefuse={onRefuse} />
         <Button
           size="lg"
           loading={goOn.isPending}

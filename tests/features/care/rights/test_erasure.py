@@ -21,6 +21,7 @@ from app.models import (
 )
 from tests.features.care.rights.visit import (
     CANARY,
+    SHEET,
     Visit,
     erase,
     in_tables,
@@ -196,7 +197,7 @@ def test_a_completed_session_takes_nothing_more_either(site: Site) -> None:
     """Not from a headset that brings what it kept, although a finished session usually does."""
     session_id = site.join(kind="people", participant_code=mine("done"))
     view = site.command(session_id, "start")
-    site.command(session_id, "complete_step")
+    site.command(session_id, "complete_step", paper_consent=SHEET)
     submit(site, session_id, occupation=mine("done"))
     token = site.token(session_id)
     while view["status"] == "active":

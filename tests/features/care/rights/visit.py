@@ -32,6 +32,7 @@ from tests.wire.samples import message, standing
 
 CANARY = "CANARY-7f3a91c2"
 FRAMES = 180
+SHEET = {"place": "Folder A, sheet 12", "reason": "No tablet in this test"}
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ def make_visit(site: Site, code: str = CANARY) -> Visit:
     session_id = site.join(kind="people", participant_code=code)
     _pair_tablet(site, session_id, name=code)
     site.command(session_id, "start")
-    site.command(session_id, "complete_step")
+    site.command(session_id, "complete_step", paper_consent=SHEET)
     submit(site, session_id, occupation=code, sex_self_description=code)
     _refused_form(site, session_id, code)
     site.command(session_id, "note", text=f"They said {code}.")

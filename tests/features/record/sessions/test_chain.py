@@ -21,6 +21,7 @@ CANARY = "canary-7f3a"
 def logged(lab: Lab) -> str:
     """A session with at least eight events, a note and reasons among them."""
     view = lab.skip_to(lab.join(), "materialise")
+    lab.context.hub.headset_joined(view["id"])
     view = lab.command(view, "materialise")
     view = lab.command(view, "skip", reason="short of time")
     lab.command(view, "note", text=f"{CANARY} note")

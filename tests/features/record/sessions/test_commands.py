@@ -115,6 +115,15 @@ def test_a_phase_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
     assert "Pair or wake the headset" in refusal["remedy"]
 
 
+def test_a_body_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
+    """Nobody would see it, and the log would say that it had appeared."""
+    view = lab.skip_to(lab.join(), "materialise")
+    refusal = error(lab.try_command(view, "materialise"), 409, "not_now")
+    assert refusal["value"] == "headset not connected"
+    lab.context.hub.headset_joined(view["id"])
+    assert lab.command(view, "materialise")["steps"][view["current"]["index"]]["status"] == "done"
+
+
 def test_a_refused_command_leaves_no_words_behind(lab: Lab, planned: Json) -> None:
     """The reason of a command that cannot be done now is not stored."""
     error(lab.try_command(planned, "skip", reason="too early"), 409, "not_now")

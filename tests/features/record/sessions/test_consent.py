@@ -138,11 +138,26 @@ def test_a_consent_on_paper_says_where_the_sheet_is(lab: Lab, view: Json) -> Non
 
 
 def test_a_plain_consent_has_a_record_too(lab: Lab) -> None:
-    """Of the shipped study: one press on the tablet, or said aloud to the operator."""
+    """Of the shipped study, which wants no signature: one press, and it is the participant's."""
     pressed = lab.command(lab.join(), "start")
     ok(lab.tablet(pressed["id"]).post("/api/tablet/acknowledge", json={"step_index": 0}))
-    said = lab.command(lab.command(lab.join(), "start"), "complete_step", step_index=0)
-    assert [record(lab, one)["mode"] for one in (pressed, said)] == ["tablet", "operator"]
+    assert record(lab, pressed)["mode"] == "tablet"
+
+
+@pytest.mark.parametrize(
+    "sheet", [None, {"place": "  ", "reason": "no tablet"}, {"place": "Folder A", "reason": " "}]
+)
+def test_no_operator_consents_in_the_participants_place(lab: Lab, sheet: Json | None) -> None:
+    """Not even where the study wants one press only: a sheet, with its place and a reason."""
+    view = lab.command(lab.join(), "start")
+    refusal = error(
+        lab.try_command(view, "complete_step", step_index=0, paper_consent=sheet),
+        422,
+        "invalid_input",
+    )
+    assert sheet is not None or "signed on paper" in refusal["remedy"]
+    assert record(lab, view) is None
+    assert lab.view(view["id"])["version"] == view["version"]
 
 
 def test_an_erased_consent_leaves_its_time_only(lab: Lab, view: Json, tablet: TestClient) -> None:

@@ -34,7 +34,9 @@ TIMES = st.one_of(
 )
 ANYTHING: st.SearchStrategy[Command] = st.one_of(
     st.just(c.Start()),
-    st.builds(c.CompleteStep, by=st.just("operator"), step=STEPS),
+    st.builds(
+        c.CompleteStep, by=st.just("operator"), step=STEPS, content=st.none() | st.just(WORDS)
+    ),
     st.builds(
         c.SubmitForm,
         step=st.integers(-1, 30),
@@ -44,7 +46,17 @@ ANYTHING: st.SearchStrategy[Command] = st.one_of(
     ),
     st.just(c.OverrideStop(content=WORDS)),
     st.just(c.OverrideCheck(check="disk", content=WORDS)),
-    st.builds(c.Materialise, by=st.just("headset"), client_t_s=st.just(1.0)),
+    st.builds(
+        c.Materialise,
+        by=st.just("headset"),
+        client_t_s=st.just(1.0),
+        headset_connected=st.booleans(),
+    ),
+    st.builds(c.RefuseConsent, by=st.just("tablet"), step=st.integers(-1, len(PLAN))),
+    st.just(c.RetractRefusal(by="tablet")),
+    st.just(c.RetractRefusal(by="operator", content=WORDS)),
+    st.just(c.AskQuestion()),
+    st.builds(c.CloseQuestion, outcome=st.sampled_from(["answered", "taken_back"])),
     st.builds(c.BeginPhase, headset_connected=st.booleans()),
     st.builds(c.Pause, content=st.none() | st.just(WORDS)),
     st.builds(c.Resume, headset_connected=st.booleans()),
@@ -70,13 +82,14 @@ def meant_by(name: str, state: SessionState) -> Command:
     return {
         "start": c.Start(),
         "note": c.AddNote(content=WORDS),
-        "complete_step": c.CompleteStep(by="operator", step=current),
+        "complete_step": c.CompleteStep(by="operator", step=current, content=WORDS),
         "enter_answers": c.SubmitForm(step=current, submission_id="s", content_hash="h"),
-        "materialise": c.Materialise(by="operator"),
+        "materialise": c.Materialise(by="operator", headset_connected=True),
         "begin_phase": c.BeginPhase(headset_connected=True),
         "pause": c.Pause(content=WORDS),
         "resume": c.Resume(headset_connected=True),
         "override_stop": c.OverrideStop(content=WORDS),
+        "reopen_consent": c.RetractRefusal(by="operator", content=WORDS),
         "redo": c.Redo(content=WORDS, step=None if timed else current - 1),
         "skip": c.Skip(content=WORDS),
         "abort": c.Stop(status="aborted", content=WORDS),
@@ -168,10 +181,19 @@ class AnySession(RuleBasedStateMachine):
     @invariant()
     def a_held_session_stands_still(self) -> None:
         """Only an active session is held, and nothing in it is offered that moves on."""
-        if self.run.state.held is not None:
+        if self.run.state.held is not None and self.run.state.refused_consent is None:
             assert self.run.state.status == "active"
             offered = allowed_commands(PLAN, self.run.state)
             assert offered == ["abort", "withdraw", "override_stop", "note"]
+
+    @invariant()
+    def nobody_takes_part_against_their_will(self) -> None:
+        """After a refusal nothing is offered that moves on, and no clock is left to run."""
+        state = self.run.state
+        if state.refused_consent is None or state.status != "active":
+            return
+        assert allowed_commands(PLAN, state) == ["withdraw", "reopen_consent", "abort", "note"]
+        assert state.phase is None or state.phase.status != "running" or state.phase.pausing
 
     @invariant()
     def what_is_offered_is_accepted(self) -> None:

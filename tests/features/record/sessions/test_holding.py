@@ -19,7 +19,7 @@ FORM = "block1.hand.karas2020"
 MOVES: tuple[Command, ...] = (
     c.BeginPhase(headset_connected=True),
     c.CompleteStep(by="operator"),
-    c.Materialise(by="operator"),
+    c.Materialise(by="operator", headset_connected=True),
     c.Redo(content=WORDS, step=0),
     c.Resume(headset_connected=True),
     c.Skip(content=WORDS),

@@ -16,6 +16,8 @@ def allowed_commands(plan: Sequence[Step], state: SessionState) -> list[str]:
         return ["start", "note"]
     if state.status is not SessionStatus.ACTIVE or state.current is None:
         return ["note"]
+    if state.refused_consent is not None:
+        return ["withdraw", "reopen_consent", "abort", "note"]
     if state.held is not None:
         return ["abort", "withdraw", "override_stop", "note"]
     step = plan[state.current]

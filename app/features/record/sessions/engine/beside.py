@@ -1,4 +1,5 @@
-"""What can be put on record whatever the session is doing: words, corrections, an erasure.
+"""What can be put on record whatever the session is doing: words, questions, corrections, an
+erasure.
 
 Once the participant's data are erased nothing is added any more, or they would come back in words.
 """
@@ -31,10 +32,26 @@ def decide_beside(state: SessionState, command: c.Command) -> list[e.Event] | No
             return [e.CheckOverridden(check=check, **_ref(content))]
         case c.KeepRefusedForm(submission_id=submission_id, content=content):
             return [e.FormRefused(submission_id=submission_id, **_ref(content))]
+        case c.AskQuestion() | c.CloseQuestion():
+            return _question(state, command)
         case c.CorrectAnswers(submission_id=submission_id, content=content):
             return [e.AnswersCorrected(submission_id=submission_id, **_ref(content))]
         case _:
             return None
+
+
+def _question(state: SessionState, command: c.AskQuestion | c.CloseQuestion) -> list[e.Event]:
+    """A question while nobody has answered the one before is the same question."""
+    if isinstance(command, c.CloseQuestion):
+        return [e.QuestionClosed(outcome=command.outcome)] if state.question_open else []
+    if state.status not in (SessionStatus.PLANNED, SessionStatus.ACTIVE):
+        raise Refused(
+            f"the session is {state.status}",
+            value=state.status,
+            valid=[SessionStatus.PLANNED, SessionStatus.ACTIVE],
+            remedy="Speak to the experimenter.",
+        )
+    return [] if state.question_open else [e.QuestionAsked(step=state.current)]
 
 
 def _erase(state: SessionState, command: c.EraseData) -> list[e.Event]:

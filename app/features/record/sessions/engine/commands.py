@@ -51,6 +51,7 @@ class Materialise(Command):
     """The participant stands in T-pose and the avatar appears."""
 
     by: str
+    headset_connected: bool
     client_t_s: float | None = None
 
 
@@ -96,6 +97,40 @@ class Stop(Command):
 
     status: str
     content: ContentRef
+
+
+@dataclass(frozen=True, kw_only=True)
+class RefuseConsent(Command):
+    """The participant does not want to take part: said at the consent of step `step`.
+
+    It may come late, from a tablet that was offline: so the step need not be the current one.
+    """
+
+    by: str
+    step: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class RetractRefusal(Command):
+    """The participant has changed their mind and wants to see the consent again.
+
+    By the tablet where they said so there, else by the operator, whose `content` holds the reason.
+    """
+
+    by: str
+    content: ContentRef | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class AskQuestion(Command):
+    """The participant has a question about what the tablet shows."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CloseQuestion(Command):
+    """The question is `answered`, or was `taken_back` by the participant."""
+
+    outcome: str
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,7 +17,8 @@ from app.protocol import TIMED_KINDS, Step
 
 FORMS = ("form", "questionnaire")
 GOES_ON = (c.BeginPhase, c.CompleteStep, c.Materialise, c.Redo, c.Resume, c.Skip)
-"""What moves a participant on: nothing of it is done while a stop rule holds the session."""
+"""What moves a participant on: nothing of it is done while a stop rule or a refused consent holds
+the session."""
 
 __all__ = ["Refused", "decide"]
 
@@ -43,10 +44,12 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
         )
     require_not_held(state, command)
     match command:
+        case c.RefuseConsent() | c.RetractRefusal():
+            return _decide_refusal(plan, state, command)
         case c.OverrideStop():
             return decide_override(state, command)
         case c.Report():
-            return _then_end(plan, state, decide_report(plan, state, command))
+            return _then_end(plan, state, _report(plan, state, command))
         case c.HeadsetLost():
             return decide_headset_lost(plan, state, command)
         case c.Redo():
@@ -56,6 +59,15 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
             return [*_void_running(state, command.status), ended]
         case _:
             return _then_end(plan, state, _decide_step(plan[state.current], state, command))
+
+
+def _report(plan: Sequence[Step], state: SessionState, command: c.Report) -> list[e.Event]:
+    """What the headset did; a clock that it started after a refusal is asked to stop again."""
+    decided = decide_report(plan, state, command)
+    starts = isinstance(decided[0], e.PhaseStarted | e.PhaseResumed | e.WalkBackEnded)
+    if state.refused_consent is None or not starts:
+        return decided
+    return [*decided, e.PauseRequested(phase_id=command.phase_id)]
 
 
 def _start(state: SessionState) -> list[e.Event]:
@@ -77,6 +89,9 @@ def _decide_step(step: Step, state: SessionState, command: c.Command) -> list[e.
             return _submit(step, command)
         case c.Materialise():
             _require_kind(step, ("materialise",), "materialise the avatar")
+            _require_headset(
+                "nothing could show the body or record it", connected=command.headset_connected
+            )
             return [
                 e.AvatarMaterialised(step=step.index, by=command.by, client_t_s=command.client_t_s)
             ]
@@ -101,6 +116,13 @@ def _complete(step: Step, command: c.CompleteStep) -> list[e.Event]:
             value=command.step,
             valid=[step.index],
             remedy="The session has moved on; the page shows the current step.",
+        )
+    if step.kind == "consent" and command.content is None:
+        raise Refused(
+            "consent needs a record of how it was given",
+            value=None,
+            valid=["the form on the tablet", "a sheet signed on paper"],
+            remedy="Let the participant agree on the tablet, or record a consent on paper.",
         )
     ref = _ref(command.content) if command.content else {}
     return [e.StepCompleted(step=step.index, by=command.by, **ref)]
@@ -134,7 +156,7 @@ def _begin(step: Step, state: SessionState, command: c.BeginPhase) -> list[e.Eve
             valid=["no phase under way"],
             remedy="Somebody else may have begun it.",
         )
-    _require_headset(connected=command.headset_connected)
+    _require_headset("nothing could run the phase", connected=command.headset_connected)
     return [
         e.PhasePrepared(
             step=step.index,
@@ -155,7 +177,7 @@ def _pause(state: SessionState, command: c.Pause) -> list[e.Event]:
 
 def _resume(state: SessionState, command: c.Resume) -> list[e.Event]:
     phase = _require_phase(state, (PhaseStatus.PAUSED,), "resume")
-    _require_headset(connected=command.headset_connected)
+    _require_headset("nothing could run the phase", connected=command.headset_connected)
     return [] if phase.resuming else [e.ResumeRequested(phase_id=phase.phase_id)]
 
 
@@ -222,10 +244,10 @@ def _require_phase(state: SessionState, statuses: Sequence[PhaseStatus], wish: s
     return state.phase
 
 
-def _require_headset(*, connected: bool) -> None:
+def _require_headset(consequence: str, *, connected: bool) -> None:
     if not connected:
         raise Refused(
-            "no headset is connected, so nothing could run the phase",
+            f"no headset is connected, so {consequence}",
             value="headset not connected",
             valid=["headset connected"],
             remedy="Pair or wake the headset, or skip the step with a reason.",
@@ -236,8 +258,61 @@ def _ref(content: c.ContentRef) -> dict[str, str]:
     return {"content_id": content.content_id, "content_hash": content.content_hash}
 
 
+def _decide_refusal(
+    plan: Sequence[Step], state: SessionState, command: c.RefuseConsent | c.RetractRefusal
+) -> list[e.Event]:
+    """The refusal, and the end of any running clock; saying it twice changes nothing."""
+    if isinstance(command, c.RetractRefusal):
+        return _retract_refusal(state, command)
+    if state.refused_consent is not None:
+        return []
+    reached = plan[: (state.current or 0) + 1]
+    consents = [step.index for step in reached if step.kind == "consent"]
+    if command.step not in consents:
+        raise Refused(
+            f"step {command.step} is no consent that the session has come to",
+            value=command.step,
+            valid=consents,
+            remedy="Tell the experimenter.",
+        )
+    return [
+        e.ConsentRefused(step=command.step, by=command.by),
+        *_pause_for_refusal(state),
+    ]
+
+
+def _pause_for_refusal(state: SessionState) -> list[e.Event]:
+    """The wish that a running phase stops: nobody takes part against their will."""
+    phase = state.phase
+    if phase is None or phase.status is not PhaseStatus.RUNNING or phase.pausing:
+        return []
+    return [e.PauseRequested(phase_id=phase.phase_id)]
+
+
+def _retract_refusal(state: SessionState, command: c.RetractRefusal) -> list[e.Event]:
+    if state.refused_consent is None:
+        if command.content is None:
+            return []
+        raise Refused(
+            "nobody has refused consent, or the refusal was taken back already",
+            value="not refused",
+            valid=["a refused consent"],
+            remedy="Go on with the current step.",
+        )
+    ref = _ref(command.content) if command.content else {}
+    return [e.RefusalRetracted(step=state.refused_consent, by=command.by, **ref)]
+
+
 def require_not_held(state: SessionState, command: c.Command) -> None:
     """Raise Refused where `command` would move on a session that is held."""
+    if state.refused_consent is not None and isinstance(command, (*GOES_ON, c.SubmitForm)):
+        raise Refused(
+            "the session is held: the participant does not want to take part",
+            value=f"consent refused at step {state.refused_consent + 1}",
+            valid=["withdraw", "abort", "reopen_consent"],
+            remedy="Speak to the participant. Then end the session; or show the consent again, if "
+            "they have changed their mind.",
+        )
     if state.held is not None and isinstance(command, GOES_ON):
         raise Refused(
             "the session is held: an answer met a stop rule of the study",

@@ -291,6 +291,45 @@ class StopRuleOverridden(Event):
     content_hash: str
 
 
+@dataclass(frozen=True, kw_only=True)
+class ConsentRefused(Event):
+    """The participant does not want to take part: the session is held from here."""
+
+    type = "consent_refused"
+    step: int
+    by: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class RefusalRetracted(Event):
+    """The participant changed their mind: nothing is agreed to, the consent is shown again.
+
+    By the tablet or the operator; the operator's reason is content.
+    """
+
+    type = "refusal_retracted"
+    step: int
+    by: str
+    content_id: str | None = None
+    content_hash: str | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuestionAsked(Event):
+    """The participant has a question about the text of a step, null before the start."""
+
+    type = "question_asked"
+    step: int | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuestionClosed(Event):
+    """The question is over. `outcome`: answered by the experimenter, or taken_back."""
+
+    type = "question_closed"
+    outcome: str
+
+
 EVENT_TYPES: dict[str, type[Event]] = {
     cls.type: cls
     for cls in (
@@ -299,6 +338,10 @@ EVENT_TYPES: dict[str, type[Event]] = {
         FormSubmitted,
         StopRuleMet,
         StopRuleOverridden,
+        ConsentRefused,
+        RefusalRetracted,
+        QuestionAsked,
+        QuestionClosed,
         AvatarMaterialised,
         StepSkipped,
         StepReopened,

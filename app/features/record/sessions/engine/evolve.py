@@ -45,21 +45,44 @@ def _applied(state: SessionState, event: e.Event) -> SessionState:
         case e.PhaseVoided():
             return _void_phase(state, event)
         case e.SessionEnded(status=status):
-            return replace(state, status=SessionStatus(status), current=None, held=None)
-        case e.StopRuleMet() | e.StopRuleOverridden() | e.DataErased():
+            return replace(
+                state,
+                status=SessionStatus(status),
+                current=None,
+                held=None,
+                question_open=False,
+            )
+        case _ if isinstance(event, MARKS):
             return _marked(state, event)
         case _:
             return replace(state, phase=_clocked(state.phase, event))
 
 
+MARKS = (
+    e.StopRuleMet,
+    e.StopRuleOverridden,
+    e.ConsentRefused,
+    e.RefusalRetracted,
+    e.QuestionAsked,
+    e.QuestionClosed,
+    e.DataErased,
+)
+
+
 def _marked(state: SessionState, event: e.Event) -> SessionState:
-    """The state after an event that moves nothing: a hold, its end, an erasure."""
+    """The state after an event that moves nothing: a hold, its end, a question, an erasure."""
     match event:
         case e.StopRuleMet(rule=rule, submission_id=submission_id):
             # Of several rules that one form meets, the first is named.
             return replace(state, held=state.held or Hold(rule, submission_id))
         case e.StopRuleOverridden():
             return replace(state, held=None)
+        case e.ConsentRefused(step=step):
+            return replace(state, refused_consent=step)
+        case e.RefusalRetracted():
+            return replace(state, refused_consent=None)
+        case e.QuestionAsked() | e.QuestionClosed():
+            return replace(state, question_open=isinstance(event, e.QuestionAsked))
         case _:
             return replace(state, erased=True)
 

@@ -82,6 +82,9 @@ class SessionState:
     """The whole state. `version` is the number of events folded so far.
 
     `held`: set from a stop rule that was met until the operator goes on with a reason.
+    `refused_consent`: the consent step at which the participant said that they do not want to take
+    part; set until they change their mind, also after the session has ended because of it.
+    `question_open`: the participant has asked a question that nobody has answered yet.
     `erased`: the participant's data are gone, and nothing is added any more.
     """
 
@@ -93,6 +96,8 @@ class SessionState:
     ended_phases: tuple[PhaseState, ...] = ()
     materialised: bool = False
     held: Hold | None = None
+    refused_consent: int | None = None
+    question_open: bool = False
     erased: bool = False
 
     @property

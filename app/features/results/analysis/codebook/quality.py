@@ -55,7 +55,7 @@ ALARMS: tuple[Column, ...] = (
         "What is wrong.",
         "silent, disconnected, backlog, bad_values, frozen, low_frame_rate, gap, jump, "
         "clock_unknown, clock_uncertain, storage, stop_rule_met, stop_rule_near, "
-        "stop_rule_unknown, help_asked",
+        "stop_rule_unknown, help_asked, question_asked, consent_refused, refusal_retracted",
     ),
     _A.text("severity", "How urgent it is.", "info, warning, critical"),
     _A.text("state", "Whether it began or ended.", "raised, cleared"),

@@ -15,6 +15,7 @@ import { alarmsQuery } from "../../queries";
 import {
   type Alarms,
   amount,
+  isCall,
   jointNames,
   mostUrgent,
   remedyKey,
@@ -48,8 +49,8 @@ export function SignalStrip({ session, alarms, onHistory }: SignalStripProps): J
       ) : (
         <Wrong alarm={first} session={session} others={alarms.on.length - 1} />
       )}
-      {first?.code === "help_asked" && <AnswerCall session={session} />}
-      {first !== undefined && first.code !== "help_asked" && !seen && (
+      {isCall(first) && <AnswerCall session={session} />}
+      {first !== undefined && !isCall(first) && !seen && (
         <Button size="xs" variant="default" onClick={() => alarms.see(first)}>
           {t("alarm.understood")}
         </Button>

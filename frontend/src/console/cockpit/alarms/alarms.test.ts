@@ -72,6 +72,16 @@ describe("the alarms that are on", () => {
     expect(codes(0, null)).toEqual(["disconnected"]);
   });
 
+  it("keep what the participant said, whatever the headset tells meanwhile", () => {
+    for (const code of ["help_asked", "question_asked", "consent_refused", "stop_rule_met"]) {
+      const view = { ...session, alarms: [recorded(code, { severity: "critical" })] };
+      const codes = currentAlarms(view, quality([live("gap")]), null, milliseconds(10)).map(
+        (alarm) => alarm.code,
+      );
+      expect(codes).toEqual([code, "gap"]);
+    }
+  });
+
   it("are the same alarm wherever they were heard of", () => {
     const view = { ...session, alarms: [recorded("gap", { stream: "target" })] };
     const [told] = currentAlarms(session, quality([live("gap", { stream: "target" })]), null, at0);
@@ -121,7 +131,8 @@ const at0 = milliseconds(0);
 
 describe("the words for an alarm", () => {
   it("exist for every code, also for one that this page does not know", () => {
-    for (const code of ["silent", "gap", "clock_unknown", "of a later version"]) {
+    const said = ["question_asked", "consent_refused", "refusal_retracted"];
+    for (const code of ["silent", "gap", "clock_unknown", ...said, "of a later version"]) {
       const alarm = shown(live(code));
       expect(en[titleKey(alarm) as keyof typeof en]).toBeTruthy();
       expect(en[remedyKey(alarm, session) as keyof typeof en]).toBeTruthy();

@@ -39,7 +39,7 @@ export function currentAlarms(
 }
 
 /** About the participant, not the headset: the headset's news never tell of them. */
-const isOfPerson = (code: string): boolean => code.startsWith("stop_rule_");
+const isOfPerson = (code: string): boolean => OF_PERSON.some((one) => one === code);
 
 const SEVERITIES = ["info", "warning", "critical"] as const;
 const urgency = (alarm: ShownAlarm): number => SEVERITIES.indexOf(alarm.severity);
@@ -72,6 +72,16 @@ export function mostUrgent(
 export const stateOf = (session: SessionView): string =>
   session.alarms.map((alarm) => alarm.id).join(" ");
 
+const OF_PERSON = [
+  "stop_rule_met",
+  "stop_rule_near",
+  "stop_rule_unknown",
+  "help_asked",
+  "question_asked",
+  "consent_refused",
+  "refusal_retracted",
+] as const;
+
 const CODES = [
   "silent",
   "disconnected",
@@ -85,10 +95,7 @@ const CODES = [
   "clock_uncertain",
   "storage",
   "low_disk",
-  "stop_rule_met",
-  "stop_rule_near",
-  "stop_rule_unknown",
-  "help_asked",
+  ...OF_PERSON,
 ] as const;
 
 type Code = (typeof CODES)[number];
@@ -96,6 +103,10 @@ type Code = (typeof CODES)[number];
 const known = (code: string): Code | "other" => CODES.find((one) => one === code) ?? "other";
 
 export const titleKey = (alarm: ShownAlarm): Key => `alarm.${known(alarm.code)}`;
+
+/** The participant waits for somebody to come. */
+export const isCall = (alarm: ShownAlarm | undefined): boolean =>
+  alarm?.code === "help_asked" || alarm?.code === "question_asked";
 
 /** What to do; while the phase stands because of it, that it stands. */
 export function remedyKey(alarm: ShownAlarm, session: SessionView): Key {

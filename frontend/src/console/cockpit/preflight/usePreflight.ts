@@ -45,7 +45,15 @@ export function usePreflight(
     live.send({ type: "start" });
   };
 
-  return { query, start, looking, asking, stopAsking: () => setAsking(false) };
+  return {
+    query,
+    start,
+    looking,
+    asking,
+    stopAsking: () => setAsking(false),
+    /** The list is there and nothing in it is open. */
+    isClear: query.data?.clear === true,
+  };
 }
 
 /** Put a reason on record for each of the checks. */

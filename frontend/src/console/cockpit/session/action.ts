@@ -1,5 +1,5 @@
 /** What an operator does next, what wants a reason, and what can be done over: all from the session. */
-import type { Command, CommandType, SessionView, Step } from "@shared/api/types";
+import type { Command, CommandType, Device, SessionView, Step } from "@shared/api/types";
 import type { IconName } from "@shared/ui/Icon";
 import type { Key } from "../../i18n";
 import { isTimed } from "../../steps";
@@ -17,7 +17,8 @@ export function currentStep(session: SessionView): Step | null {
 
 /**
  * The primary action, or null when the next move is not the operator's: the tablet is being filled
- * in, the headset counts down, or the session is over. Height has its own form and is not here.
+ * in, the headset counts down, or the session is over. Height has its own form and is not here; nor
+ * is consent, which is the participant's to give and takes more than one press on paper, too.
  */
 export function primaryAction(session: SessionView): PrimaryAction | null {
   const may = (type: Command["type"]): boolean => session.allowed.includes(type);
@@ -31,7 +32,7 @@ export function primaryAction(session: SessionView): PrimaryAction | null {
   if (may("materialise")) {
     return { command: { type: "materialise" }, label: "do.materialise", icon: "body" };
   }
-  if (may("complete_step") && step.kind !== "height" && !wantsConsent(step)) {
+  if (may("complete_step")) {
     const label = COMPLETE[step.kind];
     if (label !== undefined) {
       const command: Command = { type: "complete_step", step_index: step.index };
@@ -46,13 +47,17 @@ function beginLabel(step: Step): Key {
   return step.limb === null ? "do.begin.free_roam" : `do.begin.${step.limb}`;
 }
 
-/** Whether a consent needs the participant's own hand: a signature, or lines to tick. */
-export const wantsConsent = ({ consent }: Pick<Step, "consent">): boolean =>
-  consent != null &&
-  (consent.signature !== "none" || consent.statements.some((one) => !one.optional));
+const NEEDS_HEADSET: readonly CommandType[] = ["materialise", "begin_phase", "resume"];
+
+/** Whether the server would refuse the next action because nothing could carry it out. */
+export const lacksHeadset = (session: SessionView): boolean =>
+  session.allowed.some((type) => NEEDS_HEADSET.some((one) => one === type)) &&
+  !isConnected(session, "headset");
+
+export const isConnected = ({ devices }: SessionView, device: Device): boolean =>
+  devices.some(({ kind, connected }) => kind === device && connected);
 
 const COMPLETE: Readonly<Partial<Record<Step["kind"], Key>>> = {
-  consent: "do.complete.consent",
   instructions: "do.complete.instructions",
   debrief: "do.complete.debrief",
   free_roam: "do.complete.other",
@@ -71,7 +76,7 @@ export function guidance(session: SessionView): Key {
 
 export type Reasoned = Extract<
   CommandType,
-  "redo" | "skip" | "abort" | "withdraw" | "override_stop"
+  "redo" | "skip" | "abort" | "withdraw" | "override_stop" | "reopen_consent"
 >;
 
 /** Reasons that come up again and again, one click away. */
@@ -81,7 +86,8 @@ export const COMMON_REASONS: Readonly<Record<Reasoned | "pause", readonly Key[]>
   skip: ["reason.askedAloud", "reason.time", "reason.wish"],
   abort: ["reason.equipment", "reason.time", "reason.interrupted", "reason.stopRule"],
   override_stop: ["reason.recovered", "reason.mistyped"],
-  withdraw: ["reason.wish", "reason.sick", "reason.unwell"],
+  reopen_consent: ["reason.changedMind", "reason.misread"],
+  withdraw: ["reason.refused", "reason.wish", "reason.sick", "reason.unwell"],
 };
 
 /**

@@ -158,7 +158,15 @@ export function changesBetween(before: SessionView, after: SessionView): readonl
   } else if (after.current !== null && before.current?.status !== after.current.status) {
     changes.push({ key: `change.phase.${after.current.status}` });
   }
+  if (before.refusal === null && after.refusal !== null) changes.push({ key: "change.refused" });
+  if (before.refusal !== null && after.refusal === null && after.current !== null) {
+    changes.push({ key: "change.retracted" });
+  }
+  if (calls(after) && !calls(before)) changes.push({ key: "change.question" });
   const added = after.notes.length - before.notes.length;
   if (added > 0) changes.push({ key: "change.notes", values: { count: added } });
   return changes.length === 0 ? [{ key: "change.other" }] : changes;
 }
+
+const calls = ({ alarms }: SessionView): boolean =>
+  alarms.some(({ code }) => code === "question_asked" || code === "help_asked");

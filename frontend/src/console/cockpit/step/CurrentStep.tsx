@@ -12,9 +12,10 @@ import {
   COMMON_REASONS,
   currentStep,
   guidance,
+  isConnected,
+  lacksHeadset,
   primaryAction,
   type Reasoned,
-  wantsConsent,
 } from "../session/action";
 import type { useSession } from "../session/useSession";
 import classes from "./CurrentStep.module.css";
@@ -25,18 +26,24 @@ import { PhaseClock } from "./PhaseClock";
 interface CurrentStepProps {
   readonly session: SessionView;
   readonly live: ReturnType<typeof useSession>;
+  /** Before the start: whether the pre-flight was looked at and nothing in it is open. */
+  readonly isReady: boolean;
   readonly onAsk: (type: Reasoned) => void;
   readonly onEnterAnswers: () => void;
 }
 
 export function CurrentStep(props: CurrentStepProps): JSX.Element {
-  const { session, live } = props;
+  const { session, live, isReady } = props;
   const { t } = useTexts();
   const step = currentStep(session);
   return (
     <section className={classes.card} data-tour="step" aria-live="polite">
       {step === null ? (
-        <h2 className={classes.title}>{t(`session.${session.status}`)}</h2>
+        <h2 className={classes.title}>
+          {t(
+            session.status === "planned" && !isReady ? "session.open" : `session.${session.status}`,
+          )}
+        </h2>
       ) : (
         <>
           <Kicker session={session} step={step} />
@@ -47,6 +54,7 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
         </>
       )}
       <p className={classes.guide}>{t(guidance(session))}</p>
+      {lacksHeadset(session) && <p className={classes.guide}>{t("step.noHeadset")}</p>}
       {step !== null && isTimed(step) && <PhaseClock session={session} store={live.store} />}
       {session.current?.status === "paused" && <PauseReason live={live} />}
       {step?.kind === "height" && session.allowed.includes("complete_step") ? (
@@ -124,7 +132,7 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
       </Button>
     );
   }
-  if (step !== null && session.allowed.includes("complete_step") && wantsConsent(step)) {
+  if (step?.kind === "consent" && session.allowed.includes("complete_step")) {
     return <PaperConsent session={session} step={step} live={live} />;
   }
   if (session.allowed.includes("resume") || step === null || !isForm(step)) return null;
@@ -132,7 +140,7 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
     <>
       <span className={classes.waiting}>
         <Loader size="sm" type="dots" />
-        {t("step.waitingTablet")}
+        {t(isConnected(session, "tablet") ? "step.waitingTablet" : "step.noTablet")}
       </span>
       {session.allowed.includes("enter_answers") && (
         <Button

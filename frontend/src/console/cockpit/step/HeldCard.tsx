@@ -1,6 +1,7 @@
-/** A stop rule was met: in place of the step stands what to do for the participant, and two ways on. */
+/** The session is held: in place of the step stands what to do for the participant, and the ways on. */
 import { Button } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
+import { timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
@@ -13,6 +14,7 @@ interface HeldCardProps {
   readonly onAsk: (type: Reasoned) => void;
 }
 
+/** A stop rule was met. */
 export function HeldCard({ held, onAsk }: HeldCardProps): JSX.Element {
   const { t } = useTexts();
   const may = useMay();
@@ -40,6 +42,46 @@ export function HeldCard({ held, onAsk }: HeldCardProps): JSX.Element {
           </Button>
           <Button variant="subtle" color="red" onClick={() => onAsk("withdraw")}>
             {t("held.withdraw")}
+          </Button>
+        </div>
+      )}
+    </section>
+  );
+}
+
+interface RefusedCardProps {
+  readonly refusal: NonNullable<SessionView["refusal"]>;
+  readonly onAsk: (type: Reasoned) => void;
+}
+
+/** The participant does not want to take part: nothing goes on before somebody has decided. */
+export function RefusedCard({ refusal, onAsk }: RefusedCardProps): JSX.Element {
+  const { t, language } = useTexts();
+  const may = useMay();
+  return (
+    <section className={classes.card} role="alert">
+      <h2 className={classes.title}>
+        <Icon name="alert" size={36} />
+        {t("refused.title")}
+      </h2>
+      {refusal.at !== null && (
+        <p className={classes.why}>
+          {t("refused.at", { time: timeOfDay(refusal.at, language), number: refusal.step + 1 })}
+        </p>
+      )}
+      <p>{t("refused.body")}</p>
+      {may("run") && (
+        <div className={classes.actions}>
+          <Button
+            size="lg"
+            color="red"
+            leftSection={<Icon name="stop" />}
+            onClick={() => onAsk("withdraw")}
+          >
+            {t("refused.end")}
+          </Button>
+          <Button size="lg" variant="default" onClick={() => onAsk("reopen_consent")}>
+            {t("do.reopen_consent")}
           </Button>
         </div>
       )}

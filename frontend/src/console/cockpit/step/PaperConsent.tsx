@@ -14,8 +14,9 @@ import { useDisclosure } from "@mantine/hooks";
 import type { SessionView, Step } from "@shared/api/types";
 import { Icon } from "@shared/ui/Icon";
 import { type JSX, useState } from "react";
-import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
+import { isConnected } from "../session/action";
+import { NewFailure } from "../session/CommandFailure";
 import type { useSession } from "../session/useSession";
 import classes from "./CurrentStep.module.css";
 
@@ -32,7 +33,7 @@ export function PaperConsent(props: PaperConsentProps): JSX.Element {
     <>
       <span className={classes.waiting}>
         <Loader size="sm" type="dots" />
-        {t("consent.waiting")}
+        {t(isConnected(props.session, "tablet") ? "consent.waiting" : "step.noTablet")}
       </span>
       <Button
         variant="default"
@@ -98,7 +99,7 @@ function SheetForm({ step, live, onClose }: SheetFormProps): JSX.Element {
           value={reason}
           onChange={(event) => setReason(event.currentTarget.value)}
         />
-        {live.error !== null && <Failure error={live.error} />}
+        <NewFailure live={live} />
         <Group justify="flex-end">
           <Button variant="default" onClick={onClose}>
             {t("action.cancel")}

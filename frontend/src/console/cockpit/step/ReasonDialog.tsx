@@ -2,12 +2,12 @@
 import { Button, Group, Modal, Select, Stack, Text } from "@mantine/core";
 import type { SessionView } from "@shared/api/types";
 import { type JSX, useState } from "react";
-import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import { stepName } from "../../steps";
 import { useShown } from "../../ui/page";
 import { ReasonField } from "../../ui/ReasonField";
 import { COMMON_REASONS, type Reasoned, redoable, redoTarget } from "../session/action";
+import { NewFailure } from "../session/CommandFailure";
 import type { useSession } from "../session/useSession";
 
 interface ReasonDialogProps {
@@ -38,7 +38,8 @@ interface ReasonFormProps extends ReasonDialogProps {
 
 function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Element {
   const { t } = useTexts();
-  const [reason, setReason] = useState("");
+  const refused = type === "withdraw" && session.refusal !== null;
+  const [reason, setReason] = useState(refused ? t("reason.refused") : "");
   const [step, setStep] = useState(() => redoTarget(session));
   const grave = type === "abort" || type === "withdraw";
   return (
@@ -54,7 +55,7 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
         <Text c="dimmed">{t(`ask.${type}.body`)}</Text>
         {type === "redo" && <RedoChoice session={session} step={step} onChange={setStep} />}
         <ReasonField usual={COMMON_REASONS[type]} value={reason} onChange={setReason} />
-        {live.error !== null && <Failure error={live.error} />}
+        <NewFailure live={live} />
         <Group justify="flex-end">
           <Button variant="default" onClick={onClose}>
             {t("action.cancel")}

@@ -111,6 +111,10 @@ function Duplicate({ study }: { readonly study: StudyDetail }): JSX.Element {
       navigate(`/studies/${made.key}/edit`);
     },
   });
+  const close = () => {
+    copy.reset();
+    setOpened(false);
+  };
   return (
     <>
       <Button variant="default" onClick={() => setOpened(true)}>
@@ -118,7 +122,7 @@ function Duplicate({ study }: { readonly study: StudyDetail }): JSX.Element {
       </Button>
       <Modal
         opened={opened}
-        onClose={() => setOpened(false)}
+        onClose={close}
         title={t("versions.duplicate")}
         closeButtonProps={{ "aria-label": t("action.close") }}
       >
@@ -160,6 +164,10 @@ function Archive({ study }: { readonly study: StudyDetail }): JSX.Element {
       await queries.invalidateQueries({ queryKey: ["studies"] });
     },
   });
+  const close = () => {
+    archive.reset();
+    setOpened(false);
+  };
   return (
     <>
       <Button variant="default" onClick={() => setOpened(true)}>
@@ -167,7 +175,7 @@ function Archive({ study }: { readonly study: StudyDetail }): JSX.Element {
       </Button>
       <Modal
         opened={opened}
-        onClose={() => setOpened(false)}
+        onClose={close}
         title={t("versions.archive.title")}
         closeButtonProps={{ "aria-label": t("action.close") }}
       >
@@ -175,7 +183,7 @@ function Archive({ study }: { readonly study: StudyDetail }): JSX.Element {
           <Text>{t("versions.archive.body")}</Text>
           {archive.isError && <Failure error={archive.error} />}
           <Group justify="flex-end">
-            <Button variant="default" onClick={() => setOpened(false)}>
+            <Button variant="default" onClick={close}>
               {t("action.cancel")}
             </Button>
             <Button loading={archive.isPending} onClick={() => archive.mutate()}>

@@ -1,0 +1,43 @@
+/** Why the last command was not carried out: refused, or overtaken by another operator. */
+import { Button } from "@mantine/core";
+import { Notice } from "@shared/ui/Notice";
+import { type JSX, useState } from "react";
+import { Failure } from "../../errors";
+import { useTexts } from "../../i18n";
+import type { useSession } from "./useSession";
+
+type Live = Pick<ReturnType<typeof useSession>, "error" | "overtaken" | "dismiss">;
+
+interface CommandFailureProps {
+  readonly live: Live;
+}
+
+export function CommandFailure({ live }: CommandFailureProps): JSX.Element | null {
+  const { t } = useTexts();
+  if (live.overtaken !== null) {
+    const { command, changes } = live.overtaken;
+    return (
+      <Notice
+        tone="warn"
+        title={t("stale.title")}
+        remedy={t("stale.remedy", { command: t(`command.${command.type}`) })}
+        actions={
+          <Button size="xs" variant="default" onClick={live.dismiss}>
+            {t("action.understood")}
+          </Button>
+        }
+      >
+        {changes.map(({ key, values }) => t(key, values)).join(" ")}
+      </Notice>
+    );
+  }
+  return live.error === null ? null : <Failure error={live.error} />;
+}
+
+/** In a dialog: what failed since it was opened. What failed before belongs to something else. */
+export function NewFailure({ live }: CommandFailureProps): JSX.Element | null {
+  const [before] = useState({ error: live.error, overtaken: live.overtaken });
+  const error = live.error === before.error ? null : live.error;
+  const overtaken = live.overtaken === before.overtaken ? null : live.overtaken;
+  return <CommandFailure live={{ error, overtaken, dismiss: live.dismiss }} />;
+}

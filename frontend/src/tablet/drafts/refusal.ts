@@ -1,0 +1,83 @@
+/**
+ * "I do not want to take part", until the server knows of it.
+ *
+ * The wish is on the tablet's disk before it is sent, and is sent again until the server has
+ * answered: after a lost answer, a reload, or ten minutes without a network. Each press has an id,
+ * so the server counts it once. Taking it back replaces a wish that still waits; whatever is on its
+ * way arrives before it.
+ */
+import { tablet } from "@shared/api/endpoints";
+import { ApiError } from "@shared/api/request";
+import type { RefusalWish, TabletState } from "@shared/api/types";
+import { uuid } from "@shared/uuid";
+import { useQueryClient } from "@tanstack/react-query";
+import { useEffect, useRef, useState } from "react";
+import { STATE_KEY } from "../useTabletState";
+import { drafts } from "./useKept";
+
+const RETRY_MS = 3000;
+const UNPAIRED = 401;
+const TOO_MANY = 429;
+const SERVER_AT_FAULT = 500;
+
+export interface Refusal {
+  /** What was said and the server has not confirmed yet; null where nothing waits. */
+  readonly waiting: RefusalWish | null;
+  readonly say: (refused: boolean) => void;
+}
+
+export function useRefusal({ session_id: sessionId, step_index }: TabletState): Refusal {
+  const queries = useQueryClient();
+  const [waiting, setWaiting] = useState<RefusalWish | null>(null);
+  const onItsWay = useRef<Promise<void>>(Promise.resolve());
+
+  useEffect(() => {
+    let gone = false;
+    setWaiting(null);
+    void drafts.wish(sessionId).then((kept) => {
+      if (!gone && kept !== undefined) setWaiting((newer) => newer ?? kept);
+    });
+    return () => {
+      gone = true;
+    };
+  }, [sessionId]);
+
+  useEffect(() => {
+    if (waiting === null) return;
+    let gone = false;
+    let retry: ReturnType<typeof setTimeout> | undefined;
+    const send = async (): Promise<void> => {
+      if (gone) return;
+      try {
+        await drafts.keepWish(sessionId, waiting);
+        queries.setQueryData<TabletState>(STATE_KEY, await tablet.refuse(waiting));
+      } catch (error) {
+        if (!isFinal(error)) {
+          if (!gone) retry = setTimeout(attempt, RETRY_MS);
+          return;
+        }
+        void queries.invalidateQueries({ queryKey: STATE_KEY });
+      }
+      await drafts.forgetWish(sessionId, waiting.wish_id);
+      if (!gone) setWaiting(null);
+    };
+    const attempt = () => {
+      onItsWay.current = onItsWay.current.then(send);
+    };
+    attempt();
+    return () => {
+      gone = true;
+      clearTimeout(retry);
+    };
+  }, [waiting, sessionId, queries]);
+
+  const say = (refused: boolean) =>
+    setWaiting({ wish_id: uuid(), step_index: step_index ?? 0, refused });
+  return { waiting, say };
+}
+
+/** Whether the server has looked at it and will not take it however often it comes. */
+export function isFinal(error: unknown): boolean {
+  if (!(error instanceof ApiError)) return false;
+  return error.status < SERVER_AT_FAULT && error.status !== UNPAIRED && error.status !== TOO_MANY;
+}

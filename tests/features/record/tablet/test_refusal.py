@@ -1,0 +1,243 @@
+"""A participant does not want to take part, or has a question: tablet, console, record, ledger."""
+
+import uuid
+from typing import Any
+
+from app.features.record.telemetry.recovery import stop_running_clocks
+from tests.features.lab import STUDY, Json, Lab, error, ok
+
+REASON = "Refused consent"
+
+
+def wish(*, refused: bool = True, step_index: int = 0) -> Json:
+    """One press on the tablet."""
+    return {"wish_id": str(uuid.uuid4()), "step_index": step_index, "refused": refused}
+
+
+def said(tablet: Any, body: Json) -> Json:
+    """What the tablet shows after it was taken."""
+    screen: Json = ok(tablet.put("/api/tablet/refusal", json=body))
+    return screen
+
+
+def at_consent(lab: Lab, **fields: Any) -> tuple[Json, Any]:
+    """A session that has begun, and its tablet."""
+    view = lab.command(lab.join(**fields), "start")
+    return view, lab.tablet(view["id"])
+
+
+def codes(view: Json) -> dict[str, str]:
+    """What is wrong now: severity by code."""
+    return {one["code"]: one["severity"] for one in view["alarms"]}
+
+
+def types(lab: Lab, view: Json) -> list[str]:
+    """The event log."""
+    return [one["type"] for one in lab.events(view["id"])]
+
+
+def test_a_refusal_reaches_the_operator_and_holds_the_session(lab: Lab) -> None:
+    """An alarm at once, an event on record, and a calm tablet that asks for nothing more."""
+    view, tablet = at_consent(lab)
+    screen = said(tablet, wish())
+    assert (screen["screen"], screen["is_refused"]) == ("refused", True)
+    assert (screen["text"], screen["consent"], screen["next"]) == (None, None, None)
+    now = lab.view(view["id"])
+    assert codes(now) == {"consent_refused": "critical"}
+    assert now["refusal"]["step"] == 0
+    assert now["refusal"]["at"] == now["alarms"][0]["since"]
+    assert now["allowed"] == ["withdraw", "reopen_consent", "abort", "note"]
+    (event,) = [one for one in lab.events(view["id"]) if one["type"] == "consent_refused"]
+    assert event["by"].startswith("tablet:")
+    assert event["data"] == {"step": 0, "by": "tablet"}
+
+
+def test_nobody_goes_on_as_if_nothing_had_happened(lab: Lab) -> None:
+    """Neither the operator with a sheet of paper, nor a second page of the tablet that agrees."""
+    view, tablet = at_consent(lab)
+    said(tablet, wish())
+    now = lab.view(view["id"])
+    sheet = {"place": "Folder A", "reason": "They agreed after all"}
+    for kind, fields in (
+        ("complete_step", {"paper_consent": sheet}),
+        ("skip", {"reason": "go on"}),
+        ("redo", {"reason": "go on", "step_index": 0}),
+    ):
+        refusal = error(lab.try_command(now, kind, **fields), 409, "not_now")
+        assert "does not want to take part" in refusal["message"]
+    agreed = tablet.post("/api/tablet/consent", json={"step_index": 0})
+    assert "reopen_consent" in error(agreed, 409, "not_now")["valid"]
+    assert lab.view(view["id"])["version"] == now["version"]
+    assert ok(lab.operator.get(f"/api/sessions/{view['id']}/consent")) is None
+
+
+def test_ending_the_session_frees_its_slot(fresh_lab: Lab) -> None:
+    """The next participant takes it; the tablet thanks, and does not debrief."""
+    view, tablet = at_consent(fresh_lab)
+    said(tablet, wish())
+    ended = fresh_lab.command(fresh_lab.view(view["id"]), "withdraw", reason=REASON)
+    assert (ended["status"], ended["refusal"], ended["alarms"]) == ("withdrawn", None, [])
+    screen = ok(tablet.get("/api/tablet/state"))
+    assert (screen["screen"], screen["is_refused"], screen["text"]) == ("finished", True, None)
+    assert fresh_lab.join()["slot"] == view["slot"]
+    sessions = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/sessions"))
+    assert [one["status"] for one in sessions] == ["planned", "withdrawn"]
+
+
+def test_the_same_press_counts_once_however_often_it_comes(lab: Lab) -> None:
+    """Answers get lost; a repetition that comes after it was taken back changes nothing."""
+    view, tablet = at_consent(lab)
+    first, back = wish(), wish(refused=False)
+    for body in (first, first, back, first, back):
+        screen = said(tablet, body)
+    assert screen["screen"] == "consent"
+    assert types(lab, view) == ["session_started", "consent_refused", "refusal_retracted"]
+    assert codes(lab.view(view["id"])) == {"refusal_retracted": "warning"}
+
+
+def test_who_changes_their_mind_sees_the_consent_again_and_may_agree(lab: Lab) -> None:
+    """On record with its times; the operator's warning ends with the decision."""
+    view, tablet = at_consent(lab)
+    said(tablet, wish())
+    screen = said(tablet, wish(refused=False))
+    assert (screen["screen"], screen["is_refused"]) == ("consent", False)
+    assert lab.view(view["id"])["allowed"][0] == "complete_step"
+    ok(tablet.post("/api/tablet/consent", json={"step_index": 0}))
+    after = lab.view(view["id"])
+    assert (after["current"]["index"], after["alarms"]) == (1, [])
+    history = ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))
+    assert {one["code"]: one["outcome"] for one in history} == {
+        "consent_refused": "the participant took it back on the tablet",
+        "refusal_retracted": "the consent has been decided on",
+    }
+
+
+def test_the_operator_shows_the_consent_again_for_a_reason(lab: Lab) -> None:
+    """Nothing is agreed to by that, and without a refusal there is nothing to show again."""
+    view, tablet = at_consent(lab)
+    error(lab.try_command(view, "reopen_consent", reason="again"), 409, "not_now")
+    said(tablet, wish())
+    now = lab.view(view["id"])
+    error(lab.try_command(now, "reopen_consent"), 422, "invalid_input")
+    after = lab.command(now, "reopen_consent", reason="The participant changed their mind")
+    assert (after["refusal"], after["alarms"], after["current"]["index"]) == (None, [], 0)
+    assert ok(tablet.get("/api/tablet/state"))["screen"] == "consent"
+    (event,) = [one for one in lab.events(view["id"]) if one["type"] == "refusal_retracted"]
+    assert event["data"]["by"] == "operator"
+    assert event["data"]["content_id"]
+
+
+def test_another_tablet_shows_the_refusal_too(lab: Lab) -> None:
+    """It may also be refused there, and taken back there: it is the same participant."""
+    view, tablet = at_consent(lab)
+    said(tablet, wish())
+    other = lab.tablet(view["id"])
+    assert ok(other.get("/api/tablet/state"))["screen"] == "refused"
+    assert said(other, wish())["screen"] == "refused"
+    assert said(other, wish(refused=False))["screen"] == "consent"
+    assert types(lab, view).count("consent_refused") == 1
+
+
+def test_a_refusal_that_arrives_late_holds_the_session_where_it_is(lab: Lab) -> None:
+    """The tablet was offline while the operator recorded a sheet of paper."""
+    view, tablet = at_consent(lab)
+    sheet = {"place": "Folder A", "reason": "The tablet is offline"}
+    lab.command(view, "complete_step", paper_consent=sheet)
+    form = ok(tablet.get("/api/tablet/state"))["administration"]
+    assert said(tablet, wish())["screen"] == "refused"
+    now = lab.view(view["id"])
+    assert (now["current"]["index"], codes(now)) == (1, {"consent_refused": "critical"})
+    filled_in = {
+        "idempotency_key": uuid.uuid4().hex,
+        "administration": form["key"],
+        "answers": {},
+        "shown_order": form["item_order"],
+        "seed": form["seed"],
+        "language": "en",
+    }
+    answer = tablet.post("/api/tablet/submissions", json=filled_in)
+    assert answer.status_code in (409, 422)
+    assert ok(lab.operator.get(f"/api/sessions/{view['id']}/answers")) == []
+
+
+def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
+    """Alarms of the equipment are cleared then; what the participant said stays."""
+    view, tablet = at_consent(fresh_lab)
+    ok(tablet.put("/api/tablet/question", json={"asked": True}))
+    said(tablet, wish())
+    stop_running_clocks(fresh_lab.context)
+    after = fresh_lab.view(view["id"])
+    assert after["refusal"] is not None
+    assert codes(after) == {"consent_refused": "critical", "question_asked": "critical"}
+
+
+def test_an_operator_who_is_blind_sees_it_as_well(fresh_lab: Lab) -> None:
+    """It tells nothing about the condition."""
+    yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
+    blinded = yaml.replace("operator: false", "operator: true")
+    ok(fresh_lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": blinded}))
+    view, tablet = at_consent(fresh_lab)
+    said(tablet, wish())
+    now = fresh_lab.view(view["id"])
+    assert (now["blinded"], codes(now)) == (True, {"consent_refused": "critical"})
+    assert now["refusal"]["step"] == 0
+
+
+def test_a_session_that_is_over_has_nobody_to_tell(lab: Lab) -> None:
+    """The tablet hears so, and shows the end."""
+    view, tablet = at_consent(lab)
+    lab.command(view, "abort", reason="fire alarm")
+    error(tablet.put("/api/tablet/refusal", json=wish()), 409, "not_now")
+    assert ok(tablet.get("/api/tablet/state"))["screen"] == "finished"
+
+
+def test_a_wish_about_something_else_is_refused(lab: Lab) -> None:
+    """Forms and steps that lie ahead are no consents."""
+    view, tablet = at_consent(lab)
+    refusal = error(tablet.put("/api/tablet/refusal", json=wish(step_index=1)), 409, "not_now")
+    assert (refusal["value"], refusal["valid"]) == (1, [0])
+    assert lab.view(view["id"])["version"] == view["version"]
+
+
+def test_a_question_is_an_alarm_and_an_event_until_somebody_comes(lab: Lab) -> None:
+    """Answered like a call, by the same button; asking twice does no harm."""
+    view, tablet = at_consent(lab)
+    for _ in range(2):
+        screen = ok(tablet.put("/api/tablet/question", json={"asked": True}))
+        assert (screen["question_asked"], screen["help_asked"]) == (True, False)
+    assert codes(lab.view(view["id"])) == {"question_asked": "critical"}
+    ok(lab.operator.post(f"/api/sessions/{view['id']}/help/answered"))
+    assert lab.view(view["id"])["alarms"] == []
+    assert ok(tablet.get("/api/tablet/state"))["question_asked"] is False
+    log = [(one["type"], one["data"], one["by"]) for one in lab.events(view["id"])][1:]
+    assert [one[:2] for one in log] == [
+        ("question_asked", {"step": 0}),
+        ("question_closed", {"outcome": "answered"}),
+    ]
+    assert (log[0][2].split(":")[0], log[1][2]) == ("tablet", "account:admin")
+    (record,) = ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))
+    assert record["outcome"] == "The experimenter went to the participant."
+
+
+def test_a_question_can_be_taken_back(lab: Lab) -> None:
+    """And an ended session has nobody to ask."""
+    view, tablet = at_consent(lab)
+    ok(tablet.put("/api/tablet/question", json={"asked": True}))
+    back = ok(tablet.put("/api/tablet/question", json={"asked": False}))
+    assert back["question_asked"] is False
+    assert lab.events(view["id"])[-1]["data"] == {"outcome": "taken_back"}
+    lab.command(lab.view(view["id"]), "abort", reason="enough")
+    assert ok(tablet.put("/api/tablet/question", json={"asked": True}))["question_asked"] is False
+    ok(lab.operator.post(f"/api/sessions/{view['id']}/help/answered"))
+    assert types(lab, view)[-1] == "session_ended"
+
+
+def test_a_steps_own_text_has_its_own_title(lab: Lab) -> None:
+    """Only the study's waiting text stands under the tablet's words that nothing is to be done."""
+    view = lab.join()
+    tablet = lab.tablet(view["id"])
+    assert ok(tablet.get("/api/tablet/state"))["is_own_text"] is False
+    view = lab.skip_to(view, "debrief")
+    screen = ok(tablet.get("/api/tablet/state"))
+    assert (screen["screen"], screen["is_own_text"]) == ("waiting", True)
+    assert screen["title"] == "Debriefing"
