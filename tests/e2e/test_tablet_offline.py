@@ -158,7 +158,7 @@ def test_ten_minutes_offline_and_a_killed_browser_lose_nothing(
         visit.sees("Your answers are safe")
         screenshot(visit.page, "tablet-offline-sent")
         visit.reconnect()
-        visit.sees("Please wait a moment")
+        visit.sees("Foot task")
         assert visit.kept()["kept"] == []
         assert visit.kept()["screen"][0]["administration"] is None
         assert "/api/" not in str(visit.page.evaluate(NAMES))

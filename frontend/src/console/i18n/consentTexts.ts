@@ -54,6 +54,8 @@ export const consentEn = {
   "ask.reopen_consent": "Show the consent again?",
   "ask.reopen_consent.body":
     "Only if the participant has changed their mind. Nothing is agreed to before they do so on the tablet. The reason becomes part of the record.",
+  "ask.skip.consent":
+    "The session goes on without a consent on record: only where nobody's consent is needed, as in a test. Where a sheet was signed, record it with “Signed on paper” instead.",
   "reason.refused": "Refused consent",
   "reason.changedMind": "The participant changed their mind",
   "reason.misread": "Pressed by mistake",
@@ -117,6 +119,8 @@ export const consentDe: Readonly<Record<keyof typeof consentEn, string>> = {
   "ask.reopen_consent": "Einwilligung erneut zeigen?",
   "ask.reopen_consent.body":
     "Nur wenn die Person es sich anders überlegt hat. Eingewilligt ist erst, wenn sie es am Tablet tut. Die Begründung wird Teil des Protokolls.",
+  "ask.skip.consent":
+    "Die Sitzung geht ohne verzeichnete Einwilligung weiter: nur, wo niemand einwilligen muss, etwa bei einem Test. Wurde ein Bogen unterschrieben, tragen Sie ihn mit „Auf Papier unterschrieben“ ein.",
   "reason.refused": "Einwilligung abgelehnt",
   "reason.changedMind": "Die Person hat es sich anders überlegt",
   "reason.misread": "Versehentlich gedrückt",

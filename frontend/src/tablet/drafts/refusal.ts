@@ -23,12 +23,15 @@ const SERVER_AT_FAULT = 500;
 export interface Refusal {
   /** What was said and the server has not confirmed yet; null where nothing waits. */
   readonly waiting: RefusalWish | null;
+  /** It could not be sent so far, and will be tried again. */
+  readonly failed: boolean;
   readonly say: (refused: boolean) => void;
 }
 
 export function useRefusal({ session_id: sessionId, step_index }: TabletState): Refusal {
   const queries = useQueryClient();
   const [waiting, setWaiting] = useState<RefusalWish | null>(null);
+  const [failed, setFailed] = useState(false);
   const onItsWay = useRef<Promise<void>>(Promise.resolve());
 
   useEffect(() => {
@@ -43,6 +46,7 @@ export function useRefusal({ session_id: sessionId, step_index }: TabletState): 
   }, [sessionId]);
 
   useEffect(() => {
+    setFailed(false);
     if (waiting === null) return;
     let gone = false;
     let retry: ReturnType<typeof setTimeout> | undefined;
@@ -53,7 +57,9 @@ export function useRefusal({ session_id: sessionId, step_index }: TabletState): 
         queries.setQueryData<TabletState>(STATE_KEY, await tablet.refuse(waiting));
       } catch (error) {
         if (!isFinal(error)) {
-          if (!gone) retry = setTimeout(attempt, RETRY_MS);
+          if (gone) return;
+          setFailed(true);
+          retry = setTimeout(attempt, RETRY_MS);
           return;
         }
         void queries.invalidateQueries({ queryKey: STATE_KEY });
@@ -73,7 +79,7 @@ export function useRefusal({ session_id: sessionId, step_index }: TabletState): 
 
   const say = (refused: boolean) =>
     setWaiting({ wish_id: uuid(), step_index: step_index ?? 0, refused });
-  return { waiting, say };
+  return { waiting, failed, say };
 }
 
 /** Whether the server has looked at it and will not take it however often it comes. */

@@ -68,8 +68,9 @@ export const de: Record<keyof typeof en, string> = {
   "refused.title": "Das ist in Ordnung",
   "refused.told":
     "Die Versuchsleitung weiß, dass Sie nicht teilnehmen möchten, und kommt zu Ihnen.",
+  "refused.telling": "Die Versuchsleitung wird benachrichtigt.",
   "refused.untold":
-    "Dieses Tablet hat gerade keine Verbindung. Bitte sagen Sie der Versuchsleitung, dass Sie nicht teilnehmen möchten.",
+    "Dieses Tablet erreicht die Versuchsleitung gerade nicht. Bitte sagen Sie der Versuchsleitung, dass Sie nicht teilnehmen möchten.",
   "refused.free": "Sie müssen keinen Grund nennen, und Sie haben keinen Nachteil.",
   "refused.takeBack": "Ich habe es mir anders überlegt",
   "unit.years": "Jahre",

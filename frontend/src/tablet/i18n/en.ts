@@ -62,8 +62,9 @@ export const en = {
   "ask.question.body": "Please ask your question. You can go on here afterwards.",
   "refused.title": "That is all right",
   "refused.told": "The experimenter knows that you do not want to take part, and will come to you.",
+  "refused.telling": "The experimenter is being told.",
   "refused.untold":
-    "This tablet has no connection at the moment. Please tell the experimenter that you do not want to take part.",
+    "This tablet cannot reach the experimenter at the moment. Please tell the experimenter that you do not want to take part.",
   "refused.free": "You do not have to give a reason, and there is no disadvantage.",
   "refused.takeBack": "I have changed my mind",
   "unit.years": "years",

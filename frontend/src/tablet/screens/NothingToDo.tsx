@@ -54,19 +54,21 @@ interface RefusedProps {
 /** The participant does not want to take part: the experimenter knows, and nothing else is asked. */
 export function Refused({ connected, refusal }: RefusedProps): JSX.Element {
   const { t } = useTexts();
-  const { waiting, say } = refusal;
+  const { waiting, failed, say } = refusal;
+  const stuck = failed || !connected;
   // Said on this tablet, and not known to the experimenter yet.
-  const untold = waiting?.refused === true && !connected;
+  const told = waiting?.refused !== true ? "told" : stuck ? "untold" : "telling";
   return (
     <div className={classes.calm} role="status">
       <Mark size={64} />
       <h1 className={classes.calmTitle}>{t("refused.title")}</h1>
-      <p className={classes.calmText}>{t(untold ? "refused.untold" : "refused.told")}</p>
-      <p className={classes.calmText}>{t("refused.free")}</p>
+      <p className={classes.calmText}>
+        {t(`refused.${told}`)} {t("refused.free")}
+      </p>
       <Button
         variant="subtle"
         color="gray"
-        loading={waiting !== null && connected}
+        loading={waiting !== null && !stuck}
         onClick={() => say(false)}
       >
         {t("refused.takeBack")}

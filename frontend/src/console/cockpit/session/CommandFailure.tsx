@@ -1,7 +1,7 @@
 /** Why the last command was not carried out: refused, or overtaken by another operator. */
 import { Button } from "@mantine/core";
 import { Notice } from "@shared/ui/Notice";
-import { type JSX, useState } from "react";
+import { type JSX, useEffect, useRef, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
 import type { useSession } from "./useSession";
@@ -34,10 +34,18 @@ export function CommandFailure({ live }: CommandFailureProps): JSX.Element | nul
   return live.error === null ? null : <Failure error={live.error} />;
 }
 
-/** In a dialog: what failed since it was opened. What failed before belongs to something else. */
+/**
+ * In a dialog: what failed since it was opened. What failed before belongs to something else, and
+ * what failed here has been read when the dialog is closed.
+ */
 export function NewFailure({ live }: CommandFailureProps): JSX.Element | null {
   const [before] = useState({ error: live.error, overtaken: live.overtaken });
   const error = live.error === before.error ? null : live.error;
   const overtaken = live.overtaken === before.overtaken ? null : live.overtaken;
+  const leave = useRef(() => {});
+  useEffect(() => {
+    leave.current = error === null && overtaken === null ? () => {} : live.dismiss;
+  });
+  useEffect(() => () => leave.current(), []);
   return <CommandFailure live={{ error, overtaken, dismiss: live.dismiss }} />;
 }

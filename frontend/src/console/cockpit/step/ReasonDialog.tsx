@@ -6,7 +6,13 @@ import { useTexts } from "../../i18n";
 import { stepName } from "../../steps";
 import { useShown } from "../../ui/page";
 import { ReasonField } from "../../ui/ReasonField";
-import { COMMON_REASONS, type Reasoned, redoable, redoTarget } from "../session/action";
+import {
+  COMMON_REASONS,
+  currentStep,
+  type Reasoned,
+  redoable,
+  redoTarget,
+} from "../session/action";
 import { NewFailure } from "../session/CommandFailure";
 import type { useSession } from "../session/useSession";
 
@@ -41,6 +47,8 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
   const refused = type === "withdraw" && session.refusal !== null;
   const [reason, setReason] = useState(refused ? t("reason.refused") : "");
   const [step, setStep] = useState(() => redoTarget(session));
+  // Not a step like any other: none of the usual reasons is one for going on without it.
+  const skipsConsent = type === "skip" && currentStep(session)?.kind === "consent";
   const grave = type === "abort" || type === "withdraw";
   return (
     <form
@@ -52,9 +60,13 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
       }}
     >
       <Stack>
-        <Text c="dimmed">{t(`ask.${type}.body`)}</Text>
+        <Text c="dimmed">{t(skipsConsent ? "ask.skip.consent" : `ask.${type}.body`)}</Text>
         {type === "redo" && <RedoChoice session={session} step={step} onChange={setStep} />}
-        <ReasonField usual={COMMON_REASONS[type]} value={reason} onChange={setReason} />
+        <ReasonField
+          usual={skipsConsent ? [] : COMMON_REASONS[type]}
+          value={reason}
+          onChange={setReason}
+        />
         <NewFailure live={live} />
         <Group justify="flex-end">
           <Button variant="default" onClick={onClose}>

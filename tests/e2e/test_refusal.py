@@ -1,0 +1,187 @@
+"""A participant refuses or asks: what tablet and console do about it, and the ways on."""
+
+from collections.abc import Callable, Iterator
+
+import httpx2
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.people import PATIENCE_MS, Experimenter, Participant
+from tests.e2e.test_stop_rule import command
+from tests.features.lab import STUDY, Json, ok
+from tests.support.browser import PageWatch
+from tests.support.server import ADMIN_PASSWORD, LiveServer
+
+AGREE, DECLINE = "I agree to take part", "I do not want to take part"
+QUESTION, CHANGED = "I have a question", "I have changed my mind"
+REFUSED = "The participant does not want to take part"
+KNOWS = "The experimenter knows that you do not want to take part"
+
+
+class Room:
+    """Console and tablet of one session at its consent, and the server behind them."""
+
+    def __init__(self, server: LiveServer, api: httpx2.Client, console: Page, tablet: Page) -> None:
+        self.api, self.console, self.tablet = api, console, tablet
+        ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
+        view = command(api, ok(api.post(f"/api/studies/{STUDY}/sessions", json={})), "start")
+        self.session_id = str(view["id"])
+        self.experimenter = Experimenter(console, server.url)
+        self.experimenter.log_in()
+        console.goto(f"{server.url}/#/sessions/{self.session_id}")
+        Participant(tablet, server.url).pair(self.experimenter.code_for("tablet"))
+        expect(tablet.get_by_role("button", name=AGREE)).to_be_visible(timeout=PATIENCE_MS)
+
+    def log(self) -> list[str]:
+        """The types of the session's events."""
+        events: list[Json] = ok(self.api.get(f"/api/sessions/{self.session_id}/events"))
+        return [one["type"] for one in events]
+
+    def refuses(self) -> None:
+        """Press it on the tablet, and see it on the console."""
+        self.tablet.get_by_role("button", name=DECLINE).click()
+        expect(self.console.get_by_role("heading", name=REFUSED)).to_be_visible(timeout=PATIENCE_MS)
+
+
+@pytest.fixture
+def room(
+    running_server: LiveServer, page_factory: Callable[..., Page], page_watch: PageWatch
+) -> Iterator[Room]:
+    """A session that waits for its consent, on both screens."""
+    page_watch.allow(r"status of 401")
+    with running_server.client() as api:
+        yield Room(running_server, api, page_factory(), page_factory((1180, 820)))
+
+
+def test_a_refusal_stops_everything_until_the_session_is_ended(
+    room: Room, axe: Callable[[Page], list[str]], screenshot: Callable[[Page, str], object]
+) -> None:
+    """An alarm at once; no agreement beside it, also after a reload; the reason stands there."""
+    console, tablet = room.console, room.tablet
+    room.refuses()
+    expect(console.get_by_role("alert").first).to_contain_text("Consent refused")
+    assert console.title().startswith("▲ Consent refused")
+    expect(console.get_by_role("button", name="Signed on paper")).to_have_count(0)
+    for _ in range(2):
+        expect(tablet.get_by_text(KNOWS)).to_be_visible(timeout=PATIENCE_MS)
+        expect(tablet.get_by_role("button", name=AGREE)).to_have_count(0)
+        tablet.reload()
+    expect(tablet.get_by_text(KNOWS)).to_be_visible(timeout=PATIENCE_MS)
+    assert (axe(console), axe(tablet)) == ([], [])
+    screenshot(console, "refusal-console")
+    screenshot(tablet, "refusal-tablet")
+    room.experimenter.press("End the session")
+    dialog = console.get_by_role("dialog")
+    expect(dialog.get_by_label("Reason")).to_have_value("Refused consent")
+    dialog.get_by_role("button", name="Withdraw participant").click()
+    room.experimenter.sees_step("Participant withdrawn")
+    expect(tablet.get_by_role("heading", name="Thank you for your time")).to_be_visible()
+    expect(console.get_by_text("Live", exact=True)).to_have_count(0)
+    assert room.log() == ["session_started", "consent_refused", "session_ended"]
+
+
+def test_whoever_changes_their_mind_reads_the_consent_again(room: Room) -> None:
+    """By themselves on the tablet, or shown again by the experimenter; then they may agree."""
+    console, tablet = room.console, room.tablet
+    room.refuses()
+    tablet.get_by_role("button", name=CHANGED).click()
+    expect(tablet.get_by_role("button", name=AGREE)).to_be_visible(timeout=PATIENCE_MS)
+    expect(console.get_by_text("Refusal taken back").first).to_be_visible(timeout=PATIENCE_MS)
+    expect(console.get_by_role("heading", name=REFUSED)).to_have_count(0)
+    room.refuses()
+    room.experimenter.press("Show the consent again")
+    dialog = console.get_by_role("dialog")
+    dialog.get_by_text("The participant changed their mind").click()
+    dialog.get_by_role("button", name="Show the consent again").click()
+    tablet.get_by_role("button", name=AGREE).click()
+    expect(tablet.locator("[data-name]").first).to_be_visible(timeout=PATIENCE_MS)
+    said = ["consent_refused", "refusal_retracted"]
+    assert room.log() == ["session_started", *said, *said, "step_completed"]
+
+
+def test_a_refusal_without_a_network_arrives_when_it_is_back(
+    room: Room, screenshot: Callable[[Page, str], object], page_watch: PageWatch
+) -> None:
+    """The tablet asks to say it aloud meanwhile, and sends it once."""
+    page_watch.allow(r"ERR_INTERNET_DISCONNECTED|Failed to (load|fetch)")
+    tablet = room.tablet
+    tablet.context.set_offline(True)
+    tablet.get_by_role("button", name=DECLINE).click()
+    untold = tablet.get_by_text("This tablet cannot reach the experimenter at the moment")
+    expect(untold).to_be_visible(timeout=PATIENCE_MS)
+    expect(tablet.get_by_role("button", name=AGREE)).to_have_count(0)
+    screenshot(tablet, "refusal-tablet-offline")
+    assert room.log() == ["session_started"]
+    tablet.context.set_offline(False)
+    heading = room.console.get_by_role("heading", name=REFUSED)
+    expect(heading).to_be_visible(timeout=PATIENCE_MS)
+    expect(tablet.get_by_text(KNOWS)).to_be_visible(timeout=PATIENCE_MS)
+    assert room.log() == ["session_started", "consent_refused"]
+
+
+def test_a_question_calls_the_experimenter(
+    room: Room, screenshot: Callable[[Page, str], object]
+) -> None:
+    """The bar says so until somebody comes; the consent stays where it was."""
+    console, tablet = room.console, room.tablet
+    tablet.get_by_role("button", name=QUESTION).click()
+    called = tablet.get_by_text("The experimenter has been called")
+    expect(called).to_be_visible()
+    alarm = console.get_by_text("The participant has a question").first
+    expect(alarm).to_be_visible(timeout=PATIENCE_MS)
+    screenshot(console, "question-console")
+    screenshot(tablet, "question-tablet")
+    room.experimenter.press("I am there")
+    expect(called).to_have_count(0, timeout=PATIENCE_MS)
+    expect(console.get_by_text("No alarms")).to_be_visible(timeout=PATIENCE_MS)
+    expect(tablet.get_by_role("button", name=AGREE)).to_be_enabled()
+    assert room.log() == ["session_started", "question_asked", "question_closed"]
+
+
+def test_no_key_of_the_experimenter_is_a_consent(
+    room: Room, screenshot: Callable[[Page, str], object], page_watch: PageWatch
+) -> None:
+    """Enter does nothing; a sheet needs its place and a reason. Skipping shows no older error."""
+    page_watch.allow(r"status of 409")
+    console = room.console
+    console.locator("body").press("Escape")
+    console.wait_for_timeout(800)
+    for key in ("Enter", "Space"):
+        console.keyboard.press(key)
+    room.experimenter.press("Signed on paper")
+    dialog = console.get_by_role("dialog")
+    expect(dialog.get_by_role("button", name="Record the consent")).to_be_disabled()
+    assert room.log() == ["session_started"]
+    # Somebody else was first: this one is refused, which is nothing that skipping did.
+    dialog.get_by_label("Where the sheet is").fill("Folder A, sheet 12")
+    dialog.get_by_text("The participant prefers paper").click()
+    console.route("**/commands", lambda route: route.fulfill(status=409, json=NOT_NOW))
+    dialog.get_by_role("button", name="Record the consent").click()
+    expect(dialog.get_by_text(NOT_NOW["error"]["message"])).to_be_visible()
+    console.unroute("**/commands")
+    dialog.get_by_role("button", name="Cancel").click()
+    expect(dialog).to_have_count(0)
+    expect(console.get_by_text(NOT_NOW["error"]["message"])).to_have_count(0)
+    console.keyboard.press("s")
+    expect(dialog.get_by_label("Reason")).to_be_visible()
+    expect(dialog.get_by_text(NOT_NOW["error"]["message"])).to_have_count(0)
+    screenshot(console, "skip-dialog")
+    dialog.get_by_role("button", name="Cancel").click()
+    room.experimenter.press("Signed on paper")
+    dialog.get_by_label("Where the sheet is").fill("Folder A, sheet 12")
+    dialog.get_by_text("The participant prefers paper").click()
+    dialog.get_by_role("button", name="Record the consent").click()
+    expect(room.tablet.locator("[data-name]").first).to_be_visible(timeout=PATIENCE_MS)
+    assert room.log() == ["session_started", "step_completed"]
+
+
+NOT_NOW: Json = {
+    "error": {
+        "code": "not_now",
+        "message": "the paper has run out",
+        "value": None,
+        "valid": None,
+        "remedy": "Fetch some.",
+        "details": [],
+    }
+}
