@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { at, session, steps } from "./example";
 import { groupSteps } from "./record/Timeline";
 import { guidance, lacksHeadset, primaryAction, redoable, redoTarget } from "./session/action";
-import { changesBetween } from "./session/useSession";
+import { changesBetween, isOutlived } from "./session/useSession";
 
 const view = (
   current: Current | null,
@@ -70,6 +70,16 @@ describe("what needs a headset", () => {
       expect(lacksHeadset(view(at(2), [type], { devices: [headset(true)] }))).toBe(false);
     }
     expect(lacksHeadset(view(at(0), ["complete_step", "skip"]))).toBe(false);
+  });
+});
+
+describe("why a command failed", () => {
+  it("is told while the session stands where it was sent, and no longer", () => {
+    const sent = { view: view(at(2), []) };
+    expect(isOutlived(sent, view(at(2), [], { version: 9 }))).toBe(false);
+    expect(isOutlived(sent, view(at(3), []))).toBe(true);
+    expect(isOutlived(sent, view(null, [], { status: "completed" }))).toBe(true);
+    expect(isOutlived(undefined, session)).toBe(false);
   });
 });
 

@@ -93,7 +93,8 @@ export function useSession(id: string) {
     send,
     sendAnew,
     sending: command.isPending,
-    error: isTold(command.error) ? null : command.error,
+    error:
+      isTold(command.error) || isOutlived(command.variables, query.data) ? null : command.error,
     overtaken,
     dismiss: () => {
       command.reset();
@@ -104,6 +105,16 @@ export function useSession(id: string) {
 
 /** Errors that the page tells in a place of their own. */
 const isTold = (error: unknown): boolean => isApiError(error, "stale") || isUnauthorised(error);
+
+/** Whether the session has gone on since a command was sent: why that failed is told no longer. */
+export function isOutlived(
+  sent: { readonly view: SessionView } | undefined,
+  now: SessionView | undefined,
+): boolean {
+  if (sent === undefined || now === undefined) return false;
+  const { view } = sent;
+  return view.status !== now.status || view.current?.index !== now.current?.index;
+}
 
 /** Answers and live events may cross on the line; the view with the higher version stays. */
 function newer(known: SessionView | undefined, view: SessionView): SessionView {
