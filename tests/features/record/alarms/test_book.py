@@ -54,7 +54,8 @@ def test_closing_clears_everything_and_says_why() -> None:
 
 
 def test_every_alarm_has_a_severity() -> None:
-    """Only silence, loss, and a person who is unwell or calls are critical: all cannot wait."""
+    """Only silence, loss, and a person who is unwell, calls or refuses: all cannot wait."""
     critical = {code for code, severity in SEVERITIES.items() if severity == "critical"}
-    assert critical == {"silent", "disconnected", "storage", "stop_rule_met", "help_asked"}
+    of_person = {"stop_rule_met", "help_asked", "question_asked", "consent_refused"}
+    assert critical == {"silent", "disconnected", "storage"} | of_person
     assert GAP.severity == "warning"
