@@ -28,6 +28,8 @@ from app.features.results.exports import ExportDesk
 from app.features.results.replay import ReplayDesk
 from app.lan import Network
 from app.platform.context import AppContext, PartMaker
+from app.platform.folders import protect
+from app.platform.half_made import remove_left
 from app.platform.hub import Hub
 from app.platform.rate_limit import RateLimiter
 from app.platform.storage_health import StorageHealth
@@ -85,10 +87,15 @@ def create_app(
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         with closing(context.database), ExitStack() as stopping:
-            _prepare(context, on_first_password)
-            for part in context.parts:
-                part.start()
-                stopping.callback(part.stop)
+            try:
+                _prepare(context, on_first_password)
+                for part in context.parts:
+                    part.start()
+                    stopping.callback(part.stop)
+            except Exception as error:
+                # For whoever serves it and wants to say why in words.
+                app.state.not_started = error
+                raise
             yield
 
     app = FastAPI(
@@ -116,6 +123,10 @@ def create_app(
 
 
 def _prepare(context: AppContext, on_first_password: Callable[[str], None] | None) -> None:
+    for place in protect(context.settings):
+        log.warning("others may read %s, and its mode cannot be changed", place)
+    for one in remove_left(context.settings, starting=True):
+        log.warning("removed %s, a half-made %s of %s", one.path, one.kind, one.since.isoformat())
     kept = bring_up_to_date(context.settings, context.clock)
     if kept is not None:
         log.warning("the database was migrated; as it was before, it is in %s", kept)

@@ -2,8 +2,8 @@
 
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -13,14 +13,37 @@ from sqlalchemy.exc import DBAPIError
 from app.cli.errors import warn
 from app.clock import Clock
 from app.database import Database
-from app.errors import NotDurable, ReembodyError
-from app.features.care.backups import BackedUp, Restored, back_up, checked_backup, restore
-from app.features.care.opening import bring_up_to_date, existing_database, put_away_if_damaged
-from app.features.care.rights import ErasuresKept, finish_erasures
+from app.errors import ReembodyError
+from app.features.care.backups import (
+    BackedUp,
+    Backup,
+    Restored,
+    RestoredContent,
+    back_up,
+    checked_backup,
+    holds_people,
+    restore,
+)
+from app.features.care.opening import (
+    Damaged,
+    begun_if_missing,
+    existing_database,
+    put_away_if_damaged,
+)
+from app.features.care.rights import (
+    ErasuresKept,
+    Tombstone,
+    finish_erasures,
+    knows_erasures,
+    read_list,
+    tombstone_file,
+)
 from app.features.people.audit import COMMAND_LINE, record_copy
 from app.features.record.erasure import expect_erasure, forget_erasure
 from app.platform.context import AppContext
-from app.platform.folders import backups_of
+from app.platform.folders import backups_of, home_of
+from app.platform.half_made import Notes
+from app.platform.trouble import plainly
 from app.schema_revisions import newest_revision
 from app.settings import Settings
 
@@ -30,11 +53,13 @@ def back_up_to(to: Path, *, as_json: bool) -> str:
 
     Progress goes to standard error.
     """
+    settings = Settings()
     with told_plainly():
-        database = existing_database(Settings())
+        database = existing_database(settings)
+        notes = Notes.of(settings)
         try:
             with Counter("backing up") as counter:
-                done = back_up(database, to, clock=Clock(), progress=counter)
+                done = back_up(database, to, clock=Clock(), notes=notes, progress=counter)
             _put_on_record(database, done)
         finally:
             database.close()
@@ -62,16 +87,9 @@ def _put_on_record(database: Database, done: BackedUp) -> None:
         )
 
 
-@contextmanager
-def told_plainly() -> Iterator[None]:
-    """Turn what a database says into NotDurable, which has a remedy."""
-    try:
-        yield
-    except DBAPIError as error:
-        raise NotDurable(
-            f"the database did not take part: {error.orig}; nothing was changed",
-            remedy="See whether it runs and is whole, then try again.",
-        ) from error
+def told_plainly() -> AbstractContextManager[None]:
+    """Turn what a database or a disk says into NotDurable, which has a remedy."""
+    return plainly("nothing was changed, because the database or the disk did not take part")
 
 
 @dataclass
@@ -118,10 +136,21 @@ def _sentence(done: BackedUp) -> str:
     )
 
 
-def restore_from(path: Path, *, replace: bool, even_though_active: bool, as_json: bool) -> str:
+def restore_from(
+    path: Path,
+    *,
+    replace: bool,
+    even_though_active: bool,
+    even_though_altered: bool,
+    erasures: Path | None,
+    as_json: bool,
+) -> str:
     """Put a backup in the place of what is there; raises ReembodyError with nothing changed.
 
-    Phases whose clock ran when the backup was made are paused afterwards, as after a crash.
+    Phases whose clock ran when the backup was made are paused afterwards, as after a crash. A
+    damaged database is put into quarantine first. `erasures` is the list of an earlier data folder,
+    whose erasures are made here, too; where there is no list at all it is asked for on a terminal,
+    and elsewhere standard error says what that may mean.
     """
     from app.main import create_app  # a backup needs no application
 
@@ -130,35 +159,99 @@ def restore_from(path: Path, *, replace: bool, even_though_active: bool, as_json
     with (
         told_plainly(),
         Counter("restoring") as counter,
+        _no_folder_left(kept),
         checked_backup(path, kept, counter) as backup,
     ):
-        put_away_if_damaged(settings, clock)
-        bring_up_to_date(settings, clock)
-        # Complete, but not started: what is done to sessions needs its parts.
-        context: AppContext = create_app(settings, clock=clock).state.context
-        expected = expect_erasure(settings)
-        done = restore(
-            context.database,
-            backup,
-            keep_in=kept,
-            clock=clock,
-            replace=replace,
-            even_though_active=even_though_active,
-            erasures=ErasuresKept(context),
-            progress=counter,
-        )
+        try:
+            put_away_if_damaged(settings, clock, every_row=True)
+        except Damaged as error:
+            warn(error.message)
+        with begun_if_missing(settings, clock):
+            # Complete, but not started: what is done to sessions needs its parts.
+            context: AppContext = create_app(settings, clock=clock).state.context
+            with _undone_if_refused(context) as expected:
+                outliving = ErasuresKept(context, _earlier_erasures(context, backup, erasures))
+                done = restore(
+                    context.database,
+                    backup,
+                    keep_in=kept,
+                    clock=clock,
+                    replace=replace,
+                    even_though_active=even_though_active,
+                    erasures=outliving,
+                    content=RestoredContent(even_though_altered),
+                    progress=counter,
+                )
     if expected and not done.erasures_reapplied:
         forget_erasure(settings)
-    _overwrite(context)
+    _overwrite(context, outliving.given)
     _stop_clocks(context)
     return as_text(done) if as_json else _sentences(done)
 
 
-def _overwrite(context: AppContext) -> None:
+@contextmanager
+def _no_folder_left(kept: Path) -> Iterator[None]:
+    """Folders that were not there before are not there after a restore that failed."""
+    missing = [folder for folder in (kept, *kept.parents) if not folder.exists()]
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):
+            for folder in missing:
+                folder.rmdir()
+        raise
+
+
+@contextmanager
+def _undone_if_refused(context: AppContext) -> Iterator[bool]:
+    """Leave neither a connection nor the mark of an erasure behind a restore that failed.
+
+    Yields whether the mark was made for this restore.
+    """
+    expected = expect_erasure(context.settings)
+    try:
+        yield expected
+    except BaseException:
+        context.database.close()
+        if expected:
+            forget_erasure(context.settings)
+        raise
+
+
+def _earlier_erasures(
+    context: AppContext, backup: Backup, given: Path | None
+) -> tuple[Tombstone, ...]:
+    """The erasures of a list that was given, or named on the terminal; raises ReembodyError."""
+    if given is not None:
+        return read_list(given)
+    if knows_erasures(context) or not holds_people(backup):
+        return ()
+    made = f"{backup.manifest.made_at:%Y-%m-%d %H:%M} UTC"
+    home = home_of(context.settings)
+    if sys.stdin.isatty() and sys.stderr.isatty():
+        sys.stderr.write(
+            f"\r\033[K{home} has no list of erasures. Whoever was erased after the backup was made "
+            f"({made}) comes back with it.\nFile erasures.jsonl of the earlier data folder (Enter "
+            "if nobody was erased since): "
+        )
+        sys.stderr.flush()
+        named = sys.stdin.readline().strip()
+        return read_list(Path(named)) if named else ()
+    warn(
+        f"{home} has no list of erasures: participants who were erased after the backup was made "
+        f"({made}) are back. If there are any, restore again with --replace --erasures FILE, the "
+        "erasures.jsonl of the earlier data folder; or copy it here, and the next start of the "
+        "server erases them"
+    )
+    return ()
+
+
+def _overwrite(context: AppContext, given: Sequence[Tombstone]) -> None:
     """What was erased again was in the file for a moment; the next start does the same."""
     try:
+        tombstone_file(context.settings).add(given)
         finish_erasures(context)
-    except (DBAPIError, ReembodyError) as error:
+    except (DBAPIError, ReembodyError, OSError) as error:
         warn(
             f"restored, but erased rows are still to be overwritten ({error}): "
             "start the server again"

@@ -1,6 +1,7 @@
 """All commands of `reembody`: the small ones here, each a few lines that parse, call and print."""
 
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -36,11 +37,13 @@ def _print_version(asked: bool) -> None:
 
 @app.callback()
 def reembody(
-    version: Annotated[
+    _version: Annotated[
         bool, typer.Option("--version", callback=_print_version, help="Print the version.")
     ] = False,
 ) -> None:
     """Runs, watches and analyses VR re-embodiment studies."""
+    # Whatever a command writes may be about people: it is for whoever runs the command alone.
+    os.umask(0o077)
 
 
 @app.command()
@@ -170,6 +173,13 @@ def restore(
     even_though_active: Annotated[
         bool, typer.Option("--even-though-active", help="Also while sessions are active.")
     ] = False,
+    even_though_altered: Annotated[
+        bool, typer.Option("--even-though-altered", help="Also where its record was altered.")
+    ] = False,
+    erasures: Annotated[
+        Path | None,
+        typer.Option(help="erasures.jsonl of the earlier data folder, whose erasures hold here."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Put a backup in the place of everything that is there."""
@@ -178,6 +188,11 @@ def restore(
     with reported():
         print(
             restore_from(
-                file, replace=replace, even_though_active=even_though_active, as_json=as_json
+                file,
+                replace=replace,
+                even_though_active=even_though_active,
+                even_though_altered=even_though_altered,
+                erasures=erasures,
+                as_json=as_json,
             )
         )

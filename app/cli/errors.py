@@ -43,3 +43,19 @@ def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[N
         fail(f"{error.message}{valid}. {error.remedy}".strip())
     except expected as error:
         fail(str(error))
+    except Exception as error:
+        refused = _refused_by_storage(error)
+        if refused is None:
+            raise
+        fail(f"{refused.message}. {refused.remedy}")
+
+
+def _refused_by_storage(error: Exception) -> ReembodyError | None:
+    """What a database refuses, in words; None for any other error, a fault of the program."""
+    if not type(error).__module__.startswith(("sqlite3", "sqlalchemy")):
+        return None  # without loading what a command may never need
+    from app.platform.trouble import explain, in_plain_words, proves_damage
+
+    if explain(error) is None and not proves_damage(error):
+        return None
+    return in_plain_words("the database did not take part", error)

@@ -25,6 +25,8 @@ from app.features.people.audit import (
 from app.features.record.receipts import SessionReceipt, receipt_of, receipt_text
 from app.features.results.analysis.tables import KINDS, Kind
 from app.features.results.exports.writing import Exported, export_study, usual_kind
+from app.platform.half_made import Notes
+from app.settings import Settings
 
 
 def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
@@ -34,9 +36,18 @@ def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
     standard error which file it is at. Raises ValueError for an unknown kind, ReembodyError for an
     unknown study or a folder that is not ours to replace, OSError where it cannot be written.
     """
+    notes = Notes.of(Settings())
     with opened_database() as database, database.reading() as db:
         chosen = usual_kind(db, study) if kind is None else _known(kind)
-        done = export_study(db, study, chosen, to, now=Clock().utc_now(), progress=_tell_progress)
+        done = export_study(
+            db,
+            study,
+            chosen,
+            to,
+            now=Clock().utc_now(),
+            notes=notes,
+            progress=_tell_progress,
+        )
         _put_on_record(database, study, done)
     return (
         f"{done.sessions} session(s) of kind {done.kind} in {done.files} files: {to}\n"

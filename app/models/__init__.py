@@ -1,6 +1,14 @@
 """The tables, one family a file. Importing this package registers them all."""
 
-from app.models.accounts import Account, AuditEntry, AuditHead, Invitation, LoginToken, StudyMember
+from app.models.accounts import (
+    ROLES,
+    Account,
+    AuditEntry,
+    AuditHead,
+    Invitation,
+    LoginToken,
+    StudyMember,
+)
 from app.models.avatars import Avatar, AvatarVersion, HumanoidRow
 from app.models.captures import CaptureContent, CapturePiece, CaptureRow, SavedJointMap
 from app.models.devices import Calibration, Device, PairingCode
@@ -27,6 +35,7 @@ from app.models.walking import WalkingModelRow, WalkingScene, WalkSetRow
 
 __all__ = [
     "KINDS",
+    "ROLES",
     "Account",
     "AlarmRow",
     "Answer",

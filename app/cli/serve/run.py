@@ -3,6 +3,7 @@
 The server listens on this machine, and on the lab's network if asked to.
 """
 
+import logging
 import os
 import signal
 import sys
@@ -12,14 +13,13 @@ from collections.abc import Mapping
 
 import uvicorn
 from fastapi import FastAPI
-from sqlalchemy.exc import DBAPIError
 
-from app.cli.errors import fail, reported
+from app.cli.errors import reported
 from app.cli.serve.output import addresses, certificate_text
 from app.clock import Clock
 from app.collecting import settle
 from app.errors import InvalidInput
-from app.features.care.opening import prepare_database
+from app.features.care.opening import prepare_database, put_away_if_damaged
 from app.lan import Network
 from app.lan.serving import (
     CertificateWatch,
@@ -35,6 +35,7 @@ from app.lan.serving import (
     tls_context,
 )
 from app.main import create_app
+from app.platform.trouble import in_plain_words
 from app.settings import Settings
 
 ENDS_WITHIN_S = 15.0
@@ -71,10 +72,16 @@ def serve_forever(
     print(addresses(watch.network.reach, _where(settings)), flush=True)
     allow_open_files()
     server = LabServer(bound.doors(app, watch, settings), watch.run)
+    logging.getLogger("uvicorn.error").addFilter(_is_no_trace)
     try:
         server.run()
     except KeyboardInterrupt:
         return
+    except SystemExit:
+        error: Exception | None = getattr(app.state, "not_started", None)
+        if error is None:
+            raise
+        _say_why_not(error, settings)
 
 
 def settings_with(given: Mapping[str, object]) -> Settings:
@@ -146,12 +153,27 @@ def _config(app: object, settings: Settings) -> uvicorn.Config:
 
 def _prepare(settings: Settings, *, new_database: bool) -> None:
     with reported():
-        try:
-            kept = prepare_database(settings, Clock(), new_database=new_database)
-        except DBAPIError as error:
-            fail(f"the database cannot be opened: {error.orig}")
+        kept = prepare_database(settings, Clock(), new_database=new_database, to_write=True)
     if kept is not None:
         print(f"Backup     {kept}, made before the database was migrated", flush=True)
+
+
+def _is_no_trace(record: logging.LogRecord) -> bool:
+    """uvicorn's own account of an application that did not start; `_say_why_not` has a better."""
+    return not record.getMessage().startswith("Traceback (most recent call last)")
+
+
+def _say_why_not(error: Exception, settings: Settings) -> None:
+    """Why the application did not start, after the first look at its database found it whole.
+
+    What that look leaves out in a large file may be damaged; any error that is neither that nor the
+    disk's or the database's is a fault of the program, and raised.
+    """
+    with reported():
+        put_away_if_damaged(settings, Clock(), every_row=True)
+        if isinstance(error, OSError):
+            raise in_plain_words("the server cannot start", error)
+        raise error
 
 
 def _end_with_the_input() -> None:

@@ -11,15 +11,18 @@ from collections.abc import Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import Connection, StaticPool, create_engine
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from app.errors import InvalidInput, NotDurable, NotFound
+from app.features.care.backups.content import wrong_rows, wrong_tables
 from app.features.care.backups.digest import TableDigest, digest_of
 from app.features.care.backups.manifest import Manifest, ManifestError, read_manifest
 from app.features.care.backups.rows import Progress, silent
-from app.features.care.backups.shapes import TableShape, shapes_of
+from app.features.care.backups.shapes import TableShape, shapes_of, shapes_of_models
+from app.platform.trouble import DAMAGED, explain
 from app.schema_revisions import known_revisions, migrate, newest_revision
 
 
@@ -55,15 +58,57 @@ def opened_backup(path: Path, progress: Progress = silent) -> Iterator[Backup]:
                 shapes = shapes_of(connection)
                 tables = digests(connection, shapes, progress)
                 _compare(tables, manifest.tables)
-        except (ManifestError, SQLAlchemyError, sqlite3.Error, ValueError, KeyError) as error:
-            raise InvalidInput(
-                f"{path} is not a whole backup of ours: {_why(error)}. Nothing was changed",
-                value=str(path),
-                valid="a file that `reembody backup` wrote",
-                remedy="Take another copy of this backup, or another backup.",
-            ) from error
+        except UNREADABLE as error:
+            raise _refused(path, _why(error)) from error
         with _through_sqlalchemy(driver) as connection:
             yield Backup(path, manifest, shapes, tables, connection)
+
+
+def require_ours(backup: Backup) -> None:
+    """Refuse what no backup of this program holds, whatever its checksums say.
+
+    `backup` is in the newest schema. Raises InvalidInput for tables and columns that are missing or
+    too many, views and triggers, values of another kind than their column's, and rows that refer
+    to nothing.
+    """
+    driver: Any = backup.connection.connection.driver_connection
+    found = {shape.name: [one.name for one in shape.columns] for shape in backup.shapes}
+    ours = shapes_of_models()
+    try:
+        wrong = wrong_tables(found, ours, exactly=True)
+        more = "SELECT type || ' ' || name FROM sqlite_master WHERE type IN ('view', 'trigger')"
+        wrong += [f"there is a {name}" for (name,) in driver.execute(more)]
+        if not wrong:
+            wrong += list(wrong_rows(driver, ours))
+        if not wrong:
+            lost = driver.execute("PRAGMA foreign_key_check").fetchall()
+            wrong += [f"rows of {row[0]} refer to nothing in {row[2]}" for row in lost[:1]]
+    except UNREADABLE as error:
+        raise _refused(backup.path, _why(error)) from error
+    if wrong:
+        raise _refused(backup.path, "; ".join(wrong[:3]))
+
+
+UNREADABLE = (
+    ManifestError,
+    SQLAlchemyError,
+    sqlite3.Error,
+    ValueError,
+    TypeError,
+    AttributeError,
+    LookupError,
+    RecursionError,
+)
+"""What reading a file brings about that anybody may have written."""
+
+
+def _refused(path: Path, why: str) -> InvalidInput:
+    return InvalidInput(
+        f"{path} is not a whole backup of ours: {why}. Nothing was changed",
+        value=str(path),
+        valid="a file that `reembody backup` wrote",
+        remedy="Take another copy of this backup, or another backup.",
+    )
 
 
 @contextmanager
@@ -136,15 +181,20 @@ def as_newest(backup: Backup, workplace: Path) -> Iterator[Backup]:
             remedy=f"Install version {backup.manifest.product_version} or a later one.",
         )
     workplace.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=".restoring-", dir=workplace) as folder:
+    with tempfile.TemporaryDirectory(
+        prefix=".restoring-", dir=workplace, ignore_cleanup_errors=True
+    ) as folder:
         copy = Path(folder) / "copy.sqlite"
         try:
             shutil.copyfile(backup.path, copy)
             migrate(f"sqlite:///{copy}")
-        except (OSError, sqlite3.Error, DBAPIError) as error:
+        except (OSError, sqlite3.Error, DBAPIError, RuntimeError, ValueError) as error:
+            if not isinstance(error, OSError) and explain(error) in (None, DAMAGED):
+                # Not the disk's fault: its tables are not those of the schema that it names.
+                raise _refused(backup.path, _why(error)) from error
             raise NotDurable(
                 f"{backup.path} could not be brought to the newest schema in {workplace}: "
-                f"{error}; nothing was changed",
+                f"{_why(error)}; nothing was changed",
                 remedy="Free some space there.",
             ) from error
         with opened_copy(copy) as connection:

@@ -1,25 +1,26 @@
 """Backing up and restoring, as the rest of the product asks for it."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Protocol
 
-from sqlalchemy import select
+from sqlalchemy import column, select, table
 from sqlalchemy.orm import Session
 
 from app.clock import Clock
 from app.database import Database
 from app.errors import Conflict
-from app.features.care.backups.reading import Backup, as_newest, opened_backup
+from app.features.care.backups.reading import Backup, as_newest, opened_backup, require_ours
 from app.features.care.backups.restoring import hold_still, is_empty, replace_rows
 from app.features.care.backups.rows import Progress, silent
 from app.features.care.backups.writing import write_backup
 from app.features.people.audit import head_of
 from app.features.record.devices import devices_of_session, revoke
 from app.models import AuditHead, Participant, StudySession
+from app.platform.half_made import Notes
 
 ENDING = ".reembody"
 _S_PER_NS = 1e-9
@@ -72,15 +73,26 @@ class Outliving(Protocol):
         """The backup's rows are there; how many changes were made to them."""
 
 
-def back_up(database: Database, to: Path, *, clock: Clock, progress: Progress = silent) -> BackedUp:
+def back_up(
+    database: Database,
+    to: Path,
+    *,
+    clock: Clock,
+    notes: Notes | None = None,
+    progress: Progress = silent,
+) -> BackedUp:
     """Copy everything, as it is at this moment, into the new file `to`; nobody waits for it.
+
+    `notes` keep a note of it while it is made, for a place outside of the data folder.
 
     On SQLite the log cannot be emptied before the copy is finished: it grows meanwhile. Raises
     Conflict, NotFound or NotDurable; then nothing is left of the file.
     """
     began_ns = clock.monotonic_ns()
     with database.reading() as db:
-        manifest = write_backup(db.connection(), to, now=clock.utc_now(), progress=progress)
+        manifest = write_backup(
+            db.connection(), to, now=clock.utc_now(), notes=notes, progress=progress
+        )
         head = str(head_of(db)) if AuditHead.__tablename__ in manifest.tables else None
     return BackedUp(
         path=to,
@@ -99,10 +111,20 @@ def checked_backup(path: Path, workplace: Path, progress: Progress = silent) -> 
     """A backup whose checksums all fit, in the newest schema; nothing else is touched yet.
 
     One of an earlier version is copied into the folder `workplace` and migrated there. Raises
-    NotFound or InvalidInput for a file that is missing, damaged, not ours, or a newer program's.
+    NotFound or InvalidInput for a file that is missing, damaged, not ours, or a newer program's,
+    and for one whose tables and values are not what this program writes.
     """
     with opened_backup(path, progress) as given, as_newest(given, workplace) as backup:
+        require_ours(backup)
         yield backup
+
+
+def holds_people(backup: Backup) -> bool:
+    """Whether there are participants in it who are people, neither simulated nor a test."""
+    people = (
+        select(column("id")).select_from(table("participants")).where(column("kind") == "people")
+    )
+    return backup.connection.execute(people.limit(1)).first() is not None
 
 
 def restore(
@@ -114,6 +136,7 @@ def restore(
     replace: bool,
     even_though_active: bool = False,
     erasures: Outliving | None = None,
+    content: Callable[[Session], None] | None = None,
     progress: Progress = silent,
 ) -> Restored:
     """Put the backup in the place of everything in `database`, whose schema must be the newest.
@@ -129,8 +152,9 @@ def restore(
     Raises Conflict where sessions are active or rows would be replaced and the caller did not
     allow it, NotDurable where there is no room; then nothing has changed.
 
-    `erasures`, which every command that restores must give, makes erasures again that are newer
-    than the backup: nobody ever sees the data come back.
+    `erasures` and `content` are what every command that restores must give. The first makes
+    erasures again that are newer than the backup: nobody ever sees the data come back. The second
+    looks at the rows before they are committed, and refuses them by raising ReembodyError.
     """
     began_ns = clock.monotonic_ns()
     with database.writing() as db:
@@ -144,9 +168,13 @@ def restore(
         if not is_empty(target, backup.shapes):
             before = _place_before(backup.path, keep_in, clock.utc_now(), replace=replace)
             write_backup(target, before, now=clock.utc_now(), progress=progress)
-        replace_rows(target, backup, progress)
-        reapplied = 0 if erasures is None else erasures.behind(db)
-        unpaired = _unpair_headsets(db, clock.utc_now())
+        with _removed_if_refused(before):
+            replace_rows(target, backup, progress)
+            if content is not None:
+                content(db)
+            reapplied = 0 if erasures is None else erasures.behind(db)
+            unpaired = _unpair_headsets(db, clock.utc_now())
+            db.flush()
     return Restored(
         path=backup.path,
         made_at=backup.manifest.made_at,
@@ -157,6 +185,20 @@ def restore(
         unpaired=unpaired,
         erasures_reapplied=reapplied,
     )
+
+
+@contextmanager
+def _removed_if_refused(before: Path | None) -> Iterator[None]:
+    """What was to be replaced stays, so that its backup would be one copy of people's data more.
+
+    Not around the commit: one that fails may have happened all the same.
+    """
+    try:
+        yield
+    except BaseException:
+        if before is not None:
+            before.unlink(missing_ok=True)
+        raise
 
 
 def stamped(folder: Path, name: str, now: datetime) -> Path:

@@ -7,6 +7,7 @@ with, and a later version of the product, whose models differ, must still be abl
 from collections import OrderedDict
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 from typing import Any
 
 from sqlalchemy import (
@@ -24,8 +25,9 @@ from sqlalchemy import (
     Time,
     text,
 )
-from sqlalchemy.types import TypeEngine
+from sqlalchemy.types import TypeDecorator, TypeEngine
 
+from app.database import Base
 from app.schema_revisions import VERSION_TABLE
 
 MANIFEST_TABLE = "backup_manifest"
@@ -90,6 +92,12 @@ def shapes_of(connection: Connection) -> tuple[TableShape, ...]:
     return _known[words]
 
 
+@lru_cache(maxsize=1)
+def shapes_of_models() -> tuple[TableShape, ...]:
+    """The tables as this program has them, those that are referred to first."""
+    return tuple(_shape(table) for table in Base.metadata.sorted_tables)
+
+
 _KEPT = 16
 _known: OrderedDict[tuple[str | None, ...], tuple[TableShape, ...]] = OrderedDict()
 
@@ -113,6 +121,8 @@ def _shape(table: Table) -> TableShape:
 
 
 def _kind(table: str, column: str, type_: TypeEngine[Any]) -> Kind:
+    if isinstance(type_, TypeDecorator):
+        type_ = type_.impl_instance
     for of, kind in _KINDS:
         if isinstance(type_, of) and not isinstance(type_, Date | Time):
             return kind

@@ -23,8 +23,9 @@ from app.features.care.backups.digest import Digester, TableDigest
 from app.features.care.backups.manifest import Manifest, write_manifest
 from app.features.care.backups.reading import opened_backup, opened_copy
 from app.features.care.backups.rows import Progress, read_rows, silent, sqlite_insert
-from app.features.care.backups.shapes import TableShape, shapes_of
-from app.schema_revisions import alembic_config, known_revisions, revision_of
+from app.features.care.backups.shapes import TableShape, shapes_of, shapes_of_models
+from app.platform.half_made import Notes, made_beside
+from app.schema_revisions import alembic_config, known_revisions, newest_revision, revision_of
 
 SPARE_BYTES = 64 * 1024 * 1024
 """What a backup leaves free on its disk, which may be the one that the server writes to."""
@@ -32,17 +33,23 @@ _FOR_ONE_WRITER = ("journal_mode=DELETE", "journal_mode=OFF", "synchronous=OFF")
 
 
 def write_backup(
-    source: Connection, to: Path, *, now: datetime, progress: Progress = silent
+    source: Connection,
+    to: Path,
+    *,
+    now: datetime,
+    notes: Notes | None = None,
+    progress: Progress = silent,
 ) -> Manifest:
     """Copy everything that `source` sees into the file `to`; nobody else can read the file.
 
+    `notes` keep a note of it while it is made, for a place outside of the data folder.
     Raises Conflict where there is a file already, NotFound where the folder or a database of ours
     is missing, NotDurable where it cannot be written. Then nothing is left of it.
     """
     check_place(to)
     revision = _known(revision_of(source))
     _require_space(source, to)
-    with _beside(to) as partial, _told_as_not_durable(to):
+    with _told_as_not_durable(to), _beside(to, now, notes) as partial:
         _make_tables(partial, revision)
         _fill(source, partial, revision, now, progress)
         with opened_backup(partial) as made:
@@ -110,15 +117,10 @@ def _mb(size: int) -> str:
 
 
 @contextmanager
-def _beside(to: Path) -> Iterator[Path]:
+def _beside(to: Path, now: datetime, notes: Notes | None) -> Iterator[Path]:
     """A folder beside the place, that only we can look into and that is gone afterwards."""
-    folder = Path(
-        tempfile.mkdtemp(prefix=f".{to.name}.", suffix=".partial", dir=to.absolute().parent)
-    )
-    try:
+    with made_beside("backup", to, now=now, notes=notes) as folder:
         yield folder / to.name
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 @contextmanager
@@ -139,6 +141,17 @@ def _make_tables(file: Path, revision: str) -> None:
         command.upgrade(alembic_config(f"sqlite:///{file}"), revision)
     except DBAPIError as error:
         raise OSError(str(error.orig)) from error
+
+
+def shapes_at(revision: str) -> tuple[TableShape, ...]:
+    """The product's tables in the schema of a revision, those that are referred to first."""
+    if revision == newest_revision():
+        return shapes_of_models()
+    with tempfile.TemporaryDirectory(prefix="reembody-schema-") as folder:
+        empty = Path(folder) / "empty.sqlite"
+        _make_tables(empty, revision)
+        with opened_copy(empty) as connection:
+            return shapes_of(connection)
 
 
 def _fill(source: Connection, file: Path, revision: str, now: datetime, progress: Progress) -> None:

@@ -7,10 +7,19 @@ service      what happens at every start: inspect, put away, create, back up, mi
 """
 
 from app.features.care.opening.service import (
+    Damaged,
+    begun_if_missing,
     bring_up_to_date,
     existing_database,
     prepare_database,
     put_away_if_damaged,
 )
 
-__all__ = ["bring_up_to_date", "existing_database", "prepare_database", "put_away_if_damaged"]
+__all__ = [
+    "Damaged",
+    "begun_if_missing",
+    "bring_up_to_date",
+    "existing_database",
+    "prepare_database",
+    "put_away_if_damaged",
+]

@@ -1,15 +1,24 @@
 """What is wrong with a SQLite file, found out without changing it.
 
+Only what the bytes of the file prove counts as damage. Whatever keeps this program from reading it
+(permissions, a disk that does not answer, somebody who holds it) raises NotDurable instead: then
+nothing is known of the database, and it stays where it is.
+
 Use it only in a process that has not opened the file with SQLite: on POSIX, closing any handle on a
 file drops the locks that SQLite's own handles hold.
 """
 
 import os
+import re
 import sqlite3
-from contextlib import closing, suppress
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
+from app.features.care.backups import columns_in, shapes_at, wrong_rows, wrong_tables
 from app.features.care.opening.wal import inspect_log
+from app.platform.trouble import in_plain_words, proves_damage
+from app.schema_revisions import VERSION_TABLE, known_revisions, newest_revision
 
 MAGIC = b"SQLite format 3\x00"
 ALWAYS_CHECKED_BYTES = 2 * 10**9
@@ -17,10 +26,15 @@ ALWAYS_CHECKED_BYTES = 2 * 10**9
 
 Checking takes about 2.5 s for each GB if the disk has to read it, 0.4 s if it is in memory.
 """
+ROWS_READ_BYTES = 200 * 10**6
+"""The rows of a larger file are read only where the database could not be worked with."""
+UNNAMED = "it does not say which schema it has"
+UNREADABLE = "what is in it cannot be read as text"
 _HEADER = 100
 _BLOCK = 4 * 1024 * 1024
 _SHARED_FIRST, _SHARED_SIZE = 0x40000002, 510
 """The bytes that every process with an open SQLite database holds a lock on in WAL mode."""
+_REVISION = re.compile(r"\d{4}")
 
 
 def log_of(file: Path) -> Path:
@@ -35,45 +49,113 @@ def is_open_elsewhere(file: Path) -> bool:
     except ImportError:
         return False
     try:
-        with file.open("rb+") as handle:
-            fcntl.lockf(handle, fcntl.LOCK_EX | fcntl.LOCK_NB, _SHARED_SIZE, _SHARED_FIRST)
-    except BlockingIOError:
-        return True
+        handle = file.open("rb+")
     except OSError:  # not ours to write: working with it will say so
         return False
+    with handle:
+        try:
+            fcntl.lockf(handle, fcntl.LOCK_EX | fcntl.LOCK_NB, _SHARED_SIZE, _SHARED_FIRST)
+        except (BlockingIOError, PermissionError):  # POSIX has both for a lock that is taken
+            return True
+        except OSError:  # a file system without locks
+            return False
     return False
 
 
-def damage_of(file: Path) -> str | None:
+def damage_of(file: Path, *, every_row: bool = False) -> str | None:
     """What is wrong with the file in a few words; None if it can be worked with.
 
-    A log left behind, whose end may be torn, is what a power failure leaves and no damage.
+    A log left behind, whose end may be torn, is what a power failure leaves and no damage. Rows
+    are read in a small file, and with `every_row` in any. Raises NotDurable where it cannot be
+    told, because the file cannot be read.
     """
-    with file.open("rb") as handle:
-        start = handle.read(_HEADER)
-    if not start.startswith(MAGIC):
-        return "it is not a SQLite database" if start else "it is empty (0 bytes)"
-    log = log_of(file)
-    unclean = log.is_file() and log.stat().st_size > 0
-    if not unclean and file.stat().st_size % _page_size(start):
-        return "it was cut off"
-    report = inspect_log(log)
-    if not report.header_fits:
-        return "the beginning of its log is damaged"
-    if report.damaged:
-        return f"its log is damaged: {report.commits_behind} stored transactions cannot be read"
-    try:
-        return _checked(file, thoroughly=unclean or file.stat().st_size <= ALWAYS_CHECKED_BYTES)
-    except sqlite3.DatabaseError as error:
-        return str(error)
+    with _unless_hindered(file):
+        start = _beginning(file)
+        found = _header_damage(start)
+        if found is not None:
+            return found
+        log = log_of(file)
+        unclean = log.is_file() and log.stat().st_size > 0
+        size = file.stat().st_size
+        if not unclean and size % _page_size(start):
+            return "it was cut off"
+        report = inspect_log(log)
+        if not report.header_fits:
+            return "the beginning of its log is damaged"
+        if report.damaged:
+            return f"its log is damaged: {report.commits_behind} stored transactions cannot be read"
+        try:
+            pages = unclean or size <= ALWAYS_CHECKED_BYTES or every_row
+            return _checked(file, pages=pages, rows=every_row or size <= ROWS_READ_BYTES)
+        except (sqlite3.Error, UnicodeDecodeError) as error:
+            said = _said(error)
+            if said is None:
+                raise
+            return said
+    return None
 
 
 def foreign_tables(file: Path) -> list[str]:
-    """The tables of a database that is somebody else's; none if it is ours, or new."""
-    with closing(_read_only(file)) as connection:
+    """The tables of a database that is somebody else's; none if it is ours, or new.
+
+    Raises NotDurable where it cannot be read.
+    """
+    with _unless_hindered(file), closing(_read_only(file)) as connection:
         query = "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name"
         names = [str(name) for (name,) in connection.execute(query)]
-    return [] if "alembic_version" in names else names
+    return [] if VERSION_TABLE in names else names
+
+
+@contextmanager
+def _unless_hindered(file: Path) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, sqlite3.Error, UnicodeDecodeError) as error:
+        words = f"the database {file} cannot be read, and was left as it is"
+        raise in_plain_words(words, error) from error
+
+
+def _said(error: Exception) -> str | None:
+    """The damage that an error of SQLite's shows; None if it shows none.
+
+    Nothing but a few plain questions was asked, so that SQLite misunderstands them
+    (SQLITE_ERROR: an unknown file format, a definition that is no SQL) is damage as well.
+    """
+    if isinstance(error, UnicodeDecodeError):
+        return UNREADABLE
+    if getattr(error, "sqlite_errorcode", None) in (sqlite3.SQLITE_ERROR, sqlite3.SQLITE_TOOBIG):
+        return _plain(str(error))
+    if not proves_damage(error):
+        return None
+    return UNREADABLE if "decode" in str(error) else _plain(str(error))
+
+
+def _plain(said: str) -> str:
+    """One line without what a terminal would not show: damage gets into SQLite's messages."""
+    return "".join(letter if letter.isprintable() else "?" for letter in said)[:200]
+
+
+def _beginning(file: Path) -> bytes:
+    with file.open("rb") as handle:
+        return handle.read(_HEADER)
+
+
+def _header_damage(start: bytes) -> str | None:
+    if not start.startswith(MAGIC):
+        return "it is not a SQLite database" if start else "it is empty (0 bytes)"
+    if len(start) < _HEADER:
+        return "it was cut off"
+    numbers = [int.from_bytes(start[at : at + 4], "big") for at in (44, 56)]
+    # https://www.sqlite.org/fileformat2.html, 1.3: what no SQLite writes, and it does not refuse.
+    fits = (
+        _page_size(start).bit_count() == 1
+        and start[18] in (1, 2)
+        and start[19] in (1, 2)
+        and start[21:24] == bytes((64, 32, 32))
+        and numbers[0] in range(5)
+        and numbers[1] in range(4)
+    )
+    return None if fits else "its header is damaged"
 
 
 def _page_size(header: bytes) -> int:
@@ -81,16 +163,42 @@ def _page_size(header: bytes) -> int:
     return 65536 if size == 1 else max(size, 512)
 
 
-def _checked(file: Path, *, thoroughly: bool) -> str | None:
-    if thoroughly:
+def _checked(file: Path, *, pages: bool, rows: bool) -> str | None:
+    if pages:
         _read_through(file)
     with closing(_read_only(file)) as connection:
+        # Damage gets into the words of SQLite's findings.
+        connection.text_factory = _as_readable
         # Reading the tables' definitions fails where the file is no database at all.
         connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
-        if not thoroughly:
+        if not pages:
             return None
         (first,) = connection.execute("PRAGMA quick_check(1)").fetchone()
-    return None if first == "ok" else str(first)
+        if first != "ok":
+            return _plain(str(first))
+        connection.text_factory = str
+        return _wrong_content(connection) if rows else None
+
+
+def _as_readable(text: bytes) -> str:
+    return text.decode("utf-8", "replace")
+
+
+def _wrong_content(connection: sqlite3.Connection) -> str | None:
+    """What is not as this program writes it, if the database is ours."""
+    found = columns_in(connection)
+    if VERSION_TABLE not in found:
+        # Another program's, or new; with many tables of ours it has lost the name of that one.
+        ours = {shape.name for shape in shapes_at(newest_revision())}
+        return UNNAMED if len(ours & found.keys()) > len(ours) / 4 else None
+    names = [one for (one,) in connection.execute(f"SELECT version_num FROM {VERSION_TABLE}")]  # noqa: S608 - our own table
+    if len(names) != 1 or not isinstance(names[0], str) or not _REVISION.fullmatch(names[0]):
+        return UNNAMED
+    if names[0] not in known_revisions():
+        return UNNAMED if names[0] < newest_revision() else None  # a newer program's
+    shapes = shapes_at(names[0])
+    wrong = wrong_tables(found, shapes)
+    return wrong[0] if wrong else next(wrong_rows(connection, shapes), None)
 
 
 def _read_through(file: Path) -> None:

@@ -6,12 +6,16 @@ how far things are: `moving` while files are moved (a start that finds it goes o
 """
 
 import os
+import shutil
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
+from app.platform.folders import DATABASE_SUFFIXES
+
 MOVING, UNRESOLVED, RESOLVED = "moving.txt", "unresolved.txt", "resolved.txt"
-SUFFIXES = ("", "-wal", "-shm", "-journal")
+SUFFIXES = DATABASE_SUFFIXES
 
 
 @dataclass(frozen=True)
@@ -26,17 +30,28 @@ class Quarantine:
         return self.file.absolute().parent / "quarantine"
 
     def put_away(self, why: str, now: datetime) -> Path:
-        """Move the database with all that belongs to it, unchanged; the folder it is in now."""
+        """Move the database with all that belongs to it, unchanged; the folder it is in now.
+
+        Raises OSError; what had been moved by then is followed by the rest at the next start.
+        """
         place = self.folder / f"{now:%Y%m%dT%H%M%S.%fZ}"
-        place.mkdir(parents=True)
+        place.mkdir(mode=0o700, parents=True)
         note = place / MOVING
-        note.write_text(
-            f"{self.file.absolute()} was put away on {now.isoformat()}.\n"
-            f"Why: {why}.\n"
-            "What to do: see docs/backups.md. Nothing here was changed, and nothing needs it.\n",
-            encoding="utf-8",
-        )
-        flush_to_disk(place, self.folder)
+        try:
+            note.write_text(
+                f"{self.file.absolute()} was put away on {now.isoformat()}.\n"
+                f"Why: {why}.\n"
+                "What to do: see docs/backups.md. Nothing here was changed, and nothing needs "
+                "it.\n",
+                encoding="utf-8",
+            )
+            flush_to_disk(place, self.folder)
+        except OSError:
+            # Nothing was moved yet, and nothing is left of the attempt.
+            shutil.rmtree(place, ignore_errors=True)
+            with suppress(OSError):
+                self.folder.rmdir()
+            raise
         self._move(place)
         return place
 
@@ -49,9 +64,9 @@ class Quarantine:
         """The folders that nobody has decided about yet, newest last."""
         return sorted(note.parent for note in self.folder.glob(f"*/{UNRESOLVED}"))
 
-    def resolve(self) -> None:
-        """Somebody has decided: the notes stay, and hold nobody up any more."""
-        for place in self.unresolved():
+    def resolve(self, *places: Path) -> None:
+        """Somebody has decided about these, or all: notes stay, and hold nobody up any more."""
+        for place in places or self.unresolved():
             (place / UNRESOLVED).rename(place / RESOLVED)
 
     def _move(self, place: Path) -> None:

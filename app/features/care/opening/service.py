@@ -1,97 +1,154 @@
 """What happens to the database at every start, before anything works with it."""
 
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from sqlalchemy import Connection, func, inspect, select, table
+from sqlalchemy import Connection, func, inspect, make_url, select, table
 
 from app import __version__
 from app.clock import Clock
 from app.database import Database, open_database
-from app.errors import Conflict, NotFound
+from app.errors import Conflict, NotFound, ReembodyError
 from app.features.care.backups import ENDING, back_up, stamped
 from app.features.care.opening.inspection import damage_of, foreign_tables, is_open_elsewhere
 from app.features.care.opening.quarantine import Quarantine, flush_to_disk
-from app.platform.folders import backups_of, database_file
+from app.platform.folders import (
+    BEGINNING,
+    DATABASE_SUFFIXES,
+    backups_of,
+    database_file,
+    home_of,
+    is_there,
+    traces_of_a_database,
+)
+from app.platform.trouble import in_plain_words, plainly
 from app.schema_revisions import known_revisions, migrate, newest_revision, revision_of
 from app.settings import Settings
 
 
-def put_away_if_damaged(settings: Settings, clock: Clock) -> None:
+class Damaged(Conflict):
+    """The database is damaged, and was put into quarantine."""
+
+
+def put_away_if_damaged(settings: Settings, clock: Clock, *, every_row: bool = False) -> None:
     """Look at the embedded database; one that is damaged goes into quarantine, with its log.
 
-    Raises Conflict if that happened, or if the file is another program's (it is left alone). Call
-    it in a process that has not opened the database yet. While another process works with it
-    nothing is looked at: that process did so when it started.
+    Raises Damaged if that happened, Conflict if the file is another program's, and NotDurable where
+    nothing can be told of it, because it cannot be read: these are left alone.
+    Call it in a process that has not opened the database yet. While another process works with it
+    nothing is looked at: that process did so when it started. `every_row`: also in a large file.
     """
     file = database_file(settings)
     if file is None:
         return
     quarantine = Quarantine(file)
-    quarantine.finish()
-    if not file.exists() or is_open_elsewhere(file):
+    with plainly(f"what an earlier start began to move into {quarantine.folder} is not moved yet"):
+        quarantine.finish()
+    if not is_there(file) or is_open_elsewhere(file):
         return
-    damage = damage_of(file)
+    damage = damage_of(file, every_row=every_row)
     if damage is not None:
-        place = quarantine.put_away(damage, clock.utc_now())
-        raise _damaged(f"the database {file} is damaged: {damage}", place, settings)
+        raise _put_away(file, damage, settings, clock)
     _refuse_foreign(foreign_tables(file), str(file))
 
 
 def refuse_to_begin_unasked(settings: Settings, *, new_database: bool) -> None:
-    """An empty database is begun behind one in quarantine only if somebody says so.
+    """An empty database is begun where there was one before only if somebody says so.
 
-    Raises Conflict as long as nobody has: neither `new_database`, nor a restored backup, nor a
-    repaired file put in its place.
+    There was one if one is in quarantine, or if the data folder holds what belongs to one: backups,
+    the list of erasures and the like. Raises Conflict as long as nobody has decided: neither with
+    `new_database`, nor by a restored backup, nor by a file put in its place.
     """
     file = database_file(settings)
-    if file is None:
+    if file is not None:
+        quarantine = Quarantine(file)
+        unresolved = quarantine.unresolved()
+        if unresolved:
+            if not new_database and not (is_there(file) and _was_used(settings)):
+                raise _damaged("the earlier database is damaged", unresolved[-1], settings)
+            quarantine.resolve()
+    if new_database or not _is_missing(settings):
         return
-    quarantine = Quarantine(file)
-    unresolved = quarantine.unresolved()
-    if unresolved:
-        if not new_database and not (file.exists() and _was_used(settings)):
-            raise _damaged("the earlier database is damaged", unresolved[-1], settings)
-        quarantine.resolve()
+    traces = traces_of_a_database(settings)
+    if traces:
+        where = "the database server holds none of ours" if file is None else f"there is no {file}"
+        raise Conflict(
+            f"{where}, but {home_of(settings)} holds what belongs to a database: "
+            f"{', '.join(traces)}. No new one was begun",
+            value=traces,
+            remedy="Put the database back (is its disk there, are the settings the same?), or "
+            f"restore a backup: reembody restore FILE.{_newest_backup(settings)} Or begin an empty "
+            "database, knowing what that means: reembody serve --new-database.",
+        )
 
 
 def bring_up_to_date(settings: Settings, clock: Clock) -> Path | None:
     """Begin a database where there is none; migrate an older one, after backing it up.
 
     Returns where the backup is, if one was made. Raises Conflict for the database of a newer
-    program or of another one, which is left as it is, and NotDurable where the backup cannot be
-    written: nothing is migrated then.
+    program or of another one, which is left as it is, and NotDurable where the database cannot be
+    worked with or the backup cannot be written: nothing is migrated then.
     """
     url, file = settings.resolved_database_url, database_file(settings)
-    if file is not None and not file.exists():
-        begin(file)
+    if file is not None and not is_there(file):
+        begin(file, clock)
         return None
-    database = open_database(url)
-    try:
-        with database.reading() as db:
-            found = _revision(db.connection())
-        if found == newest_revision():
-            return None
-        kept = None if found is None else _keep(database, found, settings, clock)
-    finally:
-        database.close()
-    migrate(url)
+    with plainly(f"the database {_name_of(settings)} cannot be worked with, and was left as it is"):
+        database = open_database(url)
+        try:
+            with database.reading() as db:
+                found = _revision(db.connection())
+            if found == newest_revision():
+                return None
+            kept = None if found is None else _keep(database, found, settings, clock)
+        finally:
+            database.close()
+        migrate(url)
     return kept
 
 
+@contextmanager
+def begun_if_missing(settings: Settings, clock: Clock) -> Iterator[None]:
+    """A database of the newest schema for the block; one begun for it goes if the block fails."""
+    file = database_file(settings)
+    begun = file is not None and not is_there(file)
+    bring_up_to_date(settings, clock)
+    try:
+        yield
+    except BaseException:
+        if begun and file is not None and not is_open_elsewhere(file):
+            for suffix in reversed(DATABASE_SUFFIXES):
+                file.with_name(file.name + suffix).unlink(missing_ok=True)
+        raise
+
+
 def prepare_database(
-    settings: Settings, clock: Clock, *, new_database: bool = False
+    settings: Settings, clock: Clock, *, new_database: bool = False, to_write: bool = False
 ) -> Path | None:
-    """All of the above, in this order, as a command that works with the database needs it."""
+    """All of the above, in this order, as a command that works with the database needs it.
+
+    `to_write`: also make sure that it takes what is written, as a server does. Raises NotDurable.
+    """
     put_away_if_damaged(settings, clock)
     refuse_to_begin_unasked(settings, new_database=new_database)
-    return bring_up_to_date(settings, clock)
+    kept = bring_up_to_date(settings, clock)
+    if to_write:
+        with plainly(f"the database {_name_of(settings)} cannot be written"):
+            database = open_database(settings.resolved_database_url)
+            try:
+                with database.writing() as db:
+                    db.connection()
+            finally:
+                database.close()
+    return kept
 
 
 def existing_database(settings: Settings) -> Database:
     """The database as it is, to read from; raises NotFound where there is none."""
     file = database_file(settings)
-    if file is not None and not file.is_file():
+    if file is not None and not is_there(file):
         raise NotFound(
             f"there is no database {file}",
             value=str(file),
@@ -146,26 +203,71 @@ def _refuse_foreign(tables: list[str], name: str) -> None:
         )
 
 
-def _damaged(what: str, place: Path, settings: Settings) -> Conflict:
-    folder = backups_of(settings)
-    newest = max(folder.glob(f"*{ENDING}"), key=lambda path: path.stat().st_mtime, default=None)
-    hint = "" if newest is None else f" The newest in {folder} is {newest.name}."
-    return Conflict(
+def _put_away(file: Path, damage: str, settings: Settings, clock: Clock) -> ReembodyError:
+    """Move a damaged database into quarantine; what there is to say."""
+    try:
+        place = Quarantine(file).put_away(damage, clock.utc_now())
+    except OSError as error:
+        words = f"the database {file} is damaged ({damage}), and it cannot be put into quarantine"
+        return in_plain_words(words, error)
+    return _damaged(f"the database {file} is damaged: {damage}", place, settings)
+
+
+def _damaged(what: str, place: Path, settings: Settings) -> Damaged:
+    return Damaged(
         f"{what}. It is in {place} with its log, unchanged",
         value=str(place),
-        remedy="Restore the newest backup: reembody restore FILE." + hint + " Or begin an empty "
-        "database, knowing what that means: reembody serve --new-database.",
+        remedy=f"Restore the newest backup: reembody restore FILE.{_newest_backup(settings)} Or "
+        "begin an empty database, knowing what that means: reembody serve --new-database.",
     )
 
 
-def begin(file: Path) -> None:
-    """Make an empty database with the newest schema at `file`, where there is none."""
+def _newest_backup(settings: Settings) -> str:
+    """A sentence on the newest that was made on our own account, if there is any."""
+    folder = backups_of(settings)
+    newest = max(folder.glob(f"*{ENDING}"), key=lambda path: path.stat().st_mtime, default=None)
+    return "" if newest is None else f" The newest in {folder} is {newest.name}."
+
+
+def _name_of(settings: Settings) -> str:
+    """The database in a message: its file, or its name on the server, never its password."""
+    file = database_file(settings)
+    return str(file or make_url(settings.resolved_database_url).database)
+
+
+def _is_missing(settings: Settings) -> bool:
+    """Whether there is nothing yet that could hold data of ours."""
+    file = database_file(settings)
+    if file is not None:
+        return not is_there(file)
+    with plainly(f"the database {_name_of(settings)} cannot be worked with"):
+        database = open_database(settings.resolved_database_url)
+        try:
+            with database.reading() as db:
+                return not inspect(db.connection()).get_table_names()
+        finally:
+            database.close()
+
+
+def begin(file: Path, clock: Clock) -> None:
+    """Make an empty database with the newest schema at `file`, where there is none.
+
+    A log that lies there without its database is put into quarantine: SQLite would take it for the
+    new one's. Raises NotDurable where it cannot be made; nothing is left of it then.
+    """
     folder = file.absolute().parent
-    folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=".beginning-", dir=folder) as beside:
-        fresh = Path(beside) / file.name
-        # Its last connection copies the log into the file and removes it.
-        migrate(f"sqlite:///{fresh}")
-        flush_to_disk(fresh, folder)
-        if not file.exists():
-            fresh.rename(file)
+    with plainly(f"a new database cannot be begun in {folder}"):
+        if any(file.with_name(file.name + suffix).exists() for suffix in DATABASE_SUFFIXES[1:]):
+            quarantine = Quarantine(file)
+            quarantine.resolve(quarantine.put_away("its database is missing", clock.utc_now()))
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(
+            prefix=BEGINNING, dir=folder, ignore_cleanup_errors=True
+        ) as beside:
+            fresh = Path(beside) / file.name
+            # Its last connection copies the log into the file and removes it.
+            migrate(f"sqlite:///{fresh}")
+            flush_to_disk(fresh)
+            if not is_there(file):
+                fresh.rename(file)
+                flush_to_disk(folder)

@@ -12,6 +12,14 @@ participants  the participants of a study
 access        a person's own copy, as a page to read and as data
 """
 
-from app.features.care.rights.service import ErasuresKept, finish_erasures
+from app.features.care.rights.service import ErasuresKept, finish_erasures, knows_erasures
+from app.features.care.rights.tombstones import Tombstone, read_list, tombstone_file
 
-__all__ = ["ErasuresKept", "finish_erasures"]
+__all__ = [
+    "ErasuresKept",
+    "Tombstone",
+    "finish_erasures",
+    "knows_erasures",
+    "read_list",
+    "tombstone_file",
+]

@@ -12,6 +12,7 @@ from app.features.care.backups import ENDING
 from app.features.people.audit import LONGEST_PLACE, record, record_copy
 from app.models import CopyMade, Participant, Study, StudySession
 from app.platform.folders import backups_of
+from app.platform.half_made import Notes, remove_left
 from app.settings import Settings
 
 FOUND_BY = "system"
@@ -76,7 +77,9 @@ def _may_hold(participant: Participant) -> ColumnElement[bool]:
 def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[CopyMade]:
     """Put copies of the database on record that the product made without being asked.
 
-    Backups before a migration or a restore, and databases in quarantine, in the data folder.
+    Backups before a migration or a restore, and databases in quarantine, in the data folder; and
+    what is not whole yet: a backup or an export that is being made now sees the data as they were,
+    and one that a crash left is removed, or on a disk that is not there.
     """
     known = set(db.scalars(select(CopyMade.place).where(CopyMade.kind == "backup")))
     found = []
@@ -86,6 +89,24 @@ def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[C
             size = path.stat().st_size
             found.append(
                 record_copy(db, kind="backup", place=place, by=FOUND_BY, now=now, size_bytes=size)
+            )
+    remove_left(settings)
+    for one in Notes.of(settings).all():
+        place = str(one.to or one.path)[-LONGEST_PLACE:]
+        if one.kind == "backup" and place not in known:
+            found.append(record_copy(db, kind="backup", place=place, by=FOUND_BY, now=now))
+        elif one.kind == "export":
+            study = db.scalar(select(Study.id).where(Study.key == one.study_key))
+            found.append(
+                record_copy(
+                    db,
+                    kind="export",
+                    place=place,
+                    by=FOUND_BY,
+                    now=now,
+                    study_id=study,
+                    session_kind="all",
+                )
             )
     return found
 

@@ -22,15 +22,20 @@ log = logging.getLogger(__name__)
 
 @dataclass
 class ErasuresKept:
-    """What a restore must not undo: called before and behind it, inside its transaction."""
+    """What a restore must not undo: called before and behind it, inside its transaction.
+
+    `given`: erasures of an earlier installation, which hold here, too.
+    """
 
     context: AppContext
+    given: Sequence[Tombstone] = ()
     _known: dict[str, Tombstone] = field(default_factory=dict)
 
     def before(self, db: Session) -> None:
         """Remember every erasure that the table or the list beside it knows."""
         listed = tombstone_file(self.context.settings).read()
-        self._known = {one.erasure_id: one for one in (*listed, *tombstones_of(db))}
+        known = (*self.given, *listed, *tombstones_of(db))
+        self._known = {one.erasure_id: one for one in known}
 
     def behind(self, db: Session) -> int:
         """Make those again that the restored rows undid; how many there were."""
@@ -97,6 +102,14 @@ def finish_erasures(context: AppContext) -> int:
         log.warning("%d erasure(s) that the database did not know were made again", again)
     overwrite_what_is_left(database, settings)
     return again
+
+
+def knows_erasures(context: AppContext) -> bool:
+    """Whether the table or the list beside it knows which erasures there were, even if none."""
+    if tombstone_file(context.settings).path.exists():
+        return True
+    with context.database.reading() as db:
+        return bool(tombstones_of(db))
 
 
 def keep_tombstones(context: AppContext) -> None:

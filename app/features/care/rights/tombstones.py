@@ -6,6 +6,7 @@ It holds ids only. It is completed from the table at every start.
 """
 
 import json
+import logging
 import os
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
@@ -15,11 +16,13 @@ from pathlib import Path
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.errors import NotDurable
+from app.errors import InvalidInput, NotDurable, NotFound
 from app.models import Erasure
 from app.platform.folders import home_of
+from app.platform.trouble import plainly
 from app.settings import Settings
 
+log = logging.getLogger(__name__)
 NAME = "erasures.jsonl"
 
 
@@ -47,16 +50,18 @@ class TombstoneFile:
         return self.folder / NAME
 
     def read(self) -> list[Tombstone]:
-        """Every erasure that it knows; a line that a crash cut off is left out."""
-        if not self.path.exists():
-            return []
-        found = []
-        for line in self.path.read_text(encoding="utf-8").splitlines():
-            try:
-                values = json.loads(line)
-                found.append(Tombstone(**{**values, "sessions": tuple(values["sessions"])}))
-            except (ValueError, TypeError, KeyError):
-                continue
+        """Every erasure that it knows; a line that a crash cut off is left out.
+
+        Raises NotDurable where it cannot be read: whoever was erased must not come back for that.
+        """
+        with plainly(f"the list of erasures {self.path} cannot be read"):
+            if not self.path.exists():
+                return []
+            found, unreadable = _parsed(self.path.read_bytes())
+        if unreadable:
+            log.warning(
+                "%d line(s) of %s are no erasures, and were left out", unreadable, self.path
+            )
         return found
 
     def add(self, tombstones: Iterable[Tombstone]) -> None:
@@ -81,6 +86,42 @@ class TombstoneFile:
 
     def _ends_well(self) -> bool:
         return not self.path.exists() or self.path.read_bytes()[-1:] in (b"", b"\n")
+
+
+def read_list(path: Path) -> tuple[Tombstone, ...]:
+    """The list of an earlier data folder; raises NotFound, NotDurable, and InvalidInput for others.
+
+    Unlike our own list it is completed from no table: a line that cannot be read is refused.
+    """
+    if not path.is_file():
+        raise NotFound(f"there is no list of erasures {path}", value=str(path))
+    with plainly(f"the list of erasures {path} cannot be read"):
+        found, unreadable = _parsed(path.read_bytes())
+    if unreadable:
+        raise InvalidInput(
+            f"{unreadable} line(s) of {path} are no erasures; nothing was changed",
+            value=str(path),
+            valid=f"the file {NAME} of a data folder",
+            remedy="Take another copy of it, or mend the line by hand: each is one erasure.",
+        )
+    return tuple(found)
+
+
+def _parsed(data: bytes) -> tuple[list[Tombstone], int]:
+    """The erasures of a list, and how many lines are none."""
+    found, unreadable = [], 0
+    for line in data.splitlines():
+        try:
+            values = json.loads(line)
+            one = Tombstone(**{**values, "sessions": tuple(values["sessions"])})
+            moment(one)
+            if not all(isinstance(part, str) for part in (*one.sessions, one.erasure_id, one.by)):
+                raise TypeError
+        except (ValueError, TypeError, KeyError):
+            unreadable += bool(line.strip())
+        else:
+            found.append(one)
+    return found, unreadable
 
 
 def tombstone_file(settings: Settings) -> TombstoneFile:

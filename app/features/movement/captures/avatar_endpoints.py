@@ -34,6 +34,7 @@ from app.features.movement.captures.workbench import Workbench
 from app.features.movement.files import BINARY, BYTES, attachment, binary
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
+from app.platform.half_made import uploads_of
 
 router = APIRouter(prefix="/captures", tags=["captures"])
 MEDIA_TYPES: dict[ExportFormat, str] = {"bvh": "text/plain", "csv": "text/csv"}
@@ -139,7 +140,7 @@ async def _retargeted_file(
     context: AppContext, mapped: Mapped, avatar: str, format_: ExportFormat, *, lock_feet: bool
 ) -> Path:
     """A file of the movement on an avatar, which the caller removes; raises InvalidInput."""
-    path = await run_in_threadpool(_new_file)
+    path = await run_in_threadpool(_new_file, context)
     try:
         await context.part(Workbench).run(
             write_retargeted, mapped, avatar, format_, path, lock_feet=lock_feet
@@ -150,7 +151,7 @@ async def _retargeted_file(
     return path
 
 
-def _new_file() -> Path:
-    handle, name = tempfile.mkstemp(prefix="reembody-retargeted-")
+def _new_file(context: AppContext) -> Path:
+    handle, name = tempfile.mkstemp(prefix="retargeted-", dir=uploads_of(context.settings))
     os.close(handle)
     return Path(name)

@@ -71,7 +71,7 @@ async def add_capture(
             value=wish.companion or wish.companion_bytes,
             valid="both of companion and companion_bytes, or neither",
         )
-    async with uploaded(body, wish.companion_bytes) as files:
+    async with uploaded(context, body, wish.companion_bytes) as files:
         source = _source(wish, files)
         there = await run_sync(_id_of, context, source.identity)
         if there is not None:

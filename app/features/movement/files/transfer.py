@@ -20,6 +20,8 @@ from starlette.requests import ClientDisconnect
 from app.errors import InvalidInput, NotDurable
 from app.features.movement.files.contents import plain_pieces
 from app.platform.context import AppContext
+from app.platform.half_made import uploads_of
+from app.platform.trouble import in_plain_words
 
 BLOCK_BYTES = 1024 * 1024
 FileName = Annotated[
@@ -42,14 +44,14 @@ class Uploaded:
 
 @asynccontextmanager
 async def uploaded(
-    body: AsyncIterator[bytes], companion_bytes: int | None
+    context: AppContext, body: AsyncIterator[bytes], companion_bytes: int | None
 ) -> AsyncIterator[tuple[Uploaded, ...]]:
-    """The files of a request's body, in a folder that is gone afterwards.
+    """The files of a request's body, in a folder of the data folder that is gone afterwards.
 
     The last `companion_bytes` are a file of their own. Raises InvalidInput where a file is empty or
     the sender goes away, NotDurable where there is no room for it.
     """
-    folder = await run_sync(_new_folder)
+    folder = await run_sync(_new_folder, context)
     try:
         whole = Path(folder.name) / "capture"
         size = await _received_whole(body, whole)
@@ -65,8 +67,13 @@ async def uploaded(
         await run_sync(folder.cleanup)
 
 
-def _new_folder() -> "tempfile.TemporaryDirectory[str]":
-    return tempfile.TemporaryDirectory(prefix="reembody-capture-")
+def _new_folder(context: AppContext) -> "tempfile.TemporaryDirectory[str]":
+    try:
+        return tempfile.TemporaryDirectory(
+            dir=uploads_of(context.settings), ignore_cleanup_errors=True
+        )
+    except OSError as error:
+        raise in_plain_words("the upload could not be put on the disk", error) from error
 
 
 async def _received_whole(body: AsyncIterator[bytes], to: Path) -> int:
@@ -77,7 +84,7 @@ async def _received_whole(body: AsyncIterator[bytes], to: Path) -> int:
     except OSError as error:
         raise NotDurable(
             f"the upload could not be put on the disk: {error.strerror}",
-            remedy="Free some space for temporary files on the server, then try again.",
+            remedy="Free some space in the data folder of the server, then try again.",
         ) from error
 
 

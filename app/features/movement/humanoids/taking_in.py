@@ -30,7 +30,7 @@ async def add_humanoid(
 
     Raises InvalidInput where it is no humanoid: then nothing is kept.
     """
-    async with uploaded(body, None) as files:
+    async with uploaded(context, body, None) as files:
         file = files[0]
         if await run_sync(_is_known, context, file.hash):
             return file.hash, False

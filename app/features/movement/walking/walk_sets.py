@@ -38,6 +38,7 @@ from app.features.people.audit import record
 from app.models import WalkingModelRow, WalkSetRow
 from app.platform.access import Caller
 from app.platform.context import AppContext
+from app.platform.half_made import uploads_of
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ async def add_table(
     context: AppContext, caller: Caller, wish: Table, body: AsyncIterator[bytes]
 ) -> WalkSetView:
     """Keep a table of tracks; raises InvalidInput with the line where it cannot be read."""
-    async with uploaded(body, None) as (file,):
+    async with uploaded(context, body, None) as (file,):
         source = tracks_source(wish.origin, wish.kind, file.hash)
         found = await context.part(Bench).run(inspected_tracks, source, file.path)
         row = _row(context, caller, wish.title, wish.kind, wish.origin, file.hash)
@@ -127,7 +128,7 @@ async def _add_captured(
     content_hash = hashlib.sha256(found.table).hexdigest()
     row = _row(context, caller, title, "human", origin, content_hash)
     row.summary = WalksSummary.model_validate(found.summary).model_dump(mode="json")
-    with TemporaryDirectory(prefix="reembody-walks-") as folder:
+    with TemporaryDirectory(dir=uploads_of(context.settings)) as folder:
         file = Path(folder) / "tracks.csv"
         await run_sync(file.write_bytes, found.table)
         return await _kept(context, caller, row, _storing(content_hash, file))

@@ -4,9 +4,8 @@ Whoever looks at the place sees the export before or the one after, never half o
 replaces an earlier one of ours; anything else that stands there is refused.
 """
 
-import shutil
-import tempfile
 from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
 from pathlib import Path
 
 from app.errors import Conflict
@@ -20,7 +19,13 @@ def silent(path: str) -> None:
     """Tell nobody."""
 
 
-def write_folder(members: Iterable[Member], to: Path, *, progress: Progress = silent) -> None:
+Beside = Callable[[Path], AbstractContextManager[Path]]
+"""Makes a folder beside a place, which is gone afterwards."""
+
+
+def write_folder(
+    members: Iterable[Member], to: Path, *, beside: Beside, progress: Progress = silent
+) -> None:
     """Write `members` to `to`, telling each path to `progress` as it is begun.
 
     Raises Conflict where something else is at `to`, and OSError where it cannot be written; then
@@ -29,9 +34,8 @@ def write_folder(members: Iterable[Member], to: Path, *, progress: Progress = si
     to = to.absolute()
     check_target(to)
     to.parent.mkdir(parents=True, exist_ok=True)
-    beside = Path(tempfile.mkdtemp(prefix=f".{to.name}.", suffix=".partial", dir=to.parent))
-    try:
-        fresh = beside / "new"
+    with beside(to) as workplace:
+        fresh = workplace / "new"
         for folder in FOLDERS:
             (fresh / folder).mkdir(parents=True)
         for member in members:
@@ -39,9 +43,7 @@ def write_folder(members: Iterable[Member], to: Path, *, progress: Progress = si
             with (fresh / member.path).open("xb") as file:
                 file.writelines(member.pieces)
         check_target(to)
-        _swap(fresh, to, beside / "old")
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
+        _swap(fresh, to, workplace / "old")
 
 
 def check_target(to: Path) -> None:

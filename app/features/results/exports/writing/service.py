@@ -3,6 +3,7 @@
 from collections.abc import Generator, Iterable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
+from functools import partial
 from itertools import chain
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from app.features.results.exports.writing.archive import zip_pieces
 from app.features.results.exports.writing.contents import Contents, Member
 from app.features.results.exports.writing.folder import Progress, silent, write_folder
 from app.models import StudySession
+from app.platform.half_made import Notes, made_beside
 
 
 @dataclass(frozen=True)
@@ -37,15 +39,19 @@ def export_study(
     to: Path,
     *,
     now: datetime,
+    notes: Notes | None = None,
     progress: Progress = silent,
 ) -> Exported:
     """Write the study's sessions of one kind to the folder `to`.
+
+    `notes` keep a note of it while it is made, so that nothing half-made outlives an erasure.
 
     Raises NotFound for an unknown study, Conflict where something else is at `to`, OSError where it
     cannot be written; in each case nothing has changed.
     """
     contents = Contents(db, study_key, kind, now)
-    write_folder(contents.members(), to, progress=progress)
+    beside = partial(made_beside, "export", now=now, notes=notes, study_key=study_key)
+    write_folder(contents.members(), to, beside=beside, progress=progress)
     return Exported(to, kind, contents.sessions, len(contents.files) + 1, contents.audit_head)
 
 

@@ -1,0 +1,161 @@
+"""Whether what a database holds is something that this program can have written.
+
+Checksums show that a file is what was written, and SQLite's own check that its structure is whole.
+Neither says that the tables are ours, that a column of times holds times, or that an account has a
+role that there is: a damaged value, or a backup that somebody made up, would end the server where
+it reads it. `wrong_tables` and `wrong_rows` ask without a look at the bulk of long values;
+`RestoredContent` asks a database that rows were just put into, before they are committed.
+"""
+
+import json
+import sqlite3
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from types import NoneType
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.errors import InvalidInput
+from app.features.care.backups.shapes import Kind, TableShape
+from app.features.people.audit import verify_trail
+from app.features.record.sessions import events_of, verify_chain
+from app.models import ROLES, Account, StudySession
+
+AT_ONCE = 2000
+_TYPES: dict[Kind, frozenset[type]] = {
+    Kind.TEXT: frozenset({str, NoneType}),
+    Kind.INTEGER: frozenset({int, NoneType}),
+    Kind.NUMBER: frozenset({int, float, NoneType}),
+    Kind.TRUTH: frozenset({int, NoneType}),
+    Kind.MOMENT: frozenset({str, NoneType}),
+    # SQLite makes a number of JSON that looks like one.
+    Kind.JSON: frozenset({str, int, float, NoneType}),
+    # Of these only the name of SQLite's type is asked for, not the bytes.
+    Kind.BYTES: frozenset({str}),
+}
+
+
+def columns_in(driver: sqlite3.Connection) -> dict[str, set[str]]:
+    """The tables of a SQLite file, each with the names of its columns."""
+    tables = driver.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
+    columns = "SELECT name FROM pragma_table_info(?)"
+    return {
+        str(name): {str(one) for (one,) in driver.execute(columns, (name,))} for (name,) in tables
+    }
+
+
+def wrong_tables(
+    found: Mapping[str, Collection[str]], ours: Sequence[TableShape], *, exactly: bool = False
+) -> list[str]:
+    """Which tables and columns of `ours` are missing, in words; `exactly`: also any others."""
+    wrong = []
+    for shape in ours:
+        columns = [column.name for column in shape.columns]
+        if shape.name not in found:
+            wrong.append(f"there is no table {shape.name}")
+            continue
+        missing = sorted(set(columns) - set(found[shape.name]))
+        wrong += [f"there is no column {shape.name}.{column}" for column in missing]
+        more = sorted(set(found[shape.name]) - set(columns)) if exactly else []
+        wrong += [f"the column {shape.name}.{column} is not of this program" for column in more]
+    others = sorted(set(found) - {shape.name for shape in ours}) if exactly else []
+    return wrong + [f"the table {name} is not of this program" for name in others]
+
+
+def wrong_rows(driver: sqlite3.Connection, shapes: Iterable[TableShape]) -> Iterator[str]:
+    """Columns that hold something of another kind than theirs, each once, in words.
+
+    No value is repeated: it may be somebody's answer. Raises what SQLite raises where a row cannot
+    be read at all; `app.platform.trouble.proves_damage` tells what that means.
+    """
+    for shape in shapes:
+        wrong: set[str] = set()
+        asked = ", ".join(_asked(one.name, one.kind) for one in shape.columns)
+        # The words are the schema's own, from our models or migrations.
+        rows = driver.execute(f'SELECT {asked} FROM "{shape.name}"')  # noqa: S608 - names of our schema
+        while portion := rows.fetchmany(AT_ONCE):
+            for one, values in zip(shape.columns, zip(*portion, strict=True), strict=True):
+                if one.name not in wrong and not _fit(one.kind, values):
+                    wrong.add(one.name)
+                    yield f"{shape.name}.{one.name} holds something else than {_NAMES[one.kind]}"
+
+
+_NAMES = {
+    Kind.TEXT: "text",
+    Kind.INTEGER: "whole numbers",
+    Kind.NUMBER: "numbers",
+    Kind.TRUTH: "true or false",
+    Kind.MOMENT: "times",
+    Kind.JSON: "JSON",
+    Kind.BYTES: "bytes",
+}
+
+
+def _asked(name: str, kind: Kind) -> str:
+    return f'typeof("{name}")' if kind is Kind.BYTES else f'"{name}"'
+
+
+def _fit(kind: Kind, values: Sequence[object]) -> bool:
+    if not set(map(type, values)) <= _TYPES[kind]:
+        return False
+    match kind:
+        case Kind.MOMENT:
+            return _all_read(datetime.fromisoformat, values)
+        case Kind.JSON:
+            return _all_read(json.loads, values)
+        case Kind.TRUTH:
+            return set(values) <= {0, 1, None}
+        case Kind.BYTES:
+            return set(values) <= {"blob", "null"}
+        case _:
+            return True
+
+
+def _all_read(read: Callable[[str], object], values: Iterable[object]) -> bool:
+    try:
+        for value in {one for one in values if isinstance(one, str)}:
+            read(value)
+    except (ValueError, RecursionError):
+        return False
+    return True
+
+
+@dataclass
+class RestoredContent:
+    """What a restore asks of the rows it has just put in place, inside its transaction.
+
+    `even_though_altered`: take a record whose chains of hashes do not fit; somebody has decided so.
+    """
+
+    even_though_altered: bool = False
+
+    def __call__(self, db: Session) -> None:
+        """Raise InvalidInput for roles that there are not, and for chains that do not verify."""
+        roles = set(db.scalars(select(Account.role).distinct()))
+        if unknown := sorted(roles - set(ROLES)):
+            raise InvalidInput(
+                f"the backup holds an account of the role {unknown[0]!r}; nothing was changed",
+                value=unknown,
+                valid=list(ROLES),
+                remedy="Take another copy of this backup, or another backup.",
+            )
+        if self.even_though_altered:
+            return
+        broken = [] if verify_trail(db).ok else ["the audit trail"]
+        sessions = select(StudySession.id, StudySession.version).order_by(StudySession.created_at)
+        for session_id, version in db.execute(sessions).all():
+            if not verify_chain(events_of(db, session_id), version=version).ok:
+                broken.append(f"session {session_id}")
+            db.expunge_all()
+        if broken:
+            more = f" and {len(broken) - 3} more" if len(broken) > 3 else ""
+            raise InvalidInput(
+                f"the record in the backup was altered: the chain of {', '.join(broken[:3])}{more} "
+                "does not verify; nothing was changed",
+                value=broken,
+                valid="chains of which every hash follows from the one before",
+                remedy="Take another backup; or, knowing that this record cannot be relied on, say "
+                "--even-though-altered.",
+            )
