@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from fastapi import FastAPI
@@ -129,10 +130,17 @@ def running_lab(
     database_url: str, clock: Clock | None = None, data_dir: Path | None = None
 ) -> Iterator[Lab]:
     """Start the application on `database_url` and stop it afterwards."""
-    settings = Settings(database_url=database_url, admin_password=SecretStr(PASSWORD))
-    if data_dir is not None:
-        settings = settings.model_copy(update={"data_dir": data_dir})
-    app = create_app(settings, clock=clock)
+    with TemporaryDirectory() as folder:
+        # Never one folder for several: each sweeps at its start what a crash left in its own.
+        settings = Settings(
+            database_url=database_url,
+            admin_password=SecretStr(PASSWORD),
+            data_dir=data_dir or Path(folder),
+        )
+        yield from _running(create_app(settings, clock=clock))
+
+
+def _running(app: FastAPI) -> Iterator[Lab]:
     with TestClient(app) as operator:
         lab = Lab(app, operator)
         now = lab.context.clock.utc_now()

@@ -18,7 +18,7 @@ from app.cli.errors import reported
 from app.cli.serve.output import addresses, certificate_text
 from app.clock import Clock
 from app.collecting import settle
-from app.errors import InvalidInput
+from app.errors import InvalidInput, ReembodyError
 from app.features.care.opening import prepare_database, put_away_if_damaged
 from app.lan import Network
 from app.lan.serving import (
@@ -81,7 +81,8 @@ def serve_forever(
         error: Exception | None = getattr(app.state, "not_started", None)
         if error is None:
             raise
-        _say_why_not(error, settings)
+        with reported():
+            raise why_not(error, settings) from error
 
 
 def settings_with(given: Mapping[str, object]) -> Settings:
@@ -159,21 +160,21 @@ def _prepare(settings: Settings, *, new_database: bool) -> None:
 
 
 def _is_no_trace(record: logging.LogRecord) -> bool:
-    """uvicorn's own account of an application that did not start; `_say_why_not` has a better."""
+    """uvicorn's own account of an application that did not start; `why_not` has a better."""
     return not record.getMessage().startswith("Traceback (most recent call last)")
 
 
-def _say_why_not(error: Exception, settings: Settings) -> None:
+def why_not(error: Exception, settings: Settings) -> Exception:
     """Why the application did not start, after the first look at its database found it whole.
 
     What that look leaves out in a large file may be damaged; any error that is neither that nor the
-    disk's or the database's is a fault of the program, and raised.
+    disk's or the database's is a fault of the program.
     """
-    with reported():
+    try:
         put_away_if_damaged(settings, Clock(), every_row=True)
-        if isinstance(error, OSError):
-            raise in_plain_words("the server cannot start", error)
-        raise error
+    except ReembodyError as said:
+        return said
+    return in_plain_words("the server cannot start", error) if isinstance(error, OSError) else error
 
 
 def _end_with_the_input() -> None:

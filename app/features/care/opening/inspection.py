@@ -16,7 +16,7 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 from app.features.care.backups import columns_in, shapes_at, wrong_rows, wrong_tables
-from app.features.care.opening.wal import inspect_log
+from app.features.care.opening.wal import frames_noted, inspect_log
 from app.platform.trouble import in_plain_words, proves_damage
 from app.schema_revisions import VERSION_TABLE, known_revisions, newest_revision
 
@@ -40,6 +40,11 @@ _REVISION = re.compile(r"\d{4}")
 def log_of(file: Path) -> Path:
     """The write-ahead log that belongs to a database file."""
     return file.with_name(file.name + "-wal")
+
+
+def index_of(file: Path) -> Path:
+    """The index of that log, which a process that was killed leaves behind."""
+    return file.with_name(file.name + "-shm")
 
 
 def is_open_elsewhere(file: Path) -> bool:
@@ -84,6 +89,9 @@ def damage_of(file: Path, *, every_row: bool = False) -> str | None:
             return "the beginning of its log is damaged"
         if report.damaged:
             return f"its log is damaged: {report.commits_behind} stored transactions cannot be read"
+        missing = frames_noted(log, index_of(file)) - report.usable
+        if missing > 0:
+            return f"its log is damaged: {missing} stored pages at its end cannot be read"
         try:
             pages = unclean or size <= ALWAYS_CHECKED_BYTES or every_row
             return _checked(file, pages=pages, rows=every_row or size <= ROWS_READ_BYTES)

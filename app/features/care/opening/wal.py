@@ -7,10 +7,14 @@ next one begins, so a power failure leaves at most one unfinished transaction be
 Damage leaves all the others. Only a frame whose checksum follows from that of the frame before it
 counts there: a file may have grown over sectors that were never written and hold anything.
 
+A log that lost its end is seen where its index is left (`-shm`, after a killed process): SQLite
+notes there how many frames were committed, and with synchronous FULL only after they were flushed.
+
 Format: https://www.sqlite.org/fileformat2.html, section 4, "The Write-Ahead Log".
 """
 
 import struct
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -21,6 +25,8 @@ from numpy.typing import NDArray
 HEADER, FRAME_HEADER = 32, 24
 MAGICS = (0x377F0682, 0x377F0683)
 FRAMES_AT_ONCE = 512
+_INDEX_HEADER = 48
+"""Bytes of `WalIndexHdr`, which is there twice; `nBackfill` follows."""
 Words = NDArray[np.uint32]
 
 
@@ -53,6 +59,31 @@ def inspect_log(path: Path) -> LogReport:
         if magic not in MAGICS or list(state) != salt_and_sum[2:] or not _possible(page_size):
             return LogReport(header_fits=False, usable=0, commits_behind=0)
         return _frames(file, page_size, order, tuple(salt_and_sum[:2]), state)
+
+
+def frames_noted(log: Path, index: Path) -> int:
+    """How many frames of this log were committed and not copied yet, as its index has it.
+
+    0 where the index is missing, torn or another log's. A log too short to say which it is counts
+    as the index's own.
+    """
+    if not (log.is_file() and index.is_file()):
+        return 0
+    with index.open("rb") as file:
+        start = file.read(2 * _INDEX_HEADER + 4)
+    first, second = start[:_INDEX_HEADER], start[_INDEX_HEADER : 2 * _INDEX_HEADER]
+    if len(start) < 2 * _INDEX_HEADER + 4 or first != second:
+        return 0
+    covered, summed = first[:-8], struct.unpack("=2I", first[-8:])
+    order = "<" if sys.byteorder == "little" else ">"
+    pairs = _words(covered, order)[None]
+    state = _Checksum(len(covered) // 8).each(pairs, np.zeros((1, 2), np.uint32))[0]
+    with log.open("rb") as file:
+        salts = file.read(HEADER)[16:24]
+    if tuple(state) != summed or (len(salts) == len(first[32:40]) and salts != first[32:40]):
+        return 0
+    (noted,), (copied,) = struct.unpack("=I", first[16:20]), struct.unpack("=I", start[-4:])
+    return int(noted) if noted > copied else 0
 
 
 def _possible(page_size: int) -> bool:

@@ -123,6 +123,29 @@ def test_a_torn_log_is_what_a_power_failure_leaves(file: Path) -> None:
     """It is taken."""
     killed(file)
     log(file).write_bytes(log(file).read_bytes()[:-5000])
+    Path(f"{file}-shm").unlink()  # what was never flushed was never noted there either
+    assert damage_of(file) is None
+
+
+@pytest.mark.parametrize("length", [0, 20, 32, 9 * PAGE, -5000, -1])
+def test_a_log_that_lost_its_committed_end_is_noticed(file: Path, length: int) -> None:
+    """Its index notes what was flushed: SQLite alone would go on without it, and say nothing."""
+    killed(file)
+    log(file).write_bytes(log(file).read_bytes()[:length])
+    assert "cannot be read" in (damage_of(file) or "")
+
+
+def test_an_index_that_is_torn_or_anothers_says_nothing(file: Path, tmp_path: Path) -> None:
+    """Only one that fits the log is believed."""
+    killed(file)
+    index = Path(f"{file}-shm")
+    whole = index.read_bytes()
+    log(file).write_bytes(log(file).read_bytes()[:-5000])
+    for torn in (whole[:90], bytes(100) + whole[100:], whole[:16] + b"\xff" + whole[17:]):
+        index.write_bytes(torn)
+        assert damage_of(file) is None
+    other = killed(filled(tmp_path / "other.sqlite"))
+    index.write_bytes(Path(f"{other}-shm").read_bytes())
     assert damage_of(file) is None
 
 

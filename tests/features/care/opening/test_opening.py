@@ -161,7 +161,9 @@ def test_a_good_file_in_its_place_resolves_it(tmp_path: Path) -> None:
     file.write_bytes(good)
     prepare_database(settings, CLOCK)
     file.unlink()
-    prepare_database(settings, CLOCK)
+    with pytest.raises(Conflict, match="holds what belongs to a database: quarantine"):
+        prepare_database(settings, CLOCK)
+    assert not file.exists()
 
 
 def test_an_empty_database_in_its_place_does_not(tmp_path: Path) -> None:

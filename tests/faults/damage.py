@@ -1,0 +1,183 @@
+"""Random damage to the files of a real data folder, and how a start with it ends.
+
+A folder is one that a server left that was killed in the middle of a visit: its log holds
+transactions that the database does not. Each case works on a copy, in this process.
+"""
+
+import shutil
+import sys
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from io import StringIO
+from pathlib import Path
+from unittest.mock import patch
+
+import numpy as np
+from fastapi.testclient import TestClient
+
+from app.cli.backups import restore_from
+from app.cli.serve.run import why_not
+from app.clock import Clock
+from app.errors import ReembodyError
+from app.features.care.opening import Damaged, prepare_database
+from app.main import create_app
+from app.settings import Settings
+from tests.features.lab import STUDY, ok
+from tests.support.server import ADMIN_PASSWORD
+
+DATABASE = "reembody.sqlite"
+FILES = (DATABASE, f"{DATABASE}-wal", f"{DATABASE}-shm")
+CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}
+MOST_FLIPS, MOST_ZEROS = 16, 65_536
+
+
+@dataclass(frozen=True)
+class Folder:
+    """A data folder that was left, and a backup of nearly all that is in it."""
+
+    data: Path
+    backup: Path
+    sha256: str
+    session_id: str
+
+
+@dataclass(frozen=True)
+class Case:
+    """One damage in words, and how the start with it ended.
+
+    `end`: served, quarantined (and a restore brought everything back), refused (in words, with
+    everything left in its place) or traceback. `errors`: answers of a server that should not be.
+    """
+
+    what: str
+    end: str
+    said: str = ""
+    errors: tuple[str, ...] = ()
+
+    @property
+    def has_advice(self) -> bool:
+        """Whether what was said names the way out."""
+        return "reembody restore FILE" in self.said
+
+
+def damaged(folder: Path, rng: np.random.Generator) -> str:
+    """Flip bits of one of the files, cut it or write zeros over a part; what was done."""
+    file = folder / FILES[rng.integers(len(FILES))]
+    data = bytearray(file.read_bytes())
+    where = int(rng.integers(len(data)))
+    match int(rng.integers(3)):
+        case 0:
+            places = [where, *rng.integers(len(data), size=int(rng.integers(MOST_FLIPS)))]
+            for place in places:
+                data[place] ^= 1 << int(rng.integers(8))
+            what = f"{len(places)} bits flipped, one at {where}"
+        case 1:
+            del data[where:]
+            what = f"cut at {where}"
+        case _:
+            length = int(rng.integers(1, MOST_ZEROS))
+            data[where : where + length] = bytes(len(data[where : where + length]))
+            what = f"{length} zeros from {where}"
+    file.write_bytes(data)
+    return f"{file.name}: {what}"
+
+
+def tried(folder: Folder, to: Path, rng: np.random.Generator) -> Case:
+    """Damage a copy at `to` and start with it; where it is put away, restore the backup."""
+    shutil.copytree(folder.data, to)
+    what = damaged(to, rng)
+    settings = Settings(data_dir=to)
+    try:
+        with _no_output():
+            try:
+                return Case(what, "served", errors=tuple(served(settings, folder.session_id)))
+            except Damaged as error:
+                said = f"{error.message}. {error.remedy}"
+            except ReembodyError as error:
+                return Case(what, "refused", f"{error.message}. {error.remedy}")
+            return Case(what, "quarantined", said, errors=tuple(_restored(folder, settings)))
+    except Exception:  # noqa: BLE001 - whatever it is, it is what was looked for
+        return Case(what, "traceback", traceback.format_exc())
+    finally:
+        shutil.rmtree(to, ignore_errors=True)
+
+
+def served(settings: Settings, session_id: str) -> Iterator[str]:
+    """Start as `reembody serve` does and look around; answers that should not be."""
+    prepare_database(settings, Clock(), to_write=True)
+    app = create_app(settings)
+    try:
+        with TestClient(app, raise_server_exceptions=False) as client:
+            yield from _looked_around(client, session_id)
+    except Exception as error:
+        raise why_not(error, settings) from error
+
+
+def _looked_around(client: TestClient, session_id: str) -> Iterator[str]:
+    login = client.post("/api/login", json=CREDENTIALS)
+    paths = [
+        "/api/health",
+        "/api/me",
+        "/api/studies",
+        f"/api/studies/{STUDY}/sessions",
+        f"/api/studies/{STUDY}/participants",
+        f"/api/sessions/{session_id}",
+        f"/api/sessions/{session_id}/events",
+        f"/api/sessions/{session_id}/answers",
+        "/api/accounts",
+        "/api/audit/check",
+    ]
+    for answer in (login, *map(client.get, paths)):
+        if not answer.is_success:
+            yield f"{answer.request.url.path}: {answer.status_code} {answer.text[:100]}"
+
+
+def _restored(folder: Folder, settings: Settings) -> Iterator[str]:
+    with patch("app.cli.backups.Settings", lambda: settings):
+        restore_from(
+            folder.backup,
+            replace=False,
+            even_though_active=True,
+            even_though_altered=False,
+            erasures=None,
+            as_json=True,
+        )
+    yield from served(settings, folder.session_id)
+
+
+@contextmanager
+def _no_output() -> Iterator[None]:
+    with patch.object(sys, "stderr", StringIO()):
+        yield
+
+
+def many(folder: Folder, elsewhere: Path, count: int, seed: int) -> list[Case]:
+    """Try so many kinds of damage, each drawn by a seed of its own."""
+    return [
+        tried(folder, elsewhere / str(number), np.random.default_rng([seed, number]))
+        for number in range(count)
+    ]
+
+
+def left_by_a_killed_server(folder: Path) -> Folder:
+    """Make such a folder: a visit with answers and movement, a backup, more of it, a kill."""
+    from app.database import open_database
+    from tests.faults.commands import reembody
+    from tests.features.care.rights.visit import make_visit
+    from tests.features.record.headset.site import Site
+    from tests.support.server import LiveServer
+
+    server = LiveServer(folder).start()
+    with server.client() as operator:
+        ok(operator.post("/api/login", json=CREDENTIALS))
+        database = open_database(f"sqlite:///{server.data_dir / DATABASE}")
+        site = Site(server, operator, database)
+        visit = make_visit(site)
+        backup = folder / "all.reembody"
+        made = reembody(server, "backup", backup, "--json").json
+        make_visit(site, "P-0815")
+        database.close()
+    server.kill()
+    return Folder(server.data_dir, backup, made["sha256"], visit.session_id)

@@ -1,0 +1,46 @@
+"""Whatever happens to the files of a data folder, a start ends in serving or in quarantine.
+
+Fault 6 of the matrix, with damage that nobody chose: bits flipped, files cut, parts zeroed, in the
+database, its log and the log's index. Each kind of damage by itself is tested in
+tests/features/care/opening.
+"""
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from tests.faults.damage import Folder, left_by_a_killed_server, many
+from tests.faults.figures import note
+
+SHORT, LONG = 24, 1000
+SEED = 6
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Folder:
+    """What a server left that was killed in the middle of a visit."""
+    return left_by_a_killed_server(tmp_path_factory.mktemp("killed"))
+
+
+def try_many(folder: Folder, elsewhere: Path, count: int) -> None:
+    """Damage that many copies; each start serves, or puts the database away for a restore."""
+    cases = many(folder, elsewhere, count, SEED)
+    ends = Counter(case.end for case in cases)
+    note(6, f"{count} random damages", "served", ends["served"])
+    note(6, f"{count} random damages", "quarantined, restored", ends["quarantined"])
+    note(6, f"{count} random damages", "tracebacks", ends["traceback"])
+    assert [case for case in cases if case.end not in ("served", "quarantined")] == []
+    assert [case for case in cases if case.end == "quarantined" and not case.has_advice] == []
+    assert [case for case in cases if case.errors] == []
+
+
+def test_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
+    """Never in a traceback; a restored backup serves."""
+    try_many(folder, tmp_path, SHORT)
+
+
+@pytest.mark.long
+def test_much_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
+    """The same, a thousand times."""
+    try_many(folder, tmp_path, LONG)
