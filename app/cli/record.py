@@ -2,8 +2,9 @@
 
 import json
 import sys
+import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,8 @@ from app.features.results.exports.writing import Exported, export_study, usual_k
 from app.platform.half_made import Notes
 from app.settings import Settings
 
+SAID_EVERY_S = 5.0
+
 
 def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
     """Export a study of this installation to a folder; one sentence on what was written.
@@ -46,7 +49,7 @@ def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
             to,
             now=Clock().utc_now(),
             notes=notes,
-            progress=_tell_progress,
+            progress=_Progress(),
         )
         _put_on_record(database, study, done)
     return (
@@ -77,10 +80,23 @@ def _known(kind: str) -> Kind:
     raise ValueError(f"unknown kind {kind!r}; valid are {', '.join(KINDS)}")
 
 
-def _tell_progress(path: str) -> None:
-    if sys.stderr.isatty():
-        sys.stderr.write(f"\r\033[Kwriting {path}" if path != "README.txt" else "\r\033[K")
-        sys.stderr.flush()
+@dataclass
+class _Progress:
+    """Says on standard error which file is written: always on a terminal, else now and then.
+
+    Until it is whole an export lies in a hidden folder beside its place, so that somebody without
+    a terminal sees nothing of one that takes minutes.
+    """
+
+    _said_s: float = field(default_factory=time.monotonic)
+
+    def __call__(self, path: str) -> None:
+        if sys.stderr.isatty():
+            sys.stderr.write(f"\r\033[Kwriting {path}" if path != "README.txt" else "\r\033[K")
+            sys.stderr.flush()
+        elif time.monotonic() - self._said_s >= SAID_EVERY_S:
+            self._said_s = time.monotonic()
+            print(f"reembody: writing {path}", file=sys.stderr, flush=True)
 
 
 def verify_record(

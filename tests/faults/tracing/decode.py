@@ -40,7 +40,7 @@ class Reader:
         return self._named(thread, call, arguments)
 
     def _written(self, thread: int, call: str, arguments: Arguments) -> Event | None:
-        target = _target(thread, arguments[0])
+        target = target_of(thread, arguments[0])
         what = "send" if target.startswith("socket:") else "write"
         if what == "write" and not self._matters(target):
             return None
@@ -51,7 +51,7 @@ class Reader:
         return _event(what, call, target, offset=offset, data=_data(thread, call, arguments))
 
     def _on(self, thread: int, file: int, what: str, call: str, *, size: int = 0) -> Event | None:
-        target = _target(thread, file)
+        target = target_of(thread, file)
         if target.startswith("socket:") or not self._matters(target):
             return None
         return _event(what, call, target, size=size)
@@ -59,9 +59,9 @@ class Reader:
     def _named(self, thread: int, call: str, arguments: Arguments) -> Event | None:
         """Calls that name a file by its path."""
         at = call in WITH_FOLDER
-        path = _path(thread, arguments[0] if at else AT_FDCWD, arguments[1 if at else 0])
+        path = path_of(thread, arguments[0] if at else AT_FDCWD, arguments[1 if at else 0])
         if call.startswith(("rename", "link")):
-            to_path = _path(thread, arguments[2] if at else AT_FDCWD, arguments[3 if at else 1])
+            to_path = path_of(thread, arguments[2] if at else AT_FDCWD, arguments[3 if at else 1])
             if not (self._matters(path) or self._matters(to_path)):
                 return None
             what = "rename" if call.startswith("rename") else "other"
@@ -115,7 +115,8 @@ def _event(
     )
 
 
-def _target(thread: int, file: int) -> str:
+def target_of(thread: int, file: int) -> str:
+    """What an open file of a thread is: its path, or `socket:[NUMBER]`; empty if it is none."""
     try:
         return str(Path(f"/proc/{thread}/fd/{_signed(file)}").readlink())
     except OSError:
@@ -152,7 +153,7 @@ def _gathered(thread: int, vector: int, count: int) -> bytes:
     return b"".join(read_memory(thread, address, length) for address, length in pieces if length)
 
 
-def _path(thread: int, folder: int, address: int) -> str:
+def path_of(thread: int, folder: int, address: int) -> str:
     """A path as the kernel will understand it: relative ones start where the thread stands."""
     text = os.fsdecode(_string(thread, address, read_memory))
     if not text or text.startswith("/"):

@@ -85,12 +85,14 @@ def read_memory(thread: int, address: int, length: int) -> bytes:
         os.close(file)
 
 
-def only_stop_at(machine: Machine) -> None:
+def only_stop_at(machine: Machine, *, every_opening: bool = False) -> None:
     """Let this process, and what it starts, stop at the watched calls only; for ever.
+
+    `every_opening`: also at openings that neither create a file nor empty it.
 
     Raises OSError. A process with this filter needs its tracer: without one those calls fail.
     """
-    program = _program(machine)
+    program = _program(machine, every_opening=every_opening)
     array = (_Instruction * len(program))(*program)
     packed = _Program(len(program), array)
     _require(libc.prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0))
@@ -102,7 +104,7 @@ def _require(answer: int) -> None:
         raise OSError(ctypes.get_errno(), "the kernel does not take a filter of system calls")
 
 
-def _program(machine: Machine) -> list[_Instruction]:
+def _program(machine: Machine, *, every_opening: bool) -> list[_Instruction]:
     """In words: another architecture is let through; each watched number stops."""
     arch_at, number_at, arguments_at = 4, 0, 16
     lines = [
@@ -112,7 +114,7 @@ def _program(machine: Machine) -> list[_Instruction]:
         _Instruction(LOAD, 0, 0, number_at),
     ]
     for name, number in machine.number.items():
-        if name in OPEN_FLAGS_AT:
+        if name in OPEN_FLAGS_AT and not every_opening:
             flags_at = arguments_at + 8 * OPEN_FLAGS_AT[name]
             lines += [
                 _Instruction(JUMP_EQUAL, 0, 4, number),

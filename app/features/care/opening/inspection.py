@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
+from app.database import BUSY_TIMEOUT_S
 from app.features.care.backups import columns_in, shapes_at, wrong_rows, wrong_tables
 from app.features.care.opening.wal import frames_noted, inspect_log
 from app.platform.trouble import in_plain_words, proves_damage
@@ -222,4 +223,4 @@ def _read_through(file: Path) -> None:
 
 def _read_only(file: Path) -> sqlite3.Connection:
     # A reader that cannot write leaves the log where it is when it closes.
-    return sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True, timeout=30.0)
+    return sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True, timeout=BUSY_TIMEOUT_S)

@@ -1,0 +1,424 @@
+"""What a start, a restore, a backup, an export, an upload and an erasure do when the disk refuses.
+
+Every call that one of them makes to a file of the installation is found by following it once
+(tests/faults/tracing). Then each is made to fail, one in each run on a fresh copy of a real data
+folder, and the same is done once more without a fault, as an operator would. The oracle: nothing
+that had been acknowledged is lost, no healthy database is moved, no file is left that nobody knows,
+and what is said is a sentence and no traceback.
+
+`main` is run in a process that has neither threads nor children (tests/benchmarks/io_faults.py).
+"""
+
+import errno
+import json
+import os
+import pickle
+import re
+import shutil
+import sqlite3
+import tempfile
+import traceback
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import closing, contextmanager, redirect_stderr
+from dataclasses import asdict, dataclass
+from functools import partial
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from fastapi.testclient import TestClient
+
+from app.cli.backups import back_up_to, restore_from
+from app.cli.errors import reported
+from app.cli.record import export_to_folder
+from app.cli.serve.run import why_not
+from app.clock import Clock
+from app.database import open_database
+from app.features.care.opening import prepare_database
+from app.main import create_app
+from app.settings import Settings
+from tests.faults.commands import reembody
+from tests.faults.damage import CREDENTIALS, DATABASE
+from tests.faults.tracing.injecting import (
+    BEGIN,
+    Fault,
+    Injector,
+    Site,
+    followed,
+    injecting_machine,
+)
+from tests.features.care.rights.visit import make_visit
+from tests.features.lab import STUDY, ok
+from tests.features.movement.captures.files import walk_bvh
+from tests.features.record.headset.site import Site as Installation
+from tests.support.forked_workers import use_fork_server
+from tests.support.nursery import make_passwords_cheap
+from tests.support.server import LiveServer
+
+FAULTS = {
+    "read": (errno.EIO,),
+    "open": (errno.EACCES, errno.EIO),
+    "open to write": (errno.EROFS, errno.ENOSPC),
+    "write": (errno.ENOSPC, errno.EIO),
+    "fsync": (errno.EIO,),
+    "truncate": (errno.EIO,),
+    "rename": (errno.EIO, errno.EACCES),
+    "unlink": (errno.EACCES,),
+    "mkdir": (errno.ENOSPC, errno.EROFS),
+}
+KNOWN = tuple(
+    map(
+        re.compile,
+        (
+            r"all\.reembody",
+            r"data/reembody\.sqlite(-wal|-shm)?",
+            r"data/erasures\.jsonl",
+            r"data/erasure-unfinished",
+            r"data/backups/before-(restore|migration)-[^/]*\.reembody",
+            r"out/made\.reembody",
+            r"out/export/.*",
+        ),
+    )
+)
+"""Files that an installation and what was asked of it may hold, once a server has started."""
+
+
+@dataclass(frozen=True)
+class Source:
+    """What every run begins with: a folder, and who is erased in it."""
+
+    folder: Path
+    participant_id: str
+    code: str
+
+
+@dataclass
+class Outcome:
+    """How an operation ended: `ok` is the acknowledgement, `trace` a fault of the program."""
+
+    ok: bool
+    said: str = ""
+    trace: str = ""
+
+
+@dataclass
+class Found:
+    """What one run left behind; every list is empty where all is well."""
+
+    operation: str
+    site: Site
+    error: str
+    hit: bool
+    outcome: Outcome
+    lost: list[str]
+    unknown: list[str]
+    moved: list[str]
+
+
+def settings_in(folder: Path) -> Settings:
+    """Those of the installation in a folder."""
+    return Settings(data_dir=folder / "data")
+
+
+def begin(folder: Path) -> None:
+    """From here on calls are counted."""
+    os.close(os.open(folder / BEGIN, os.O_CREAT | os.O_WRONLY))
+
+
+@contextmanager
+def serving(folder: Path, *, counted: bool) -> Iterator[TestClient]:
+    """A server on the folder, started as `reembody serve` does; `counted`: also its start."""
+    settings = settings_in(folder)
+    if counted:
+        begin(folder)
+    prepare_database(settings, Clock(), to_write=True)
+    app = create_app(settings)
+    started = False
+    try:
+        with TestClient(app, raise_server_exceptions=False) as client:
+            started = True
+            yield client
+    except Exception as error:
+        if started:
+            raise
+        raise why_not(error, settings) from error
+
+
+def start(folder: Path, _: Source) -> None:
+    """Start, and answer."""
+    with serving(folder, counted=True) as client:
+        ok(client.get("/api/health"))
+
+
+def back_up(folder: Path, _: Source) -> None:
+    """To a file outside of the data folder."""
+    begin(folder)
+    back_up_to(folder / "out" / "made.reembody", as_json=True)
+
+
+def export(folder: Path, _: Source) -> None:
+    """To a folder outside of the data folder."""
+    begin(folder)
+    export_to_folder(STUDY, folder / "out" / "export", "all")
+
+
+def restore(folder: Path, _: Source, *, replace: bool = False) -> None:
+    """Into an empty folder, or over what is there."""
+    begin(folder)
+    restore_from(
+        folder / "all.reembody",
+        replace=replace,
+        even_though_active=True,
+        even_though_altered=False,
+        erasures=None,
+        as_json=True,
+    )
+
+
+def upload(folder: Path, _: Source) -> None:
+    """Bring a capture in."""
+    with serving(folder, counted=False) as client:
+        ok(client.post("/api/login", json=CREDENTIALS))
+        begin(folder)
+        _taken(client.post("/api/captures?name=walk.bvh", content=walk_bvh(40)))
+
+
+def erase(folder: Path, source: Source) -> None:
+    """Erase a participant."""
+    with serving(folder, counted=False) as client:
+        ok(client.post("/api/login", json=CREDENTIALS))
+        begin(folder)
+        path = f"/api/studies/{STUDY}/participants/{source.participant_id}/erasure"
+        _taken(client.post(path, json={"confirm": source.code, "reason_code": "requested"}))
+
+
+class Refused(Exception):
+    """An answer that says in words why not."""
+
+
+def _taken(answer: Any) -> None:
+    if answer.status_code == 500:
+        raise RuntimeError(answer.text)
+    if not answer.is_success:
+        raise Refused(answer.text)
+
+
+OPERATIONS: dict[str, Callable[[Path, Source], None]] = {
+    "start": start,
+    "first start": start,
+    "restore": restore,
+    "restore --replace": partial(restore, replace=True),
+    "backup": back_up,
+    "export": export,
+    "upload": upload,
+    "erasure": erase,
+}
+EMPTY = {"first start", "restore"}
+"""Those that begin without any data."""
+
+
+def prepared(operation: str, source: Source, to: Path) -> Path:
+    """A fresh folder for a run."""
+    shutil.copytree(source.folder, to)
+    if operation in EMPTY:
+        shutil.rmtree(to / "data")
+        (to / "data").mkdir()
+    (to / "out").mkdir()
+    os.environ["REEMBODY_DATA_DIR"] = str(to / "data")
+    return to
+
+
+def done(operation: str, folder: Path, source: Source) -> Outcome:
+    """Do it; how it ended, in the words that an operator would read."""
+    said = StringIO()
+    try:
+        with redirect_stderr(said), reported(ValueError, OSError):
+            OPERATIONS[operation](folder, source)
+    except (SystemExit, Refused) as error:
+        return Outcome(ok=False, said=said.getvalue() or str(error))
+    except BaseException:  # noqa: BLE001 - whatever it is, it is what was looked for
+        return Outcome(ok=False, said=said.getvalue(), trace=traceback.format_exc())
+    return Outcome(ok=True, said=said.getvalue())
+
+
+def source_in(folder: Path) -> Source:
+    """Make the folder that every run begins with: a killed server's, with a backup beside it."""
+    server = LiveServer(folder).start()
+    with server.client() as operator:
+        ok(operator.post("/api/login", json=CREDENTIALS))
+        database = open_database(f"sqlite:///{server.data_dir / DATABASE}")
+        site = Installation(server, operator, database)
+        visit = make_visit(site)
+        site.command(visit.session_id, "withdraw", reason="enough")
+        assert reembody(server, "backup", folder / "all.reembody").code == 0
+        make_visit(site, "P-0815")
+        database.close()
+    server.kill()
+    (folder / "server.log").unlink()
+    return Source(folder, visit.participant_id, visit.code)
+
+
+def facts(data: Path) -> set[str]:
+    """What must never be lost: every event, filled-in form, second of movement and account."""
+    file = data / DATABASE
+    if not file.is_file():
+        return set()
+    with closing(sqlite3.connect(file)) as connection:
+        queries = (
+            "SELECT 'event ' || hash FROM session_events",
+            "SELECT 'form ' || id FROM submissions",
+            "SELECT 'account ' || id FROM accounts",
+            "SELECT 'movement ' || session_id || stream || epoch || ' ' || frames_stored"
+            + " FROM telemetry_streams",
+        )
+        return {str(row[0]) for query in queries for row in connection.execute(query)}
+
+
+def erased_away(fact: str) -> bool:
+    """Whether an erasure takes such a fact."""
+    return fact.startswith(("movement", "form"))
+
+
+def looked_at(operation: str, folder: Path, source: Source, outcome: Outcome) -> dict[str, Any]:
+    """After a run: start a server, or do it again where there is none yet; what is wrong."""
+    lost, before = [], facts_of_source(source)
+    again = operation if operation in EMPTY and not outcome.ok else "start"
+    recovered = done(again, folder, source)
+    if not recovered.ok:
+        lost.append(f"{again} afterwards: {recovered.said}{recovered.trace}")
+    elif operation == "first start":
+        before = set()
+    elif operation == "restore":
+        done("start", folder, source)
+    if recovered.ok:
+        now = facts(folder / "data")
+        # A restore goes back to the backup; what came after it is kept in a backup of its own.
+        kept = operation != "restore" and not (operation == "restore --replace" and outcome.ok)
+        missing = before - now if kept else backed_up(source) - now
+        if operation == "erasure":
+            missing = {fact for fact in missing if not erased_away(fact)}
+        lost += sorted(missing)[:3]
+        if operation == "erasure" and outcome.ok:
+            lost += [f"canary in {path}" for path in _holding(folder / "data", source.code)]
+    files = [path for path in folder.rglob("*") if path.is_file() and path.name != BEGIN]
+    names = [str(path.relative_to(folder)) for path in files]
+    moved = [name for name in names if "/quarantine/" in name]
+    unknown = [
+        name
+        for name in names
+        if name not in moved and not any(known.fullmatch(name) for known in KNOWN)
+    ]
+    if operation.startswith("restore") and not outcome.ok and operation != "restore":
+        unknown += [name for name in names if "before-restore" in name]
+    if not outcome.ok:
+        unknown += [name for name in names if name.startswith("out/")]
+    return {"lost": lost, "unknown": unknown, "moved": moved}
+
+
+def facts_of_source(source: Source) -> set[str]:
+    """Of the folder that every run begins with, in a copy: looking would empty its log."""
+    with tempfile.TemporaryDirectory() as copy:
+        shutil.copytree(source.folder / "data", Path(copy) / "data")
+        return facts(Path(copy) / "data")
+
+
+def backed_up(source: Source) -> set[str]:
+    """The same of the backup."""
+    with tempfile.TemporaryDirectory() as copy:
+        shutil.copyfile(source.folder / "all.reembody", Path(copy) / DATABASE)
+        return facts(Path(copy))
+
+
+def _holding(data: Path, code: str) -> Iterable[Path]:
+    needle = code.encode()
+    return [path for path in data.rglob("*") if path.is_file() and needle in path.read_bytes()]
+
+
+def chosen(sites: list[Site]) -> list[Site]:
+    """The first call of each kind to each file, one in the middle, and the last."""
+    last = {(site.kind, site.path, site.writes): site.nth for site in sites}
+    wanted = {
+        Site(kind, path, nth, writes)
+        for (kind, path, writes), most in last.items()
+        for nth in {0, most // 2, most}
+    }
+    return [site for site in dict.fromkeys(sites) if site in wanted]
+
+
+def faults_at(site: Site) -> Iterator[Fault]:
+    """What can go wrong there."""
+    kind = "open to write" if site.kind == "open" and site.writes else site.kind
+    for number in FAULTS[kind]:
+        yield Fault(site, number)
+
+
+def in_a_child(work: Callable[[], Any], result: Path) -> Any:
+    """What `work` returns in a process of its own: this one must never open a database."""
+    child = os.fork()
+    if child == 0:
+        try:
+            result.write_bytes(pickle.dumps(work()))
+        finally:
+            os._exit(0)
+    os.waitpid(child, 0)
+    answer = pickle.loads(result.read_bytes())  # noqa: S301 - written above
+    result.unlink()
+    return answer
+
+
+def run_once(
+    operation: str, source: Source, fault: Fault | None, elsewhere: Path
+) -> tuple[Injector, Outcome, dict[str, Any]]:
+    """Do it once with a fault, then look at what is left."""
+    machine = injecting_machine()
+    if machine is None:
+        raise OSError("system calls of this machine cannot be made to fail")
+    folder = prepared(operation, source, elsewhere / "run")
+    result = elsewhere / "result"
+    injector = Injector(machine, folder.resolve(), fault)
+
+    def work() -> int:
+        outcome = done(operation, folder, source)
+        result.write_bytes(pickle.dumps(outcome))
+        return 0
+
+    try:
+        followed(injector, work)
+        outcome: Outcome = pickle.loads(result.read_bytes())  # noqa: S301 - written above
+        result.unlink()
+        look = partial(looked_at, operation, folder, source, outcome)
+        return injector, outcome, in_a_child(look, result)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def sites_of(operation: str, source: Source, elsewhere: Path) -> list[Site]:
+    """Where it asks something of a file, found by following it once."""
+    injector, outcome, wrong = run_once(operation, source, None, elsewhere)
+    if not outcome.ok or any(wrong.values()):
+        raise RuntimeError(f"{operation} without any fault: {outcome} {wrong}")
+    return injector.sites
+
+
+def all_of(operation: str, source: Source, elsewhere: Path, most: int | None) -> dict[str, Any]:
+    """Every fault at every site of one operation, or about `most` of them, spread evenly."""
+    sites = chosen(sites_of(operation, source, elsewhere))
+    faults = [fault for site in sites for fault in faults_at(site)]
+    if most is not None and len(faults) > most:
+        faults = faults[:: -(-len(faults) // most)]
+    found = []
+    for fault in faults:
+        injector, outcome, wrong = run_once(operation, source, fault, elsewhere)
+        name = errno.errorcode[fault.errno]
+        found.append(Found(operation, fault.site, name, injector.hit, outcome, **wrong))
+    return {"sites": len(sites), "found": [asdict(one) for one in found]}
+
+
+def main(source: str, operation: str, workers: str, most: str, to: str) -> None:
+    """One operation; its findings as JSON."""
+    use_fork_server(lambda: bytes.fromhex(workers))
+    make_passwords_cheap()
+    with tempfile.TemporaryDirectory() as elsewhere:
+        given: Source = pickle.loads(Path(source).read_bytes())  # noqa: S301 - our own
+        told = all_of(operation, given, Path(elsewhere), int(most) or None)
+    Path(to).write_text(json.dumps(told), encoding="utf-8")
