@@ -268,15 +268,14 @@ def facts(data: Path) -> set[str]:
             "SELECT 'event ' || hash FROM session_events",
             "SELECT 'form ' || id FROM submissions",
             "SELECT 'account ' || id FROM accounts",
-            "SELECT 'movement ' || session_id || stream || epoch || ' ' || frames_stored"
-            + " FROM telemetry_streams",
+            "SELECT 'frames' || session_id || stream || frames_stored FROM telemetry_streams",
         )
         return {str(row[0]) for query in queries for row in connection.execute(query)}
 
 
 def erased_away(fact: str) -> bool:
     """Whether an erasure takes such a fact."""
-    return fact.startswith(("movement", "form"))
+    return fact.startswith(("frames", "form"))
 
 
 def looked_at(operation: str, folder: Path, source: Source, outcome: Outcome) -> dict[str, Any]:

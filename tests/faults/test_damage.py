@@ -41,6 +41,7 @@ def test_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path)
 
 
 @pytest.mark.long
+@pytest.mark.timeout(14_400)
 def test_much_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
     """The same, a thousand times."""
     try_many(folder, tmp_path, LONG)
