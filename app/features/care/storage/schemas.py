@@ -63,11 +63,25 @@ class SessionRoom(BaseModel):
     bytes: int
 
 
+class HalfMadeView(BaseModel):
+    """A file or folder that is not whole: of what kind, where, since when.
+
+    `going_on`: a command is making it now; else a crash left it, and the next start of the server
+    removes it, unless its disk is not there.
+    """
+
+    kind: Literal["backup", "export", "restore", "database"]
+    place: str
+    since: datetime
+    going_on: bool
+
+
 class StorageView(BaseModel):
     """What takes how much room, measured at `measured_at`, in whole bytes.
 
     Sizes of studies and sessions are their tables' own sizes, shared out by the length of their
     rows, so they hold indexes and half-full pages. `sessions` are the largest of `sessions_total`.
+    `half_made` leaves out what this server itself is making.
     """
 
     measured_at: datetime
@@ -79,3 +93,4 @@ class StorageView(BaseModel):
     studies: list[StudyRoom]
     sessions: list[SessionRoom]
     sessions_total: int
+    half_made: list[HalfMadeView]

@@ -8,6 +8,7 @@ from sqlalchemy.orm import Session
 from app.features.care.storage.measuring import Measured, MeasuredSession, StorageDesk
 from app.features.care.storage.schemas import (
     DiskView,
+    HalfMadeView,
     SessionKind,
     SessionRoom,
     StorageView,
@@ -17,6 +18,7 @@ from app.features.design.studies import newest_version, protocol_of
 from app.models import Study
 from app.platform.access import Caller, is_theirs
 from app.platform.context import AppContext
+from app.platform.half_made import half_made
 
 LARGEST = 12
 """How many sessions are listed."""
@@ -49,6 +51,16 @@ def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool
         ),
         sessions=[one.room for one in largest],
         sessions_total=len(seen),
+        half_made=[
+            HalfMadeView(
+                kind=one.kind, place=str(one.path), since=one.since, going_on=one.going_on
+            )
+            for one in half_made(context.settings)
+            # What lies in the server's own scratch folder is being made, and goes by itself.
+            if one.kind != "upload"
+            and one.kind != "check"
+            and (one.kind != "export" or one.study_key in own)
+        ],
     )
 
 

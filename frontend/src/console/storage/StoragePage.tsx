@@ -1,7 +1,7 @@
 /** What takes how much room, and for how many more sessions there is some. */
 import { Button, Paper, Text, Title } from "@mantine/core";
 import { type StoragePart, type StorageRoom, storageRoom } from "@shared/api/housekeeping";
-import { bytes, timeOfDay } from "@shared/format";
+import { bytes, dateTime, timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
@@ -88,6 +88,13 @@ function Room({ room }: { readonly room: StorageRoom }): JSX.Element {
           <Copyable text="reembody backup FILE" />
           <p className={classes.soft}>{t("storage.backup.docs")}</p>
         </Paper>
+        {room.half_made.length > 0 && (
+          <Paper className={classes.wide ?? ""}>
+            <Title order={2}>{t("storage.halfMade")}</Title>
+            <HalfMade found={room.half_made} />
+            <p className={classes.soft}>{t("storage.halfMade.note")}</p>
+          </Paper>
+        )}
         <Paper className={classes.wide ?? ""}>
           <Title order={2}>{t("storage.studies")}</Title>
           <StudyRooms studies={room.studies} />
@@ -149,6 +156,28 @@ function DiskBar({ room }: { readonly room: StorageRoom }): JSX.Element {
         </li>
       </ul>
     </>
+  );
+}
+
+/** Files that a crash left unfinished, or that a command is making now. */
+function HalfMade({ found }: { readonly found: StorageRoom["half_made"] }): JSX.Element {
+  const { t, language } = useTexts();
+  return (
+    <ul className={classes.halfMade}>
+      {found.map((one) => (
+        <li key={one.place}>
+          <div>
+            {t(`storage.halfMade.${one.kind}`)}
+            <span className={classes.about}>
+              {t(one.going_on ? "storage.halfMade.goingOn" : "storage.halfMade.left", {
+                time: dateTime(one.since, language),
+              })}
+            </span>
+          </div>
+          <code>{one.place}</code>
+        </li>
+      ))}
+    </ul>
   );
 }
 

@@ -4588,6 +4588,29 @@ export interface components {
             readonly way: ("rises" | "falls") | null;
         };
         /**
+         * HalfMadeView
+         * @description A file or folder that is not whole: of what kind, where, since when.
+         *
+         *     `going_on`: a command is making it now; else a crash left it, and the next start of the server
+         *     removes it, unless its disk is not there.
+         */
+        readonly HalfMadeView: {
+            /** Going On */
+            readonly going_on: boolean;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            readonly kind: "backup" | "export" | "restore" | "database";
+            /** Place */
+            readonly place: string;
+            /**
+             * Since
+             * Format: date-time
+             */
+            readonly since: string;
+        };
+        /**
          * Health
          * @description Whether the server and its database answer, and whether the record can be written.
          *
@@ -7310,6 +7333,7 @@ export interface components {
          *
          *     Sizes of studies and sessions are their tables' own sizes, shared out by the length of their
          *     rows, so they hold indexes and half-full pages. `sessions` are the largest of `sessions_total`.
+         *     `half_made` leaves out what this server itself is making.
          */
         readonly StorageView: {
             readonly disk: components["schemas"]["DiskView"];
@@ -7318,6 +7342,8 @@ export interface components {
              * @enum {string}
              */
             readonly engine: "sqlite" | "postgresql";
+            /** Half Made */
+            readonly half_made: readonly components["schemas"]["HalfMadeView"][];
             /**
              * Measured At
              * Format: date-time
