@@ -1,0 +1,108 @@
+"""The data folder is for its owner, and what lies in it tells of an earlier database."""
+
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from app.platform.folders import is_there, protect, traces_of_a_database
+from app.settings import Settings
+
+
+def mode(path: Path) -> int:
+    """Who may do what, as chmod has it."""
+    return stat.S_IMODE(os.lstat(path).st_mode)
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    """A data folder as an earlier version left it: everybody could read it."""
+    data = tmp_path / "data"
+    for name in ("reembody.sqlite", "reembody.sqlite-wal", "backups/1.reembody", "tls/key.pem"):
+        (data / name).parent.mkdir(parents=True, exist_ok=True)
+        (data / name).write_text("secret")
+        (data / name).chmod(0o644)
+    for folder in (data, data / "backups", data / "tls"):
+        folder.chmod(0o755)
+    return data
+
+
+def test_others_lose_what_they_could_do(data: Path) -> None:
+    """Folders and files, whatever they were; a second time nothing is left to do."""
+    settings = Settings(data_dir=data)
+    for _ in range(2):
+        assert protect(settings) == []
+        assert {mode(path) for path in data.rglob("*") if path.is_file()} == {0o600}
+        assert {mode(path) for path in (data, data / "backups", data / "tls")} == {0o700}
+
+
+def test_links_lead_nobody_out(data: Path, tmp_path: Path) -> None:
+    """What they point to keeps its mode, file or folder."""
+    outside = tmp_path / "outside"
+    outside.mkdir(mode=0o755)
+    (outside / "mine.txt").write_text("mine")
+    (outside / "mine.txt").chmod(0o644)
+    (data / "backups" / "link.txt").symlink_to(outside / "mine.txt")
+    (data / "quarantine").symlink_to(outside)
+    protect(Settings(data_dir=data))
+    assert (mode(outside), mode(outside / "mine.txt")) == (0o755, 0o644)
+
+
+def test_a_folder_that_is_everybodys_stays_so(data: Path) -> None:
+    """The database's own files are closed all the same."""
+    data.chmod(0o1777)
+    protect(Settings(data_dir=data))
+    assert mode(data) == 0o1777
+    assert mode(data / "reembody.sqlite") == 0o600
+
+
+def test_other_things_in_a_shared_folder_stay_as_they_are(data: Path, tmp_path: Path) -> None:
+    """A database may stand in a folder that is used for more."""
+    file = tmp_path / "shared" / "lab.sqlite"
+    file.parent.mkdir(mode=0o755)
+    for path in (file, file.parent / "notes.txt"):
+        path.write_text("x")
+        path.chmod(0o644)
+    protect(Settings(data_dir=data, database_url=f"sqlite:///{file}"))
+    assert (mode(file), mode(file.parent / "notes.txt"), mode(file.parent)) == (0o600, 0o644, 0o755)
+
+
+def test_a_new_folder_has_no_traces(tmp_path: Path) -> None:
+    """Neither one that is missing, nor one with a certificate, a lock or a lost+found."""
+    settings = Settings(data_dir=tmp_path / "data")
+    assert traces_of_a_database(settings) == []
+    for name in ("tls/authority.pem", "lost+found/x", ".lock", "server.log", "scratch/uploads/x"):
+        (tmp_path / "data" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "data" / name).touch()
+    assert traces_of_a_database(settings) == []
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "backups/before-restore-1.reembody",
+        "2026-11-21.reembody",
+        "quarantine/20261121T061108.123456Z",
+        "erasures.jsonl",
+        "erasure-unfinished",
+        "walking/0f3a",
+        "scratch/exports/1.zip",
+        "export/codebook.csv",
+        "tuned.yaml",
+        "reembody.sqlite-wal",
+    ],
+)
+def test_what_belongs_to_a_database_is_a_trace_of_it(tmp_path: Path, name: str) -> None:
+    """Backups, exports, erasures, fits, tuned avatars, a log."""
+    (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / name).touch()
+    assert traces_of_a_database(Settings(data_dir=tmp_path)) == [name]
+
+
+def test_a_link_into_a_disk_that_is_not_there_is_a_database(tmp_path: Path) -> None:
+    """It is no place to begin a new one."""
+    file = tmp_path / "reembody.sqlite"
+    assert not is_there(file)
+    file.symlink_to(tmp_path / "unplugged" / "reembody.sqlite")
+    assert is_there(file)

@@ -1,0 +1,145 @@
+"""What is made outside of the database is known as long as it is not whole."""
+
+import signal
+import subprocess
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+
+from app.platform.half_made import Notes, half_made, made_beside, remove_left, uploads_of
+from app.settings import Settings
+
+NOW = datetime(2026, 11, 21, 6, 11, 8, tzinfo=UTC)
+KILLED = """
+import os, signal, sys
+from datetime import UTC, datetime
+from pathlib import Path
+from app.platform.half_made import Notes, made_beside
+from app.settings import Settings
+notes = Notes.of(Settings(data_dir=Path(sys.argv[1])))
+now = datetime(2026, 11, 21, 6, 11, 8, tzinfo=UTC)
+with made_beside("export", Path(sys.argv[2]), now=now, notes=notes, study_key="pilot") as folder:
+    (folder / "new").mkdir()
+    (folder / "new" / "answers.csv").write_text("somebody's")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    """An installation in a folder of its own."""
+    (tmp_path / "data").mkdir()
+    (tmp_path / "out").mkdir()
+    return Settings(data_dir=tmp_path / "data")
+
+
+def killed(settings: Settings, to: Path) -> None:
+    """Let a process die while it makes an export."""
+    arguments = [sys.executable, "-c", KILLED, str(settings.data_dir), str(to)]
+    assert subprocess.run(arguments, check=False).returncode == -signal.SIGKILL
+
+
+def test_what_is_going_on_is_listed_and_left_alone(settings: Settings, tmp_path: Path) -> None:
+    """Also by whoever sweeps meanwhile; afterwards nothing of it is there."""
+    to = tmp_path / "out" / "export"
+    notes = Notes.of(settings)
+    with made_beside("export", to, now=NOW, notes=notes, study_key="pilot") as folder:
+        (one,) = half_made(settings)
+        assert (one.kind, one.path, one.to, one.since) == ("export", folder, to, NOW)
+        assert (one.study_key, one.going_on) == ("pilot", True)
+        assert remove_left(settings, starting=True) == []
+        assert folder.is_dir()
+    assert half_made(settings) == []
+    assert list(notes.folder.iterdir()) == []
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_what_a_killed_process_left_is_listed_and_removed(
+    settings: Settings, tmp_path: Path
+) -> None:
+    """Wherever it lies."""
+    killed(settings, tmp_path / "out" / "export")
+    (one,) = half_made(settings)
+    assert not one.going_on
+    assert (one.path / "new" / "answers.csv").is_file()
+    (removed,) = remove_left(settings)
+    assert removed.path == one.path
+    assert list((tmp_path / "out").iterdir()) == []
+    assert half_made(settings) == []
+
+
+def test_an_export_that_was_being_replaced_comes_back(settings: Settings, tmp_path: Path) -> None:
+    """Killed between the two steps of the exchange, its place was empty."""
+    to = tmp_path / "out" / "export"
+    killed(settings, to)
+    (one,) = half_made(settings)
+    (one.path / "old").mkdir()
+    (one.path / "old" / "README.txt").write_text("the one before")
+    remove_left(settings)
+    assert (to / "README.txt").read_text() == "the one before"
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["export"]
+
+
+def test_what_lies_on_a_disk_that_is_not_there_stays_listed(
+    settings: Settings, tmp_path: Path
+) -> None:
+    """Nobody knows that it is gone."""
+    killed(settings, tmp_path / "out" / "export")
+    (tmp_path / "out").rename(tmp_path / "unplugged")
+    assert remove_left(settings, starting=True) == []
+    assert len(half_made(settings)) == 1
+    (tmp_path / "unplugged").rename(tmp_path / "out")
+    assert len(remove_left(settings)) == 1
+
+
+def test_a_note_that_names_something_else_removes_nothing(
+    settings: Settings, tmp_path: Path
+) -> None:
+    """Only folders that are named as we name them."""
+    killed(settings, tmp_path / "out" / "export")
+    (one,) = half_made(settings)
+    assert one.note is not None
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    one.note.write_text(one.note.read_text().replace(str(one.path), str(mine)))
+    assert remove_left(settings, starting=True) == []
+    assert mine.is_dir()
+
+
+def test_what_a_server_left_goes_when_the_next_one_starts(settings: Settings) -> None:
+    """Uploads, exports to fetch, databases that were begun, copies that were migrated."""
+    left = [
+        uploads_of(settings) / "tmpabc" / "capture",
+        settings.data_dir / "scratch" / "exports" / "1.part",
+        settings.data_dir / ".beginning-abc" / "reembody.sqlite",
+        settings.data_dir / "backups" / ".restoring-abc" / "copy.sqlite",
+        settings.data_dir / "backups" / ".before.reembody.1.partial" / "before.reembody",
+        settings.data_dir / ".write-test-0",
+    ]
+    kept = settings.data_dir / "backups" / "before-restore-1.reembody"
+    for path in (*left, kept):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("somebody's")
+    assert remove_left(settings) == []
+    assert len(remove_left(settings, starting=True)) == len(left)
+    assert [path for path in settings.data_dir.rglob("*") if path.is_file()] == [kept]
+
+
+def test_a_note_that_was_cut_off_goes_at_a_start(settings: Settings) -> None:
+    """Nothing was begun yet when it was written."""
+    folder = Notes.of(settings).folder
+    folder.mkdir()
+    (folder / "cut.json").write_text('{"kind": "exp')
+    assert half_made(settings) == []
+    remove_left(settings, starting=True)
+    assert list(folder.iterdir()) == []
+
+
+def test_notes_are_for_their_owner(settings: Settings, tmp_path: Path) -> None:
+    """They name studies and places; so are the folders they speak of."""
+    to = tmp_path / "out" / "export"
+    with made_beside("export", to, now=NOW, notes=Notes.of(settings)) as folder:
+        assert folder.stat().st_mode & 0o077 == 0
+        assert Notes.of(settings).folder.stat().st_mode & 0o077 == 0
