@@ -320,7 +320,8 @@ class Database:
 def make_engine(url: str, *, pooled: bool = True) -> Engine:
     """An engine for `sqlite:///FILE` or `postgresql://...`, set up for durable commits.
 
-    Not `pooled`, it opens a connection for every use.
+    Not `pooled`, it opens a connection for every use. What a statement stores stays out of the
+    messages of errors, which get into logs: it may be somebody's answers.
     """
     parsed = make_url(url)
     if parsed.drivername in {"postgresql", "postgres"}:
@@ -329,7 +330,7 @@ def make_engine(url: str, *, pooled: bool = True) -> Engine:
     if parsed.get_backend_name() != "sqlite":
         if pooled:
             pool = {"pool_size": 10, "max_overflow": 20, "pool_pre_ping": True}
-        return create_engine(parsed, **pool)
+        return create_engine(parsed, hide_parameters=True, **pool)
     if parsed.database:
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
         # Without a file there is one connection for all, and so no pool to size.
@@ -337,6 +338,7 @@ def make_engine(url: str, *, pooled: bool = True) -> Engine:
         pool = pool or {"pool_size": 20, "max_overflow": 40, "pool_use_lifo": True}
     engine = create_engine(
         parsed,
+        hide_parameters=True,
         connect_args={"timeout": BUSY_TIMEOUT_S, "check_same_thread": False},
         **pool,
     )

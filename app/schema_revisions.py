@@ -5,7 +5,9 @@ program (it is migrated), or newer: then it was used by a newer program, and an 
 understand what it finds.
 """
 
+import errno
 from functools import lru_cache
+from pathlib import Path
 
 from alembic import command
 from alembic.config import Config
@@ -28,6 +30,18 @@ def alembic_config(url: str) -> Config:
 def migrate(url: str) -> None:
     """Bring the schema of `url` to the newest version, from whatever version it has."""
     command.upgrade(alembic_config(url), "head")
+
+
+def migrate_file(file: Path, revision: str = "head") -> None:
+    """The same for a SQLite file that nobody else has open, so that all of it is in the file.
+
+    The last connection copies the log into the file and removes it; where it cannot, it says
+    nothing, and whoever then moves or reads the file alone has half of it. Raises OSError for that.
+    """
+    command.upgrade(alembic_config(f"sqlite:///{file}"), revision)
+    log = file.with_name(f"{file.name}-wal")
+    if log.exists():
+        raise OSError(errno.EIO, "its log could not be copied into it", str(file))
 
 
 @lru_cache(maxsize=1)

@@ -1,6 +1,7 @@
 """Backing up and restoring from the command line, whether or not the server runs."""
 
 import json
+import sqlite3
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
@@ -80,10 +81,10 @@ def _put_on_record(database: Database, done: BackedUp) -> None:
                 now=done.made_at,
                 size_bytes=done.size_bytes,
             )
-    except DBAPIError as error:
+    except (DBAPIError, sqlite3.Error) as error:
         warn(
-            f"the backup is whole, but could not be put on record ({error.orig}): "
-            "keep its place in mind when a participant's data are erased"
+            f"the backup is whole, but could not be put on record ({getattr(error, 'orig', error)})"
+            ": keep its place in mind when a participant's data are erased"
         )
 
 
@@ -251,7 +252,7 @@ def _overwrite(context: AppContext, given: Sequence[Tombstone]) -> None:
     try:
         tombstone_file(context.settings).add(given)
         finish_erasures(context)
-    except (DBAPIError, ReembodyError, OSError) as error:
+    except (DBAPIError, sqlite3.Error, ReembodyError, OSError) as error:
         warn(
             f"restored, but erased rows are still to be overwritten ({error}): "
             "start the server again"
@@ -264,9 +265,9 @@ def _stop_clocks(context: AppContext) -> None:
 
     try:
         stop_running_clocks(context)
-    except DBAPIError as error:
+    except (DBAPIError, sqlite3.Error) as error:
         warn(
-            f"restored, but running phases could not be paused ({error.orig}): "
+            f"restored, but running phases could not be paused ({getattr(error, 'orig', error)}): "
             "start the server again"
         )
     finally:

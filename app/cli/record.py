@@ -1,6 +1,7 @@
 """What leaves the record from the command line: a study as a folder, and proofs of wholeness."""
 
 import json
+import sqlite3
 import sys
 import time
 from collections.abc import Sequence
@@ -10,6 +11,9 @@ from typing import Any
 
 from sqlalchemy.orm import Session
 
+from sqlalchemy.exc import DBAPIError
+
+from app.cli.errors import warn
 from app.cli.installation import opened_database
 from app.clock import Clock
 from app.database import Database
@@ -59,17 +63,23 @@ def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
 
 
 def _put_on_record(database: Database, study: str, done: Exported) -> None:
-    """A copy left the database."""
-    with database.writing() as db:
-        record_copy(
-            db,
-            kind="export",
-            study_id=study_by_key(db, study).id,
-            session_kind=done.kind,
-            place=str(done.to.absolute()),
-            by=COMMAND_LINE,
-            now=Clock().utc_now(),
-            sessions=done.sessions,
+    """A copy left the database; it is whole even where that cannot be written down."""
+    try:
+        with database.writing() as db:
+            record_copy(
+                db,
+                kind="export",
+                study_id=study_by_key(db, study).id,
+                session_kind=done.kind,
+                place=str(done.to.absolute()),
+                by=COMMAND_LINE,
+                now=Clock().utc_now(),
+                sessions=done.sessions,
+            )
+    except (DBAPIError, sqlite3.Error) as error:
+        warn(
+            f"the export is whole, but could not be put on record ({getattr(error, 'orig', error)})"
+            ": keep its place in mind when a participant's data are erased"
         )
 
 

@@ -80,7 +80,8 @@ class StorageHealth:
             before = self._failure
             self._failure = Failure(before.since if before else now, now_ns, trouble)
         if before is None or before.trouble != trouble:
-            log.error("%s; nothing is acknowledged", trouble.message, exc_info=error)
+            words = str(getattr(error, "orig", error))
+            log.error("%s (%s); nothing is acknowledged", trouble.message, words)
             self.on_change()
 
     def succeeded(self) -> None:

@@ -23,7 +23,7 @@ from tests.support.nursery import nursery
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = tuple(OPERATIONS)
 PROGRAM = "import sys; from tests.faults.io_faults import main; main(*sys.argv[1:])"
-TOLD = 20
+TOLD = 40
 
 
 def measure(parts: frozenset[str], runs: int = 0) -> Report:
@@ -86,4 +86,5 @@ def _count(found: list[dict[str, Any]], what: str) -> int:
 
 
 def _trace(one: dict[str, Any]) -> bool:
+    """Whether a fault of the program was told in the place of a sentence."""
     return bool(one["outcome"]["trace"]) or "Traceback" in one["outcome"]["said"]

@@ -23,7 +23,7 @@ from app.features.care.backups.manifest import Manifest, ManifestError, read_man
 from app.features.care.backups.rows import Progress, silent
 from app.features.care.backups.shapes import TableShape, shapes_of, shapes_of_models
 from app.platform.trouble import DAMAGED, explain
-from app.schema_revisions import known_revisions, migrate, newest_revision
+from app.schema_revisions import known_revisions, migrate_file, newest_revision
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,9 @@ def _require_length(path: Path) -> None:
 
 @contextmanager
 def _through_sqlalchemy(driver: sqlite3.Connection) -> Iterator[Connection]:
-    engine = create_engine("sqlite://", creator=lambda: driver, poolclass=StaticPool)
+    engine = create_engine(
+        "sqlite://", creator=lambda: driver, poolclass=StaticPool, hide_parameters=True
+    )
     with engine.connect() as connection:
         yield connection
 
@@ -187,7 +189,7 @@ def as_newest(backup: Backup, workplace: Path) -> Iterator[Backup]:
         copy = Path(folder) / "copy.sqlite"
         try:
             shutil.copyfile(backup.path, copy)
-            migrate(f"sqlite:///{copy}")
+            migrate_file(copy)
         except (OSError, sqlite3.Error, DBAPIError, RuntimeError, ValueError) as error:
             if not isinstance(error, OSError) and explain(error) in (None, DAMAGED):
                 # Not the disk's fault: its tables are not those of the schema that it names.

@@ -13,7 +13,6 @@ from contextlib import closing, contextmanager
 from datetime import datetime
 from pathlib import Path
 
-from alembic import command
 from sqlalchemy import Connection
 from sqlalchemy.exc import DBAPIError
 
@@ -25,7 +24,7 @@ from app.features.care.backups.reading import opened_backup, opened_copy
 from app.features.care.backups.rows import Progress, read_rows, silent, sqlite_insert
 from app.features.care.backups.shapes import TableShape, shapes_of, shapes_of_models
 from app.platform.half_made import Notes, made_beside
-from app.schema_revisions import alembic_config, known_revisions, newest_revision, revision_of
+from app.schema_revisions import known_revisions, migrate_file, newest_revision, revision_of
 
 SPARE_BYTES = 64 * 1024 * 1024
 """What a backup leaves free on its disk, which may be the one that the server writes to."""
@@ -138,7 +137,7 @@ def _told_as_not_durable(to: Path) -> Iterator[None]:
 def _make_tables(file: Path, revision: str) -> None:
     """The product's own schema, as the database that is copied has it."""
     try:
-        command.upgrade(alembic_config(f"sqlite:///{file}"), revision)
+        migrate_file(file, revision)
     except DBAPIError as error:
         raise OSError(str(error.orig)) from error
 
@@ -179,14 +178,21 @@ def _copy(
 
 
 def _move(partial: Path, to: Path) -> None:
-    """Onto the disk first, then under its name; the name too must be on the disk."""
+    """Onto the disk first, then under its name; the name too must be on the disk.
+
+    Where that cannot be made sure of, it is gone again: whoever was told so must find no file.
+    """
     with partial.open("rb+") as file:
         os.fsync(file.fileno())
     partial.chmod(0o600)
     check_place(to)
     partial.rename(to)
-    folder = os.open(to.absolute().parent, os.O_RDONLY)
     try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+        folder = os.open(to.absolute().parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+    except OSError:
+        to.unlink(missing_ok=True)
+        raise

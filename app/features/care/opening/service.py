@@ -24,7 +24,13 @@ from app.platform.folders import (
     traces_of_a_database,
 )
 from app.platform.trouble import in_plain_words, plainly
-from app.schema_revisions import known_revisions, migrate, newest_revision, revision_of
+from app.schema_revisions import (
+    known_revisions,
+    migrate,
+    migrate_file,
+    newest_revision,
+    revision_of,
+)
 from app.settings import Settings
 
 
@@ -265,8 +271,7 @@ def begin(file: Path, clock: Clock) -> None:
             prefix=BEGINNING, dir=folder, ignore_cleanup_errors=True
         ) as beside:
             fresh = Path(beside) / file.name
-            # Its last connection copies the log into the file and removes it.
-            migrate(f"sqlite:///{fresh}")
+            migrate_file(fresh)
             flush_to_disk(fresh)
             if not is_there(file):
                 fresh.rename(file)

@@ -52,9 +52,7 @@ def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool
         sessions=[one.room for one in largest],
         sessions_total=len(seen),
         half_made=[
-            HalfMadeView(
-                kind=one.kind, place=str(one.path), since=one.since, going_on=one.going_on
-            )
+            HalfMadeView(kind=one.kind, place=str(one.path), since=one.since, going_on=one.going_on)
             for one in half_made(context.settings)
             # What lies in the server's own scratch folder is being made, and goes by itself.
             if one.kind != "upload"

@@ -17,6 +17,7 @@ from app.features.record.telemetry.due import BATCHES, DUE_AFTER, KEY, Chunks, d
 from app.features.record.telemetry.encoder import Encoder
 from app.models import TelemetryChunk
 from app.platform.context import AppContext, Part
+from app.platform.trouble import explain
 from app.rows import insert_rows
 
 log = logging.getLogger(__name__)
@@ -67,8 +68,12 @@ class Folder(Part):
                 checkpoints.turn()
                 if self.encoder is not None and self.context.hub.any_headset_connected:
                     self.encoder.begin()
-            except Exception:  # the next turn tries again; nothing is lost meanwhile
-                log.exception("batches could not be folded; they stay as they are")
+            except Exception as error:  # the next turn tries again; nothing is lost meanwhile
+                trouble = explain(error)
+                if trouble is None:
+                    log.exception("batches could not be folded; they stay as they are")
+                else:
+                    log.error("batches could not be folded and stay: %s", trouble.message)  # noqa: TRY400 - no fault of the program
                 self._stop.wait(1.0)
 
     def fold_once(self) -> int:
