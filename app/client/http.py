@@ -96,12 +96,14 @@ class Operator:
 
     async def command(self, view: Json, kind: str, **fields: Any) -> Json:
         """Send a command, decided on `view`; the same command however often it must be sent."""
-        body = {
-            "command_id": str(uuid.uuid4()),
-            "expected_version": view["version"],
-            "type": kind,
-            **fields,
-        }
+        return await self._send(kind, {"expected_version": view["version"], **fields})
+
+    async def stop(self, kind: str, **fields: Any) -> Json:
+        """Pause, abort or withdraw, whatever has happened since the session was looked at."""
+        return await self._send(kind, fields)
+
+    async def _send(self, kind: str, fields: Json) -> Json:
+        body = {"command_id": str(uuid.uuid4()), "type": kind, **fields}
         path = f"/api/sessions/{self.session_id}/commands"
         answered: Json = await call_again(self.client, "POST", path, body)
         return answered

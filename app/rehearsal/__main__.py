@@ -58,15 +58,15 @@ async def _rehearse(plan: RehearsalPlan) -> None:
 async def end_session(operator: Operator) -> None:
     """Leave no simulated session that looks as if somebody were in it.
 
-    What the three devices had sent last may still arrive, and move the session on between the look
-    and the order: then both are done again.
+    What the three devices had sent last may still end it between the look and the order: then both
+    are done again.
     """
     # Where nobody answers, the server goes away too.
     with contextlib.suppress(TimeoutError, ServerRefusedError, UnreachableError):
         async with asyncio.timeout(ENDS_WITHIN_S):
-            while (view := await operator.view())["status"] not in ENDED:
+            while (await operator.view())["status"] not in ENDED:
                 try:
-                    await operator.command(view, "abort", reason=STOPPED)
+                    await operator.stop("abort", reason=STOPPED)
                 except ServerRefusedError as error:
                     if error.code not in OVERTAKEN:
                         raise

@@ -6,6 +6,7 @@ from sqlalchemy import select
 from app.features.design.studies import study_by_key
 from app.features.record.cockpit.commands import command_of, reason_given
 from app.features.record.cockpit.schemas import (
+    NEVER_STALE,
     CommandRequest,
     EventView,
     NewSession,
@@ -77,7 +78,11 @@ def get_session(session_id: str, db: Reading, context: Context, caller: SignedIn
 def post_command(
     session_id: str, request: CommandRequest, db: Writing, context: Context, caller: SignedIn
 ) -> SessionView:
-    """Do something with a session. A repeated `command_id` changes nothing."""
+    """Do something with a session. A repeated `command_id` changes nothing.
+
+    A command that was decided on an older version is refused as stale, unless it is a note or
+    stops something.
+    """
     session = session_by_id(db, session_id, lock=True)
     if is_repeated(db, session_id, request.command_id):
         return session_view(db, context, session, caller)
@@ -88,8 +93,7 @@ def post_command(
         command_of(db, context, session, request, caller.actor),
         actor=caller.actor,
         command_id=request.command_id,
-        # A note cannot clash with anything.
-        expected_version=None if request.type == "note" else request.expected_version,
+        expected_version=None if request.type in NEVER_STALE else request.expected_version,
     )
     return session_view(db, context, session, caller)
 

@@ -1,9 +1,9 @@
 """A session as pages and clients see it."""
 
 from datetime import datetime
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from app.features.record.alarms import AlarmView
 from app.features.record.ledger import Kind
@@ -32,6 +32,11 @@ CommandType = Literal[
     "note",
 ]
 
+NEVER_STALE: tuple[CommandType, ...] = ("note", "pause", "abort", "withdraw")
+"""Commands that are taken on any version of the session. A note cannot clash with anything. Whoever
+stops wants it to stop, whatever was written or reported meanwhile: a participant who feels sick
+must not wait for a page to be drawn anew."""
+
 AllowedType = CommandType | Literal["enter_answers"]
 
 
@@ -56,18 +61,27 @@ class Height(BaseModel):
 
 
 class CommandRequest(BaseModel):
-    """An operator's command, decided on what their page showed (`expected_version`)."""
+    """An operator's command, decided on what their page showed (`expected_version`).
+
+    Those of `NEVER_STALE` are taken on any version and may leave it out.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
     command_id: str = Field(min_length=8, max_length=36)
-    expected_version: int = Field(ge=0, lt=2**31)
+    expected_version: int | None = Field(default=None, ge=0, lt=2**31)
     type: CommandType
     reason: str | None = Field(default=None, max_length=2000)
     text: str | None = Field(default=None, max_length=4000)
     step_index: int | None = Field(default=None, ge=0, lt=1000)
     height_m: Height | None = None
     paper_consent: PaperConsent | None = None
+
+    @model_validator(mode="after")
+    def _on_a_version(self) -> Self:
+        if self.expected_version is None and self.type not in NEVER_STALE:
+            raise ValueError(f"expected_version is missing: {self.type} is decided on a version")
+        return self
 
 
 class Reveal(BaseModel):

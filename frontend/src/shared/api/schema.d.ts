@@ -1023,6 +1023,9 @@ export interface paths {
         /**
          * Post Command
          * @description Do something with a session. A repeated `command_id` changes nothing.
+         *
+         *     A command that was decided on an older version is refused as stale, unless it is a note or
+         *     stops something.
          */
         readonly post: operations["post_command_api_sessions__session_id__commands_post"];
         readonly delete?: never;
@@ -3674,12 +3677,14 @@ export interface components {
         /**
          * CommandRequest
          * @description An operator's command, decided on what their page showed (`expected_version`).
+         *
+         *     Those of `NEVER_STALE` are taken on any version and may leave it out.
          */
         readonly CommandRequest: {
             /** Command Id */
             readonly command_id: string;
             /** Expected Version */
-            readonly expected_version: number;
+            readonly expected_version?: number | null;
             readonly height_m?: components["schemas"]["Height"] | null;
             readonly paper_consent?: components["schemas"]["PaperConsent"] | null;
             /** Reason */

@@ -17,6 +17,19 @@ interface Overtaken {
   readonly changes: readonly Change[];
 }
 
+/** A command and the view that it was decided on. */
+interface Sent {
+  readonly view: SessionView;
+  readonly command: Command;
+}
+
+/**
+ * Commands that stop something never wait for another one that is under way, such as a note on a
+ * slow network. The server takes them on any version of the session.
+ */
+export const stops = ({ type }: Pick<Command, "type">): boolean =>
+  type === "pause" || type === "abort" || type === "withdraw";
+
 export type Send = (command: Command, onDone?: () => void) => void;
 
 export function useSession(id: string) {
@@ -51,30 +64,30 @@ export function useSession(id: string) {
     [id],
   );
 
-  const command = useMutation({
-    mutationFn: ({ view, command }: { view: SessionView; command: Command }) =>
-      sessions.command(id, view.version, command),
-    onSuccess: (view) => {
+  const order = {
+    mutationFn: ({ view, command }: Sent) => sessions.command(id, view.version, command),
+    onSuccess: (view: SessionView) => {
       setOvertaken(null);
       accept(view);
     },
-    onError: async (error, sent) => {
+    onError: async (error: Error, sent: Sent) => {
       if (!isApiError(error, "stale")) return;
       overtake(sent, await sessions.get(id));
     },
-  });
+  };
+  const command = useMutation(order);
+  const stop = useMutation(order);
 
-  const overtake = (
-    sent: { readonly view: SessionView; readonly command: Command },
-    fresh: SessionView,
-  ) => {
+  const overtake = (sent: Sent, fresh: SessionView) => {
     accept(fresh);
     setOvertaken({ command: sent.command, changes: changesBetween(sent.view, fresh) });
   };
 
   const send: Send = (order, onDone) => {
-    if (query.data === undefined || command.isPending) return;
-    command.mutate({ view: query.data, command: order }, { onSuccess: () => onDone?.() });
+    const [way, other] = stops(order) ? [stop, command] : [command, stop];
+    if (query.data === undefined || way.isPending) return;
+    if (!other.isPending) other.reset();
+    way.mutate({ view: query.data, command: order }, { onSuccess: () => onDone?.() });
   };
 
   /** For an order prepared on `seen` with reasons that have changed the version since. */
@@ -93,11 +106,16 @@ export function useSession(id: string) {
     send,
     sendAnew,
     sending: command.isPending,
+    stopping: stop.isPending,
     error:
-      isTold(command.error) || isOutlived(command.variables, query.data) ? null : command.error,
+      [stop, command]
+        .filter(({ variables }) => !isOutlived(variables, query.data))
+        .map(({ error }) => error)
+        .find((error) => !isTold(error)) ?? null,
     overtaken,
     dismiss: () => {
       command.reset();
+      stop.reset();
       setOvertaken(null);
     },
   };

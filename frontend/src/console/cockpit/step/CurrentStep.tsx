@@ -125,7 +125,7 @@ function Primary({ session, live, onEnterAnswers }: CurrentStepProps): JSX.Eleme
         className={classes.primary ?? ""}
         leftSection={<Icon name="pause" />}
         rightSection={<Key name="P" />}
-        loading={live.sending}
+        loading={live.stopping}
         onClick={() => live.send({ type: "pause" })}
       >
         {t("do.pause")}

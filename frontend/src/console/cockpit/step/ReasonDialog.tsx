@@ -14,7 +14,7 @@ import {
   redoTarget,
 } from "../session/action";
 import { NewFailure } from "../session/CommandFailure";
-import type { useSession } from "../session/useSession";
+import { stops, type useSession } from "../session/useSession";
 
 interface ReasonDialogProps {
   readonly type: Reasoned | null;
@@ -76,7 +76,7 @@ function ReasonForm({ type, session, live, onClose }: ReasonFormProps): JSX.Elem
             type="submit"
             color={grave ? "red" : "petrol"}
             disabled={reason.trim() === ""}
-            loading={live.sending}
+            loading={stops({ type }) ? live.stopping : live.sending}
           >
             {t(`do.${type}`)}
           </Button>

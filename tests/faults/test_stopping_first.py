@@ -1,0 +1,86 @@
+"""Stopping does not lose to what others write and report at the same moment."""
+
+import threading
+import uuid
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+from httpx2 import Response
+
+from app.features.record.sessions.engine.commands import Report
+from app.features.record.sessions.service import apply_command
+from app.platform.access import session_by_id
+from tests.faults.figures import note
+from tests.features.lab import Json, Lab, error, ok
+
+THREADS = 50
+
+
+def command(lab: Lab, view: Json, kind: str, **fields: object) -> Response:
+    """A command, decided on a page that was drawn when the session had this version."""
+    body = {
+        "command_id": str(uuid.uuid4()),
+        "expected_version": view["version"],
+        "type": kind,
+        **fields,
+    }
+    return lab.operator.post(f"/api/sessions/{view['id']}/commands", json=body)
+
+
+@pytest.mark.parametrize("kind", ["abort", "withdraw"])
+def test_a_session_ends_at_the_first_try_whatever_is_written(lab: Lab, kind: str) -> None:
+    """Of 50 threads on one session 45 write notes and 5 move it on; one stops it, and wins."""
+    view = lab.command(lab.join(kind="test"), "start")
+    together = threading.Barrier(THREADS)
+
+    def act(number: int) -> Response:
+        together.wait()
+        if number == THREADS // 2:
+            return command(lab, view, kind, reason="the participant feels sick")
+        if number % 10 == 0:
+            return command(lab, view, "skip", reason="somebody else is quicker")
+        return command(lab, view, "note", text=f"note {number}")
+
+    with ThreadPoolExecutor(THREADS) as pool:
+        answers = list(pool.map(act, range(THREADS)))
+    stopped = answers[THREADS // 2]
+    tries = 1 if stopped.is_success else 0
+    note(25, f"{kind} against 49 others on one session", "ended at the first try", tries)
+    assert ok(stopped)["status"] in ("aborted", "withdrawn")
+    assert not [answer for answer in answers if answer.status_code >= 500]
+    ends = [one for one in lab.events(view["id"]) if one["type"] == "session_ended"]
+    assert len(ends) == 1
+
+
+@pytest.mark.parametrize("kind", ["abort", "withdraw"])
+def test_a_stop_needs_no_version_and_any_old_one_will_do(lab: Lab, kind: str) -> None:
+    """Nothing is asked of whoever stops but the reason."""
+    for version in ({}, {"expected_version": 0}):
+        view = lab.command(lab.join(kind="test"), "start")
+        lab.command(view, "note", text="written meanwhile")
+        body = {"command_id": str(uuid.uuid4()), "type": kind, "reason": "enough", **version}
+        after = ok(lab.operator.post(f"/api/sessions/{view['id']}/commands", json=body))
+        assert after["status"] in ("aborted", "withdrawn")
+
+
+def test_what_moves_a_session_on_still_needs_the_newest_version(lab: Lab) -> None:
+    """A skip decided on an old page is refused as stale, and one without a version by field."""
+    view = lab.command(lab.join(kind="test"), "start")
+    lab.command(view, "note", text="written meanwhile")
+    error(command(lab, view, "skip", reason="late"), 409, "stale")
+    body = {"command_id": str(uuid.uuid4()), "type": "skip", "reason": "late"}
+    refused = lab.operator.post(f"/api/sessions/{view['id']}/commands", json=body)
+    assert "expected_version" in str(error(refused, 422, "invalid_input"))
+
+
+def test_a_pause_is_taken_on_any_version(lab: Lab) -> None:
+    """Stopping the clock is stopping, too: a note that came first does not hold it up."""
+    view = lab.skip_to(lab.join(kind="test"), "free_roam")
+    lab.context.hub.headset_joined(view["id"])
+    view = lab.command(view, "begin_phase")
+    with lab.database.writing() as db:
+        session = session_by_id(db, view["id"], lock=True)
+        started = Report(what="started", phase_id=1, client_t_s=1.0, active_s=0.0)
+        apply_command(db, lab.context, session, started, actor="headset")
+    lab.command(lab.view(view["id"]), "note", text="written meanwhile")
+    assert ok(command(lab, view, "pause"))["current"]["pausing"] is True
