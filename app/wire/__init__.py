@@ -3,6 +3,7 @@
 from app.wire.batch import (
     ACTIVE,
     HEADER_BYTES,
+    MAX_TIME_S,
     VALUES_PER_FRAME,
     Batch,
     BatchHeader,
@@ -13,6 +14,7 @@ from app.wire.batch import (
 )
 from app.wire.messages import (
     CLIENT_MESSAGE,
+    MAX_EPOCH,
     PROTOCOL_VERSION,
     REPORT_STREAM,
     SERVER_MESSAGE,
@@ -47,6 +49,8 @@ __all__ = [
     "ACTIVE",
     "CLIENT_MESSAGE",
     "HEADER_BYTES",
+    "MAX_EPOCH",
+    "MAX_TIME_S",
     "PROTOCOL_VERSION",
     "REPORT_STREAM",
     "SERVER_MESSAGE",

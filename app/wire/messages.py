@@ -14,10 +14,11 @@ PROTOCOL_VERSION = 1
 SUBPROTOCOL = "reembody.v1"
 REPORT_STREAM = "reports"
 MAX_SEQ = 2**53
+MAX_EPOCH = 2**31 - 1
 
 Seconds = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1e9)]
 Seq = Annotated[int, Field(ge=0, lt=MAX_SEQ)]
-Epoch = Annotated[int, Field(ge=1, lt=2**31)]
+Epoch = Annotated[int, Field(ge=1, le=MAX_EPOCH)]
 Count = Annotated[int, Field(ge=0, lt=2**31)]
 Nanoseconds = Annotated[int, Field(ge=0, lt=2**63)]
 # Not every database takes a NUL in a text.

@@ -26,9 +26,9 @@ ONE_LATENCY_LESS = (
 FIRST_FOOT_STEP = next(step.index for step in PLAN if step.limb == "foot")
 
 
-def add_short_study(server: LiveServer) -> str:
-    """Store it; its key."""
-    text = edited(
+def short_study() -> str:
+    """Its file."""
+    return edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
         ONE_LATENCY_LESS,
         ("duration_s: 120", f"duration_s: {ROAM_S}"),
@@ -36,6 +36,11 @@ def add_short_study(server: LiveServer) -> str:
         * 2,
         *[("preparation_s: 5", "preparation_s: 1")] * 2,
     )
+
+
+def add_short_study(server: LiveServer) -> str:
+    """Store it; its key."""
+    text = short_study()
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
         client.post("/api/login", json=credentials).raise_for_status()

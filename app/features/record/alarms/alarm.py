@@ -29,9 +29,12 @@ SEVERITIES: dict[str, Severity] = {
     "question_asked": "critical",
     "consent_refused": "critical",
     "refusal_retracted": "warning",
+    "impossible": "warning",
+    "doubtful": "warning",
 }
 """Every alarm there is. Critical: data are being lost, a phase stands, or somebody is unwell, calls
-or does not want to take part."""
+or does not want to take part. What a headset said is `impossible` where only its connection could
+see it; a phase that has ended is `doubtful` where its record holds what cannot be true."""
 
 STANDING = (
     "stop_rule_met",

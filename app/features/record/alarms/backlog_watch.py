@@ -30,8 +30,8 @@ class BacklogWatch:
     def produced(self, message: Produced) -> None:
         """The client has made so much."""
         for stream, count in message.streams.items():
-            key = (stream, message.epoch)
-            self._made[key] = max(self._made[key], count)
+            # The newest counts: a wrong one would else keep the alarm up for ever.
+            self._made[stream, message.epoch] = count
 
     def handed_over(self, now_s: float) -> None:
         """A message waits for the disk."""

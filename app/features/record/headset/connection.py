@@ -6,7 +6,8 @@ and its journal grows visibly instead of anything being dropped.
 
 import asyncio
 import logging
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import TypeVar
 
@@ -53,6 +54,9 @@ log = logging.getLogger(__name__)
 MAX_IN_FLIGHT = 64
 """Two seconds of messages; more would let one who brings a backlog hold up all the others."""
 HELLO_DEADLINE_S = 10.0
+ANSWERS_KEPT = 64
+ECHO_NS = 1_000_000
+"""A client whose numbers are doubles may echo a time this much off."""
 Told = TypeVar("Told")
 CLOSE_REFUSED = 4400
 
@@ -72,6 +76,7 @@ class HeadsetConnection:
     _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
     _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
     _unanswered: int = 0
+    _answers: deque[ProbeAnswer] = field(default_factory=lambda: deque(maxlen=ANSWERS_KEPT))
 
     def deliver(self, outcome: Outcome) -> None:
         """Called by the writer: these are on disk."""
@@ -169,15 +174,18 @@ class HeadsetConnection:
                 self.lookout.report(message)
                 await self._store(message)
             case Probe():
-                await self._send(
-                    ProbeAnswer(
-                        client_sent_s=message.client_sent_s,
-                        server_received_ns=received_ns,
-                        server_sent_ns=self.context.clock.monotonic_ns(),
-                    )
+                answer = ProbeAnswer(
+                    client_sent_s=message.client_sent_s,
+                    server_received_ns=received_ns,
+                    server_sent_ns=self.context.clock.monotonic_ns(),
                 )
+                self._answers.append(answer)
+                await self._send(answer)
             case Probed():
                 self.lookout.probed(message)
+                if not can_be(message, self._answers):
+                    words = f"the clock reading of {message.client_sent_s:.3f} s is not what it was"
+                    self.lookout.observe(words)
                 await self._store(ProbeContent(self.epoch, message))
             case Produced():
                 self._require_epoch(message.epoch)
@@ -253,6 +261,19 @@ class HeadsetConnection:
             self._loop.call_soon_threadsafe(function, told)
         except RuntimeError:  # the loop has closed: nobody is left to tell
             return
+
+
+def can_be(reading: Probed, answers: Iterable[ProbeAnswer]) -> bool:
+    """Whether a reading of the clocks echoes an answer, and came back after it was asked for."""
+    sent_s, back_s = reading.client_sent_s, reading.client_received_s
+    if back_s is None or reading.server_received_ns is None or reading.server_sent_ns is None:
+        return True
+    return back_s >= sent_s and any(
+        answer.client_sent_s == sent_s
+        and abs(answer.server_received_ns - reading.server_received_ns) <= ECHO_NS
+        and abs(answer.server_sent_ns - reading.server_sent_ns) <= ECHO_NS
+        for answer in answers
+    )
 
 
 def parse_message(text: str) -> ClientMessages:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from app.features.record.alarms import Alarm, Change, Condition, Moment, QualityWatch, WatchLimits
+from app.features.record.doubts import OBSERVED
 from app.features.record.headset.poses import PoseFeed
 from app.features.record.telemetry import AlarmContent, Content, LiveTelemetry, LossContent, Outcome
 from app.platform.context import AppContext
@@ -30,6 +31,7 @@ class Lookout:
     poses: PoseFeed = field(init=False)
     watch: QualityWatch = field(init=False)
     _told_s: float = 0.0
+    _observed: bool = False
 
     def __post_init__(self) -> None:
         self.poses = PoseFeed(self.context.hub, self.session_id)
@@ -63,6 +65,12 @@ class Lookout:
     def probed(self, reading: Probed) -> None:
         """A reading of the clocks has come."""
         self.watch.probed(reading, self._now())
+
+    def observe(self, words: str) -> None:
+        """What has just come cannot be true, and only this connection can see it."""
+        if not self._observed:
+            self._observed = True
+            self.submit(AlarmContent(Change("raised", Condition(OBSERVED, words), self._now().utc)))
 
     def produced(self, message: Produced) -> None:
         """The client says how far it has come."""

@@ -7,6 +7,8 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict
 from app.features.design.studies import protocol_of
+from app.features.record.alarms import Change, Condition, store_change
+from app.features.record.doubts import OBSERVED
 from app.features.record.questionnaires import answers_of
 from app.features.record.sessions import (
     SessionState,
@@ -16,7 +18,12 @@ from app.features.record.sessions import (
     require_capture,
     state_of,
 )
-from app.features.record.telemetry import certain_active_s, positions_of, take_epoch
+from app.features.record.telemetry import (
+    certain_active_s,
+    positions_of,
+    take_epoch,
+    was_given,
+)
 from app.models import Completion, StudySession, StudyVersion, Submission
 from app.platform.access import session_by_id
 from app.protocol import Step
@@ -41,6 +48,9 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
     require_capture(db, session_id)
     _require_avatar(session, hello)
     protocol = protocol_of(db.get_one(StudyVersion, session.study_version_id))
+    if hello.epoch is not None and not was_given(db, session_id, hello.epoch):
+        words = f"a headset says it is run {hello.epoch}, which the server did not number"
+        observe(db, session_id, words, now)
     return Welcome(
         protocol=PROTOCOL_VERSION,
         session_id=session.id,
@@ -58,6 +68,11 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
         positions=positions_of(db, session_id),
         state=headset_state(db, session),
     )
+
+
+def observe(db: Session, session_id: str, words: str, now: datetime) -> None:
+    """Put on record that what a headset has just said cannot be true; the session is in doubt."""
+    store_change(db, session_id, Change("raised", Condition(OBSERVED, words), now))
 
 
 def _require_avatar(session: StudySession, hello: Hello) -> None:
@@ -148,7 +163,10 @@ def _phase_order(
         duration_s=step.duration_s or 0.0,
         freeze_s=step.freeze_s or 0.0,
         # A headset that takes over in mid-phase goes on from here, before the loss is noticed too.
-        active_s=max(phase.active_s, certain_active_s(db, session.id, phase.phase_id)),
+        active_s=max(
+            phase.active_s,
+            min(certain_active_s(db, session.id, phase.phase_id), step.duration_s or 0.0),
+        ),
         completions=completions or 0,
         pausing=phase.pausing,
         resuming=phase.resuming,

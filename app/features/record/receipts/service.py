@@ -7,6 +7,7 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from app import __version__
+from app.features.record.doubts import Doubt, doubts_of
 from app.features.record.receipts.completions import CompletionReceipt, completion_receipts
 from app.features.record.receipts.latencies import LatencyReceipt, latency_receipts
 from app.features.record.receipts.streams import StreamReceipt, stream_receipts
@@ -20,8 +21,9 @@ class SessionReceipt:
     """What a session's record holds and what it lacks.
 
     `complete` is true where `problems` is empty: nothing that was made is missing or damaged, the
-    event log's hash chain holds, and the stored completions follow from the stored contacts. A
-    session that still runs may lack what its headset has yet to send.
+    event log's hash chain holds, the stored completions follow from the stored contacts, and there
+    are no `doubts`: nothing in it is known to be untrue. A session that still runs may lack what
+    its headset has yet to send.
     """
 
     product_version: str
@@ -35,6 +37,7 @@ class SessionReceipt:
     chain_ok: bool
     chain: ChainCheck
     completions: tuple[CompletionReceipt, ...]
+    doubts: tuple[Doubt, ...]
     achieved_latency: tuple[LatencyReceipt, ...]
 
     def as_json(self) -> dict[str, Any]:
@@ -51,11 +54,13 @@ def receipt_of(db: Session, session_id: str) -> SessionReceipt:
     streams = stream_receipts(db, session_id)
     chain = verify_chain(events_of(db, session_id), version=session.version)
     completions = completion_receipts(db, session)
+    doubts = doubts_of(db, session_id)
     problems = (
         *_stream_problems(streams),
         *_phase_problems(db, session_id),
         *_chain_problems(chain),
         *(f"phase {one.phase_id}: {one.reason}" for one in completions if not one.agree),
+        *(_doubt_problem(one) for one in doubts),
     )
     return SessionReceipt(
         product_version=__version__,
@@ -69,6 +74,7 @@ def receipt_of(db: Session, session_id: str) -> SessionReceipt:
         chain_ok=chain.ok,
         chain=chain,
         completions=completions,
+        doubts=doubts,
         achieved_latency=latency_receipts(db, session_id),
     )
 
@@ -82,7 +88,14 @@ def _stream_problems(streams: tuple[StreamReceipt, ...]) -> list[str]:
             problems.append(f"{name}: {one.missing} of {one.sent} are missing (seq {seqs})")
         if one.damaged:
             problems.append(f"{name}: {one.damaged} frames can no longer be read")
+        if one.backwards:
+            problems.append(f"{name}: {one.backwards} frames are not later than the one before")
     return problems
+
+
+def _doubt_problem(doubt: Doubt) -> str:
+    where = "" if doubt.phase_id is None else f"phase {doubt.phase_id}: "
+    return f"{where}cannot be true: {doubt.words}"
 
 
 def _phase_problems(db: Session, session_id: str) -> list[str]:

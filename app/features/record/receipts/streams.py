@@ -5,13 +5,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.record.sessions import canonical
 from app.features.record.telemetry import DamagedChunkError, Frames, decode_piece, iter_pieces
 from app.models import ClientReport, TelemetryStream
-from app.wire import REPORT_STREAM
+from app.wire import MAX_TIME_S, REPORT_STREAM
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,8 @@ class StreamReceipt:
 
     `sent`: how many frames (or reports) the client made, as far as it could still tell. `gaps`:
     the seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be read;
-    they count as missing. `flagged`: frames with values that no summary uses. `sha256` covers every
+    they count as missing. `flagged`: frames with values that no summary uses. `backwards`: readable
+    frames that are not later than the one before, or whose time is no number. `sha256` covers every
     bit of every readable frame in the order of seqs, so two copies of a record can be compared.
     """
 
@@ -32,6 +34,7 @@ class StreamReceipt:
     gaps: tuple[tuple[int, int], ...]
     damaged: int
     flagged: int
+    backwards: int
     sha256: str
 
 
@@ -43,6 +46,16 @@ class _Count:
     stored: int = 0
     damaged: int = 0
     gaps: list[tuple[int, int]] = field(default_factory=list)
+    backwards: int = 0
+    newest_s: float = -np.inf
+
+    def timed(self, times_s: NDArray[np.float64]) -> None:
+        """These are the times of the next frames."""
+        told_s = np.where(np.abs(times_s) <= MAX_TIME_S, times_s, np.nan)
+        newest_s = np.fmax.accumulate(np.concatenate(([self.newest_s], told_s)))
+        # No number is later than another, so that a time that is none counts, too.
+        self.backwards += int((~(newest_s[:-1] < told_s)).sum())
+        self.newest_s = float(newest_s[-1])
 
     def found(self, seq_first: int, count: int, *, readable: bool = True) -> None:
         """So many seqs from `seq_first` on are there."""
@@ -87,6 +100,7 @@ def _stream_receipt(db: Session, row: TelemetryStream) -> StreamReceipt:
         gaps=tuple(count.gaps),
         damaged=count.damaged,
         flagged=row.frames_flagged,
+        backwards=count.backwards,
         sha256=digest.hexdigest(),
     )
 
@@ -99,6 +113,7 @@ def _frames(db: Session, row: TelemetryStream, count: _Count) -> Iterator[bytes]
             count.found(piece.seq_first, piece.frame_count, readable=False)
             continue
         count.found(piece.seq_first, piece.frame_count)
+        count.timed(frames.times_s)
         yield frame_bytes(frames, piece.phase_id)
 
 

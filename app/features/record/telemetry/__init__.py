@@ -16,6 +16,7 @@ from app.features.record.telemetry.positions import (
     certain_active_s,
     positions_of,
     take_epoch,
+    was_given,
 )
 from app.features.record.telemetry.recovery import stop_running_clocks
 from app.features.record.telemetry.summaries import Summariser
@@ -54,4 +55,5 @@ __all__ = [
     "positions_of",
     "stop_running_clocks",
     "take_epoch",
+    "was_given",
 ]

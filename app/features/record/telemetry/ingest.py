@@ -14,6 +14,7 @@ from sqlalchemy import Table, select
 from sqlalchemy.orm import Session
 
 from app.features.record.alarms import Change, store_change
+from app.features.record.doubts import OBSERVED
 from app.features.record.sessions import HeadsetLost, apply_command, protocol_of_session, state_of
 from app.features.record.telemetry.positions import Outcome, Positions, certain_active_s
 from app.models import ClockProbe, Phase, TelemetryBatch, new_id
@@ -84,6 +85,8 @@ class Intake:
         """Store a batch as it came, with its flags counted beside it."""
         at = self.positions.at(session_id, header.stream, header.epoch)
         if header.seq_first > at.next_seq:
+            # Whoever sends this has made what comes before, too: it is missing until it comes.
+            at.claimed(header.seq_end)
             told.notices.append(Resend(**at.as_told.model_dump()))
             return
         skip = at.next_seq - header.seq_first
@@ -127,9 +130,7 @@ class Intake:
     def store_produced(self, session_id: str, produced: Produced) -> None:
         """Take note of how far the client itself has come."""
         for stream, count in produced.streams.items():
-            at = self.positions.at(session_id, stream, produced.epoch)
-            if count > at.produced:
-                at.produced, at.is_changed = count, True
+            self.positions.at(session_id, stream, produced.epoch).claimed(count)
 
     def store_loss(self, session_id: str, cause: str) -> None:
         """The headset is gone: a running clock stops at the last active time that is on disk.
@@ -150,9 +151,10 @@ class Intake:
     def store_alarm(self, session_id: str, change: Change) -> None:
         """Put an alarm on the record, and let the pages draw themselves anew.
 
-        A session that has ended raises none: its end has cleared them all.
+        A session that has ended raises none: its end has cleared them all. What cannot be true goes
+        on record all the same.
         """
-        raised = change.state == "raised"
+        raised = change.state == "raised" and change.condition.code != OBSERVED
         if raised and session_by_id(self.db, session_id, lock=True).ended_at is not None:
             return
         if store_change(self.db, session_id, change):

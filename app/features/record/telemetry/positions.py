@@ -3,14 +3,16 @@
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from datetime import datetime
+from itertools import count
 from typing import Any, cast
 
 from sqlalchemy import Table, func, select
 from sqlalchemy.orm import Session
 
+from app.features.record.doubts import beyond_reason
 from app.models import TelemetryStream
 from app.rows import insert_rows
-from app.wire import REPORT_STREAM, Message, StreamPosition
+from app.wire import MAX_EPOCH, REPORT_STREAM, Message, StreamPosition
 
 Key = tuple[str, str, int]
 """Session, stream, epoch."""
@@ -21,7 +23,10 @@ _MOVED = (*MOVING, "last_at")
 
 @dataclass
 class Position:
-    """Where one stream stands within the writer's transaction; see `TelemetryStream`."""
+    """Where one stream stands within the writer's transaction; see `TelemetryStream`.
+
+    `known_s`: for how long the server has known of the run.
+    """
 
     key: Key
     next_seq: int = 0
@@ -31,6 +36,16 @@ class Position:
     phase_id: int = 0
     active_s: float = 0.0
     is_changed: bool = False
+    known_s: float = 0.0
+
+    def claimed(self, made: int) -> None:
+        """The client says that it has made so much.
+
+        What it once said stays, since what has not come by the end is missing. A count that no
+        headset can have reached is no such evidence: the next one takes its place, whatever it is.
+        """
+        if made > self.produced or beyond_reason(self.produced, self.known_s):
+            self.produced, self.is_changed = made, True
 
     def stored(self, frames: int) -> None:
         """So many frames (or reports) more are in this transaction."""
@@ -66,7 +81,8 @@ class Positions:
         for row in self.db.execute(select(TABLE).where(TABLE.c.session_id.in_(asked))).mappings():
             key = (row["session_id"], row["stream"], row["epoch"])
             values = {name: row[name] for name in MOVING}
-            self._held[key] = Position(key, **values)
+            known_s = (self.now - row["first_at"]).total_seconds()
+            self._held[key] = Position(key, **values, known_s=known_s)
 
     def at(self, session_id: str, stream: str, epoch: int) -> Position:
         """A stream's position, 0 at its first message."""
@@ -107,10 +123,13 @@ def take_epoch(db: Session, session_id: str, now: datetime) -> int:
 
     The session must be locked.
     """
-    newest = db.scalar(
-        select(func.max(TelemetryStream.epoch)).where(TelemetryStream.session_id == session_id)
+    # One that the server never gave out may be as high as a client can say.
+    taken = set(
+        db.scalars(select(TelemetryStream.epoch).where(TelemetryStream.session_id == session_id))
     )
-    epoch = (newest or 0) + 1
+    epoch = max(taken, default=0) + 1
+    if epoch > MAX_EPOCH:
+        epoch = next(number for number in count(1) if number not in taken)
     db.add(
         TelemetryStream(
             session_id=session_id,
@@ -127,6 +146,11 @@ def take_epoch(db: Session, session_id: str, now: datetime) -> int:
     )
     db.flush()
     return epoch
+
+
+def was_given(db: Session, session_id: str, epoch: int) -> bool:
+    """Whether this number was given to a run of the session's client."""
+    return db.get(TelemetryStream, (session_id, REPORT_STREAM, epoch)) is not None
 
 
 def certain_active_s(db: Session, session_id: str, phase_id: int) -> float:

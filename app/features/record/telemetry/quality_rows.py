@@ -5,6 +5,7 @@ stored. Faults in pauses and on walks back are no faults of the data that are an
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +16,7 @@ from app.features.record.telemetry.movement import Run, phase_runs
 from app.models import Phase, PhaseQuality
 from app.science.skeleton import JOINT_COUNT
 from app.science.stream_quality import StreamQuality, assess, together
-from app.wire import StreamName
+from app.wire import MAX_TIME_S, StreamName
 
 HISTORY_S = 10.0
 """What is known of the target before the phase: a joint may have frozen already."""
@@ -47,7 +48,9 @@ def _in_phase(run: Run) -> NDArray[np.bool_]:
 def _quality(frames: Frames, counted: NDArray[np.bool_]) -> StreamQuality:
     values = frames.values
     rotations = values[:, 3:].reshape(len(frames), JOINT_COUNT, 4)
-    return assess(frames.times_s, rotations, values[:, :3], counted=counted)
+    quality = assess(frames.times_s, rotations, values[:, :3], counted=counted)
+    untimed = ~(np.abs(frames.times_s) <= MAX_TIME_S) & counted
+    return replace(quality, backwards=quality.backwards + int(untimed.sum()))
 
 
 def _row(phase: Phase, stream: StreamName, quality: StreamQuality) -> PhaseQuality:

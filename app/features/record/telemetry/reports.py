@@ -32,6 +32,7 @@ def store_report(intake: Intake, session_id: str, message: ReportMessage, outcom
     """Store a report and act on it; one that does not fit is kept with the reason."""
     at = intake.positions.at(session_id, REPORT_STREAM, message.epoch)
     if message.seq > at.next_seq:
+        at.claimed(message.seq + 1)
         outcome.notices.append(Resend(**at.as_told.model_dump()))
         return
     if message.seq == at.next_seq:

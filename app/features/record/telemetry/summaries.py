@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 from sqlalchemy import ColumnElement, and_, delete, or_, select
 from sqlalchemy.orm import Session
 
+from app.features.record.alarms import Change, Condition, store_change
+from app.features.record.doubts import doubts_of
 from app.features.record.sessions import erased_session, not_erased
 from app.features.record.telemetry.joint_errors import joint_error_rows
 from app.features.record.telemetry.latencies import history_s, latency_rows
@@ -95,10 +97,27 @@ class Summariser(Part):
                 if erased_session(db, session_id):
                     return
                 replace_rows(db, session_id, phase_id, rows, wanted)
+            self._tell_doubts(session_id, phase_id)
         except Exception:
             log.exception("summaries of phase %s of %s failed", phase_id, session_id)
         else:
             self.context.hub.publish(session_id, "session")
+
+    def _tell_doubts(self, session_id: str, phase_id: int) -> None:
+        """Let the operator know while the participant is still there: the phase can be redone."""
+        with self.context.database.reading() as db:
+            doubts = [one for one in doubts_of(db, session_id) if one.phase_id == phase_id]
+        if not doubts:
+            return
+        now = self.context.clock.utc_now()
+        words = f"phase {phase_id} does not count: {'; '.join(one.words for one in doubts)}"
+        told = Condition("doubtful", words)
+        with self.context.database.writing() as db:
+            if session_by_id(db, session_id, lock=True).ended_at is None:
+                # An alarm is open once: one of an earlier phase makes room.
+                store_change(db, session_id, Change("cleared", told, now))
+                store_change(db, session_id, Change("raised", told, now))
+                self.context.hub.publish_after_commit(db, session_id)
 
 
 def _ended(db: Session, condition: ColumnElement[bool]) -> list[tuple[str, int]]:

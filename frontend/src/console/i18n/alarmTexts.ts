@@ -68,6 +68,12 @@ export const alarmsEn = {
   "alarm.refusal_retracted": "Refusal taken back",
   "alarm.refusal_retracted.do":
     "The consent is on the tablet again. Make sure it is a free choice.",
+  "alarm.impossible": "Headset data cannot be true",
+  "alarm.impossible.do":
+    "The session does not count. Check the headset's software before the next participant.",
+  "alarm.doubtful": "The phase does not count",
+  "alarm.doubtful.do":
+    "Its data cannot be true; the list of alarms says why. Repeat it, or check the headset's software.",
   "alarm.other": "Something is wrong",
   "alarm.other.do": "See the list of alarms.",
   "alarm.stream.target": "tracking",
@@ -155,6 +161,12 @@ export const alarmsDe: Readonly<Record<keyof typeof alarmsEn, string>> = {
   "alarm.refusal_retracted": "Ablehnung zurückgenommen",
   "alarm.refusal_retracted.do":
     "Die Einwilligung ist wieder auf dem Tablet. Vergewissern Sie sich, dass die Wahl frei ist.",
+  "alarm.impossible": "Daten des Headsets unmöglich",
+  "alarm.impossible.do":
+    "Die Sitzung zählt nicht. Vor der nächsten Person die Software des Headsets prüfen.",
+  "alarm.doubtful": "Die Phase zählt nicht",
+  "alarm.doubtful.do":
+    "Ihre Daten können nicht stimmen; die Liste der Alarme sagt, warum. Wiederholen oder die Software des Headsets prüfen.",
   "alarm.other": "Etwas stimmt nicht",
   "alarm.other.do": "Siehe die Liste der Alarme.",
   "alarm.stream.target": "Tracking",

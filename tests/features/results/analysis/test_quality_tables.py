@@ -10,25 +10,38 @@ from sqlalchemy.orm import Session
 from app.database import Database
 from app.features.record.alarms import Change, Condition, store_change
 from app.features.results.analysis.codebook import columns_of
-from app.features.results.analysis.tables import alarms_table, quality_table
+from app.features.results.analysis.tables import (
+    alarms_table,
+    doubts_table,
+    phases_table,
+    quality_table,
+    sessions_table,
+)
 from app.models import Phase, PhaseQuality, StudySession
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 
-TABLES = {"quality": quality_table, "alarms": alarms_table}
+TABLES = {
+    "quality": quality_table,
+    "alarms": alarms_table,
+    "doubts": doubts_table,
+    "phases": phases_table,
+    "sessions": sessions_table,
+}
+OWN = ("quality", "alarms")
 
 
-def build(database: Database, *specs: SessionSpec) -> None:
+def build(database: Database, *specs: SessionSpec, backwards: int = 0) -> None:
     """Sessions whose phases were judged, with one alarm each."""
     with database.writing() as db:
         for spec in specs:
             session = build_session(db, spec)
-            judge(db, session)
+            judge(db, session, backwards)
             gap = Condition("gap", "a gap of 0.5 s", "target", 0.5, "s", 12.25)
             store_change(db, session.id, Change("raised", gap, NOW))
             store_change(db, session.id, Change("cleared", gap, NOW + timedelta(seconds=4)))
 
 
-def judge(db: Session, session: StudySession) -> None:
+def judge(db: Session, session: StudySession, backwards: int) -> None:
     """Rows of both streams for every phase; the actual body's head froze."""
     for phase in db.scalars(select(Phase).where(Phase.session_id == session.id)):
         for stream, joints in (("actual", ["Head", "LeftHand"]), ("target", [])):
@@ -38,7 +51,7 @@ def judge(db: Session, session: StudySession) -> None:
                     phase_id=phase.phase_id,
                     stream=stream,
                     frames=5400,
-                    span_s=60.0,
+                    span_s=phase.active_s,
                     frame_rate_hz=90.0,
                     gaps=2,
                     gap_s=0.75,
@@ -48,7 +61,7 @@ def judge(db: Session, session: StudySession) -> None:
                     frozen_joints=joints,
                     non_unit=3,
                     non_finite=4,
-                    backwards=5,
+                    backwards=backwards,
                 )
             )
     db.flush()
@@ -60,7 +73,7 @@ def table(database: Database, name: str, kind: str = "people") -> pd.DataFrame:
         return TABLES[name](db, STUDY, kind)  # type: ignore[arg-type]  # the fact
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", OWN)
 def test_a_table_has_the_columns_of_the_codebook_also_when_empty(
     database: Database, name: str
 ) -> None:
@@ -72,7 +85,7 @@ def test_a_table_has_the_columns_of_the_codebook_also_when_empty(
     assert len(table(database, name)) > 0
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", OWN)
 def test_kinds_never_mix(database: Database, name: str) -> None:
     """A kind gives its own rows only."""
     build(database, SessionSpec("P-0001"), SessionSpec("SIM-0001", kind="simulated"))
@@ -86,7 +99,7 @@ def test_kinds_never_mix(database: Database, name: str) -> None:
 
 def test_every_phase_has_a_row_for_each_stream(database: Database) -> None:
     """Target first; joints stand as words, none as nothing."""
-    build(database, SessionSpec("P-0001"))
+    build(database, SessionSpec("P-0001"), backwards=5)
     rows = table(database, "quality")
     assert rows["stream"].tolist() == ["target", "actual"] * (len(rows) // 2)
     assert rows["frozen_joints"].tolist()[:2] == [None, "Head LeftHand"]
@@ -100,6 +113,17 @@ def test_a_redone_phase_stays_and_does_not_count(database: Database) -> None:
     build(database, SessionSpec("P-0001", redone=("block2.hand",)))
     rows = table(database, "quality")
     assert rows[~rows["valid"]]["attempt"].tolist() == [1, 1]
+
+
+def test_what_cannot_be_true_does_not_count_and_is_told(database: Database) -> None:
+    """A phase whose frames run backwards is in no summary, and doubts.csv says why."""
+    build(database, SessionSpec("P-0001"), backwards=5)
+    doubts, phases = table(database, "doubts"), table(database, "phases")
+    assert set(doubts["doubt"]) == {"time_backwards"}
+    assert set(doubts["claimed"]) == {10.0}
+    assert set(doubts["phase_id"]) == set(phases["phase_id"])
+    assert not phases["valid"].any()
+    assert table(database, "sessions")["valid"].all()
 
 
 def test_an_alarm_is_two_rows(database: Database) -> None:

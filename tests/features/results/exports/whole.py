@@ -17,6 +17,7 @@ MORE = (
     "corrections",
     "events",
     "quality",
+    "doubts",
     "alarms",
     "clock_probes",
     "clock_mapping",

@@ -19,7 +19,7 @@ from app.features.results.analysis.codebook.movement import (
     SAMPLES,
     STREAMS,
 )
-from app.features.results.analysis.codebook.quality import ALARMS, QUALITY
+from app.features.results.analysis.codebook.quality import ALARMS, DOUBTS, QUALITY
 from app.features.results.analysis.codebook.questionnaires import ANSWERS, CORRECTIONS, SCORES
 from app.features.results.analysis.codebook.sessions import EVENTS, PHASES, SESSIONS
 from app.science.skeleton import JOINT_NAMES
@@ -36,6 +36,7 @@ TABLES: dict[str, str] = {
     "joint_errors": "One row per phase, reference, joint and axis.",
     "joint_error_course": "One row per phase, reference and bin of active time.",
     "quality": "One row per phase and stream: what is wrong with its frames.",
+    "doubts": "One row per thing that a headset said and that cannot be true.",
     "alarms": "One row per alarm that was raised, and one per alarm that was cleared.",
     "clock_probes": "One row per exchange of clock readings between a headset and the server.",
     "clock_mapping": "One row per segment of a headset's clock, brought to the server's.",
@@ -57,6 +58,7 @@ CODEBOOK: tuple[Column, ...] = (
     *JOINT_ERRORS,
     *JOINT_ERROR_COURSE,
     *QUALITY,
+    *DOUBTS,
     *ALARMS,
     *CLOCK_PROBES,
     *CLOCK_MAPPING,

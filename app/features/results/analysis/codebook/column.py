@@ -109,6 +109,7 @@ def phase_columns(table: str) -> tuple[Column, ...]:
         of.boolean(
             "valid",
             "Whether the row may be analysed: the phase was finished and not redone or skipped, "
-            "and the session was neither aborted nor withdrawn.",
+            "the session was neither aborted nor withdrawn, and nothing that its headset said of "
+            "it is known to be untrue (doubts.csv).",
         ),
     )

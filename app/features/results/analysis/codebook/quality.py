@@ -1,5 +1,6 @@
 """The columns of quality.csv and alarms.csv."""
 
+from app.features.record.doubts import KINDS
 from app.features.results.analysis.codebook.column import (
     Column,
     Describe,
@@ -9,6 +10,7 @@ from app.features.results.analysis.codebook.column import (
 
 _Q = Describe("quality")
 _A = Describe("alarms")
+_D = Describe("doubts")
 
 QUALITY: tuple[Column, ...] = (
     *session_columns("quality"),
@@ -45,7 +47,26 @@ QUALITY: tuple[Column, ...] = (
         "0 and up",
     ),
     _Q.integer("non_finite", "Frames with a value that is not a number.", "", "0 and up"),
-    _Q.integer("backwards", "Frames that are not later than the one before.", "", "0 and up"),
+    _Q.integer(
+        "backwards",
+        "Frames that are not later than the one before, or whose time is no number.",
+        "",
+        "0 and up",
+    ),
+)
+
+DOUBTS: tuple[Column, ...] = (
+    *session_columns("doubts"),
+    _D.integer(
+        "phase_id",
+        "The phase that does not count because of it; empty where it is the whole session.",
+        levels="1 and up",
+    ),
+    _D.text("doubt", "What kind of doubt it is; docs/protocol.md has the laws.", ", ".join(KINDS)),
+    _D.text("words", "What was said and why it cannot be, in words."),
+    _D.number("claimed", "What the headset said, where it is a figure."),
+    _D.number("possible", "The furthest that it can have been."),
+    _D.text("value_unit", "The unit of both; empty for a count.", "s"),
 )
 
 ALARMS: tuple[Column, ...] = (
@@ -55,7 +76,8 @@ ALARMS: tuple[Column, ...] = (
         "What is wrong.",
         "silent, disconnected, backlog, bad_values, frozen, low_frame_rate, gap, jump, "
         "clock_unknown, clock_uncertain, storage, stop_rule_met, stop_rule_near, "
-        "stop_rule_unknown, help_asked, question_asked, consent_refused, refusal_retracted",
+        "stop_rule_unknown, help_asked, question_asked, consent_refused, refusal_retracted, "
+        "impossible, doubtful",
     ),
     _A.text("severity", "How urgent it is.", "info, warning, critical"),
     _A.text("state", "Whether it began or ended.", "raised, cleared"),

@@ -28,7 +28,7 @@ def _form_columns(table: str) -> tuple[Column, ...]:
             "valid",
             "Whether the row may be analysed: the form was not superseded by a later attempt, the "
             "phase it asks about was not skipped, and the session was neither aborted nor "
-            "withdrawn.",
+            "withdrawn nor, as a whole, in doubt (doubts.csv).",
         ),
         of.text("mode", "How it was entered.", "tablet, operator"),
     )

@@ -13,7 +13,11 @@ _E = Describe("events")
 
 SESSIONS: tuple[Column, ...] = (
     *session_columns("sessions"),
-    _S.boolean("valid", "False if the session was aborted or withdrawn."),
+    _S.boolean(
+        "valid",
+        "False if the session was aborted or withdrawn, or if its headset said what cannot be true "
+        "of more than one phase (doubts.csv).",
+    ),
     _S.text("status", "Where it stands.", "planned, active, completed, aborted, withdrawn"),
     _S.text("language", "Language of the participant's texts.", "ISO 639-1 code"),
     _S.text("order", "Added latencies in the order of the blocks, ms, separated by spaces."),

@@ -21,7 +21,12 @@ from app.features.results.analysis.tables.joint_errors import (
     joint_errors_table,
     present_course_table,
 )
-from app.features.results.analysis.tables.phases import alarms_table, phases_table, quality_table
+from app.features.results.analysis.tables.phases import (
+    alarms_table,
+    doubts_table,
+    phases_table,
+    quality_table,
+)
 from app.features.results.analysis.tables.questionnaires import (
     answers_table,
     corrections_table,
@@ -46,6 +51,7 @@ __all__ = [
     "contact_spans_table",
     "contacts_table",
     "corrections_table",
+    "doubts_table",
     "events_table",
     "joint_angles_table",
     "joint_error_course_table",

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import astuple
 from functools import wraps
 from typing import Any, get_args
 
@@ -12,6 +13,7 @@ from sqlalchemy import ColumnElement, Select, and_, select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies import study_by_key
+from app.features.record.doubts import doubts_of_sessions
 from app.features.record.sessions import plan_of, state_of
 from app.features.results.analysis.codebook import ColumnType, columns_of
 from app.features.results.analysis.schemas import Kind
@@ -197,8 +199,36 @@ def phases_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     frame = sessions.merge(phases, on="session_id").merge(
         steps, on=["session_id", "step_index"], how="left"
     )
-    frame["valid"] = (frame["status"] == "done") & ~frame["session_status"].isin(BROKEN_OFF)
+    doubted = doubts_context(db, study_key, kind)
+    in_doubt = set(zip(doubted["session_id"], doubted["phase_id"], strict=True))
+    own = zip(frame["session_id"], frame["phase_id"], strict=True)
+    frame["valid"] = (
+        (frame["status"] == "done")
+        & ~frame["session_status"].isin(BROKEN_OFF)
+        & ~frame["session_id"].isin(doubted_sessions(db, study_key, kind))
+        & np.array([key not in in_doubt for key in own], dtype=np.bool_)
+    )
     return frame
+
+
+@_once
+def doubts_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per doubt, by session and phase: what of the record cannot be true.
+
+    Where it is about one phase, that phase does not count; else nothing of the session does.
+    """
+    doubts = doubts_of_sessions(db, of_kind(study_by_key(db, study_key), kind))
+    rows = [(key, *astuple(one)) for key, of_session in doubts.items() for one in of_session]
+    return pd.DataFrame(rows, columns=list(DOUBT_COLUMNS), dtype=object)
+
+
+DOUBT_COLUMNS = ("session_id", "phase_id", "doubt", "words", "claimed", "possible", "value_unit")
+
+
+def doubted_sessions(db: Session, study_key: str, kind: Kind) -> list[str]:
+    """The sessions of which nothing counts, since what is known to be untrue is about them all."""
+    doubts = doubts_context(db, study_key, kind)
+    return sorted(set(doubts.loc[doubts["phase_id"].isna(), "session_id"]))
 
 
 def phase_limbs(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:

@@ -7,6 +7,7 @@ from sqlalchemy.orm import Session
 from app.features.design.studies import study_by_key
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
+    doubts_context,
     finished,
     of_kind,
     phases_context,
@@ -134,6 +135,12 @@ def quality_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     rows["place"] = rows["stream"].map(_STREAMS)
     frame = phases_context(db, study_key, kind).merge(rows.sort_values("place"), on=_KEYS)
     return finished(frame, "quality")
+
+
+def doubts_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
+    """One row per doubt about what a headset said, by session and phase."""
+    doubts = doubts_context(db, study_key, kind)
+    return finished(sessions_context(db, study_key, kind).merge(doubts, on="session_id"), "doubts")
 
 
 def alarms_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:

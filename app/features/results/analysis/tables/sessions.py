@@ -12,6 +12,7 @@ from app.features.record.sessions import content_body, plan_of, state_of
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
     BROKEN_OFF,
+    doubted_sessions,
     finished,
     of_kind,
     read,
@@ -40,7 +41,8 @@ def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         " ".join(f"{latencies[version, key]:g}" for key in sequence or ())
         for version, sequence in zip(frame["study_version"], frame["sequence"], strict=True)
     ]
-    frame["valid"] = ~frame["status"].isin(BROKEN_OFF)
+    doubted = frame["session_id"].isin(doubted_sessions(db, study_key, kind))
+    frame["valid"] = ~frame["status"].isin(BROKEN_OFF) & ~doubted
     return finished(frame, "sessions")
 
 

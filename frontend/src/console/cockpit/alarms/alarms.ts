@@ -96,6 +96,8 @@ const CODES = [
   "storage",
   "low_disk",
   ...OF_PERSON,
+  "impossible",
+  "doubtful",
 ] as const;
 
 type Code = (typeof CODES)[number];

@@ -1,0 +1,307 @@
+"""The claims of sessions from the record, and the doubts about them.
+
+Everything is made anew from what is stored, for one session or for many with the same few queries.
+Contacts, which are the many, are put together in SQL.
+"""
+
+import json
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import ColumnElement, and_, case, func, or_, select
+from sqlalchemy.orm import Session
+
+from app.features.record.doubts.laws import (
+    CLOCK_S,
+    ClockReport,
+    Completed,
+    Contacts,
+    Coverage,
+    Doubt,
+    Moment,
+    PhaseClaims,
+    SessionClaims,
+    StreamClaim,
+    doubts_about,
+)
+from app.features.record.sessions import plan_of, protocol_of_session
+from app.models import (
+    AlarmRow,
+    ClientReport,
+    Completion,
+    Contact,
+    Phase,
+    PhaseQuality,
+    SessionEvent,
+    StudySession,
+    TelemetryStream,
+)
+from app.protocol import StudyProtocol
+
+OBSERVED = "impossible"
+"""The alarm of what a connection itself sees and the record would not show."""
+TASKS = ("task", "practice")
+_MOMENTS = (
+    "phase_prepared",
+    "phase_paused",
+    "resume_requested",
+    "phase_resumed",
+    "walk_back_started",
+    "walk_back_ended",
+    "phase_frozen",
+    "phase_ended",
+)
+_NS_PER_S = 1e9
+Key = tuple[str, int]
+"""Session and phase."""
+
+
+def doubts_of(db: Session, session_id: str) -> tuple[Doubt, ...]:
+    """What of a session's record cannot be true; the session's own first, then phase by phase."""
+    return doubts_of_sessions(db, StudySession.id == session_id).get(session_id, ())
+
+
+def doubts_of_sessions(db: Session, chosen: ColumnElement[bool]) -> dict[str, tuple[Doubt, ...]]:
+    """The same for every session that is `chosen`; those without a doubt are left out."""
+    claims = _Reader(db, chosen).read()
+    found = {session_id: doubts_about(one) for session_id, one in claims}
+    return {session_id: doubts for session_id, doubts in found.items() if doubts}
+
+
+class _Reader:
+    """Reads the claims of the chosen sessions, table by table."""
+
+    def __init__(self, db: Session, chosen: ColumnElement[bool]) -> None:
+        self._db, self._chosen = db, chosen
+
+    def read(self) -> Iterator[tuple[str, SessionClaims]]:
+        """Session by session, each with its claims."""
+        reports = self._by_session(self._reports())
+        moments, lengths_s = self._moments()
+        streams = self._streams(lengths_s)
+        observed = self._by_session(self._observed())
+        phases = self._phases(moments)
+        query = select(StudySession.id, StudySession.time_scale).where(self._chosen)
+        for session_id, time_scale in self._db.execute(query.order_by(StudySession.id)).all():
+            yield (
+                session_id,
+                SessionClaims(
+                    time_scale=time_scale,
+                    reports=tuple(reports[session_id]),
+                    phases=tuple(phases[session_id]),
+                    streams=tuple(streams[session_id]),
+                    observed=tuple(observed[session_id]),
+                ),
+            )
+
+    def _of_chosen(self, query: Any, table: Any) -> Any:
+        """The rows of a query on a table of sessions, for those that are chosen."""
+        joined = query.join(StudySession, StudySession.id == table.session_id)
+        return self._db.execute(joined.where(self._chosen))
+
+    @staticmethod
+    def _by_session(pairs: Iterable[tuple[str, Any]]) -> dict[str, list[Any]]:
+        found: dict[str, list[Any]] = defaultdict(list)
+        for session_id, value in pairs:
+            found[session_id].append(value)
+        return found
+
+    def _reports(self) -> Iterator[tuple[str, ClockReport]]:
+        query = (
+            select(
+                ClientReport.session_id,
+                ClientReport.epoch,
+                ClientReport.payload,
+                ClientReport.accepted,
+            )
+            .where(ClientReport.type.in_(("phase", "materialised")))
+            .order_by(ClientReport.session_id, ClientReport.epoch, ClientReport.seq)
+        )
+        for session_id, epoch, payload, accepted in self._of_chosen(query, ClientReport):
+            yield (
+                session_id,
+                ClockReport(
+                    phase_id=payload.get("phase_id", 0),
+                    epoch=epoch,
+                    what=payload.get("what", payload["kind"]),
+                    t_s=payload["t_s"],
+                    active_s=payload.get("active_s", 0.0),
+                    accepted=accepted,
+                ),
+            )
+
+    def _moments(self) -> tuple[dict[Key, list[Moment]], dict[str, float]]:
+        """The events of each phase's clock, and how long each session has lasted, in s."""
+        query = (
+            select(
+                SessionEvent.session_id,
+                SessionEvent.type,
+                SessionEvent.payload,
+                SessionEvent.monotonic_ns,
+                SessionEvent.recorded_at,
+            )
+            .where(SessionEvent.type.in_(_MOMENTS))
+            .order_by(SessionEvent.session_id, SessionEvent.seq)
+        )
+        found: dict[Key, list[Moment]] = defaultdict(list)
+        first: dict[str, Moment] = {}
+        lengths_s: dict[str, float] = {}
+        for session_id, kind, payload, monotonic_ns, utc in self._of_chosen(query, SessionEvent):
+            told = json.loads(payload)
+            moment = Moment(
+                type=kind,
+                monotonic_s=monotonic_ns / _NS_PER_S,
+                utc=utc,
+                active_s=told.get("active_s"),
+                stands=told.get("client_t_s") is not None,
+            )
+            found[session_id, told["phase_id"]].append(moment)
+            begin = first.setdefault(session_id, moment)
+            lengths_s[session_id] = max(
+                moment.monotonic_s - begin.monotonic_s, (utc - begin.utc).total_seconds()
+            )
+        return found, lengths_s
+
+    def _streams(self, lengths_s: Mapping[str, float]) -> dict[str, list[StreamClaim]]:
+        table = TelemetryStream
+        query = select(
+            table.session_id,
+            table.stream,
+            table.epoch,
+            table.next_seq,
+            table.produced,
+            table.first_at,
+            table.last_at,
+            StudySession.created_at,
+            StudySession.ended_at,
+        )
+        found: dict[str, list[StreamClaim]] = defaultdict(list)
+        for session_id, stream, epoch, stored, produced, *times in self._of_chosen(query, table):
+            known_s = max(_lasted_s(*times), lengths_s.get(session_id, 0.0))
+            found[session_id].append(StreamClaim(stream, epoch, stored, produced, known_s))
+        return found
+
+    def _observed(self) -> Iterator[tuple[str, str]]:
+        query = select(AlarmRow.session_id, AlarmRow.message).where(
+            AlarmRow.code == OBSERVED, AlarmRow.state == "raised"
+        )
+        yield from self._of_chosen(query.order_by(AlarmRow.at, AlarmRow.id), AlarmRow)
+
+    def _phases(self, moments: Mapping[Key, list[Moment]]) -> dict[str, list[PhaseClaims]]:
+        contacts, completed = self._contacts(), self._completed()
+        coverage = self._coverage()
+        rows = self._of_chosen(select(Phase), Phase).scalars().all()
+        sessions = {row.session_id for row in rows}
+        query = select(StudySession).where(self._chosen)
+        designs = {
+            one.id: (plan_of(self._db, one), protocol_of_session(self._db, one))
+            for one in self._db.scalars(query)
+            if one.id in sessions
+        }
+        found: dict[str, list[PhaseClaims]] = defaultdict(list)
+        for row in sorted(rows, key=lambda one: (one.session_id, one.phase_id)):
+            plan, protocol = designs[row.session_id]
+            key = (row.session_id, row.phase_id)
+            claims = PhaseClaims(
+                phase_id=row.phase_id,
+                kind=row.kind,
+                limb=row.limb,
+                status=row.status,
+                active_s=row.active_s,
+                duration_s=plan[row.step_index].duration_s or 0.0,
+                boxes=_boxes(protocol, row),
+                moments=tuple(moments.get(key, ())),
+                contacts=tuple(contacts.get(key, ())),
+                completed=tuple(completed.get(key, ())),
+                coverage=coverage.get(key),
+            )
+            found[row.session_id].append(claims)
+        return found
+
+    def _contacts(self) -> dict[Key, list[Contacts]]:
+        active_s = Contact.end_active_s - Contact.begin_active_s
+        time_s = Contact.end_s - Contact.begin_s
+        reversed_ = or_(time_s < 0, active_s < 0, active_s > time_s + CLOCK_S)
+        here = Contact.surface.like(func.coalesce(Phase.limb, "-").concat("/%"))
+        query = (
+            select(
+                Contact.session_id,
+                Contact.phase_id,
+                Contact.epoch,
+                func.min(Contact.begin_s),
+                func.max(Contact.end_s),
+                func.min(Contact.begin_active_s),
+                func.max(Contact.end_active_s),
+                func.min(Contact.begin_s - Contact.begin_active_s),
+                func.max(Contact.end_s - Contact.end_active_s),
+                _count(reversed_),
+                _count(~here),
+                func.max(Contact.box),
+                _count(Contact.effect == "completed"),
+            )
+            .join(
+                Phase,
+                and_(Phase.session_id == Contact.session_id, Phase.phase_id == Contact.phase_id),
+            )
+            .group_by(Contact.session_id, Contact.phase_id, Contact.epoch)
+        )
+        found: dict[Key, list[Contacts]] = defaultdict(list)
+        for session_id, phase_id, *values in self._of_chosen(query, Contact):
+            found[session_id, phase_id].append(Contacts(*values))
+        return found
+
+    def _completed(self) -> dict[Key, list[Completed]]:
+        query = select(
+            Completion.session_id,
+            Completion.phase_id,
+            Completion.epoch,
+            Completion.number,
+            Completion.at_s,
+            Completion.active_s,
+            Completion.duration_s,
+            Completion.order,
+        )
+        found: dict[Key, list[Completed]] = defaultdict(list)
+        for row in self._of_chosen(query, Completion):
+            one = Completed(*row[2:7], order=tuple(row[7]))
+            found[row[0], row[1]].append(one)
+        return found
+
+    def _coverage(self) -> dict[Key, Coverage]:
+        """Of both streams the one that covers more: the other may have been lost."""
+        query = select(
+            PhaseQuality.session_id,
+            PhaseQuality.phase_id,
+            PhaseQuality.frames,
+            PhaseQuality.span_s,
+            PhaseQuality.gap_s,
+            PhaseQuality.backwards,
+        )
+        found: dict[Key, Coverage] = {}
+        for session_id, phase_id, *values in self._of_chosen(query, PhaseQuality):
+            one, key = Coverage(*values), (session_id, phase_id)
+            other = found.get(key, one)
+            backwards = one.backwards + (other.backwards if key in found else 0)
+            longer = one if one.span_s > other.span_s else other
+            found[key] = longer._replace(backwards=backwards)
+        return found
+
+
+def _count(condition: ColumnElement[bool]) -> ColumnElement[int]:
+    return func.count(case((condition, 1)))
+
+
+def _lasted_s(first: datetime, last: datetime, created: datetime, ended: datetime | None) -> float:
+    """For how long a run was known, or its session lasted: either clock may have been set."""
+    session_s = 0.0 if ended is None else (ended - created).total_seconds()
+    return max((last - first).total_seconds(), session_s)
+
+
+def _boxes(protocol: StudyProtocol, phase: Phase) -> int:
+    """How many boxes a phase has; none where there is no task."""
+    if phase.kind not in TASKS:
+        return 0
+    task = protocol.tasks.hand if phase.limb == "hand" else protocol.tasks.foot
+    return len(task.boxes)

@@ -1,0 +1,437 @@
+"""Headsets that lie: each tells one thing that cannot be, somewhere in an honest stream.
+
+`play(site, seed, lie)` runs one phase and says what became of it. A lie is believed where the
+phase counts and nobody notices: neither a refusal nor a doubt in the record.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from app.features.record.doubts import Doubt, doubts_of
+from app.models import Phase
+from tests.faults.short_study import ROAM_S
+from tests.faults.simulated_headset import (
+    BOXES,
+    DURATION_S,
+    REFUSALS,
+    Edit,
+    Frames,
+    Json,
+    Message,
+    Site,
+    Telling,
+    Weather,
+)
+
+Lie = Callable[[Telling, np.random.Generator], None]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a stream."""
+
+    seed: int
+    lie: str | None
+    session_id: str
+    status: str
+    told: bool
+    refusals: tuple[str, ...]
+    doubts: tuple[Doubt, ...]
+
+    @property
+    def believed(self) -> bool:
+        """Whether the lie was told, and nobody noticed."""
+        return self.told and not self.refusals and not self.doubts
+
+
+def play(site: Site, seed: int, lie: str | None = None) -> Outcome:
+    """One session with one phase: honest, or with the lie of that name."""
+    rng = np.random.default_rng(seed)
+    weather = Weather.drawn(rng) if lie is None or rng.random() < 0.5 else Weather()
+    if lie is not None:
+        # What the weather takes away with a client must not be the lie.
+        weather = replace(weather, new_client_at_s=None)
+    step = FREE if lie in OF_FREE else FOOT if lie not in OF_HAND and rng.random() < 0.2 else HAND
+    simulated = weather.time_scale != 1.0
+    kind = "simulated" if simulated else "test"
+    session_id = site.join(kind=kind, time_scale=weather.time_scale, step=step)
+    limb = {HAND: "hand", FOOT: "foot", FREE: None}[step]
+    telling = Telling(site, session_id, 1, limb, rng, weather, pace=1.0 / weather.time_scale)
+    if step == FREE:
+        telling.duration_s = ROAM_S
+    if lie is not None:
+        LIES[lie](telling, rng)
+    telling.play()
+    site.summarise(session_id)
+    with site.context.database.reading() as db:
+        doubts = doubts_of(db, session_id)
+        phase = db.get(Phase, (session_id, 1))
+    # Whoever skips ahead is asked for what is missing, and nothing of it is taken.
+    refusals = [
+        str(one.get("reason") or one.get("message") or one["type"])
+        for one in telling.socket.heard
+        if one["type"] in (*REFUSALS, "resend")
+    ]
+    status = "none" if phase is None else phase.status
+    return Outcome(seed, lie, session_id, status, lie is not None, tuple(refusals), doubts)
+
+
+HAND, FOOT, FREE = "block1.hand", "block1.foot", "free_roam"
+
+
+def _reports(what: str, change: Callable[[Json], list[Json]]) -> Edit:
+    """Changes the bodies of reports of a kind, or of one `what` of a phase."""
+
+    def edit(message: Message) -> list[Message]:
+        if isinstance(message, Frames) or message["type"] != "report":
+            return [message]
+        body = message["body"]
+        if what not in (body["kind"], body.get("what")):
+            return [message]
+        return [{**message, "body": one} for one in change(body)]
+
+    return edit
+
+
+def _once(change: Callable[[Json], Json], after: int = 0) -> Callable[[Json], list[Json]]:
+    """Changes one body of them, the one that comes after so many."""
+    seen = [0]
+
+    def changed(body: Json) -> list[Json]:
+        seen[0] += 1
+        return [change(body) if seen[0] == after + 1 else body]
+
+    return changed
+
+
+def _frames(change: Callable[[Frames, int], Frames]) -> Edit:
+    """Changes frames; told the number of the batch."""
+    seen = [0]
+
+    def edit(message: Message) -> list[Message]:
+        if not isinstance(message, Frames):
+            return [message]
+        seen[0] += 1
+        return [change(message, seen[0])]
+
+    return edit
+
+
+def _plain(type_: str, change: Callable[[Json], list[Json]]) -> Edit:
+    def edit(message: Message) -> list[Message]:
+        if isinstance(message, Frames) or message["type"] != type_:
+            return [message]
+        return list[Message](change(message))
+
+    return edit
+
+
+def _too_fast(telling: Telling, rng: np.random.Generator) -> None:
+    """The whole phase within a moment of the server's time: 8 s in 0.1 s."""
+    telling.weather = Weather()
+    telling.pace = float(rng.uniform(0.0, 0.7))
+
+
+def _slow_clock(telling: Telling, rng: np.random.Generator) -> None:
+    """More active time than its own clock shows."""
+    share = float(rng.uniform(0.0, 0.9))
+    telling.edit = _reports("time_up", lambda b: [{**b, "t_s": 21.2 + share * DURATION_S}])
+    telling.weather = Weather()
+
+
+def _batch_ahead(telling: Telling, rng: np.random.Generator) -> None:
+    """A batch claims the whole phase; the headset goes, and another one has nothing left to do."""
+    telling.weather = Weather(new_client_at_s=float(rng.uniform(1.0, 3.0)))
+    claimed = float(rng.choice([DURATION_S - 0.01, DURATION_S, 1e6]))
+    first: list[float] = []
+
+    def ahead(frames: Frames, number: int) -> Frames:
+        if telling.epoch == 1 and number > 10:
+            first.append(1.0)
+            return replace(frames, active_s=claimed)
+        return frames
+
+    telling.edit = _frames(ahead)
+
+
+def _report_backwards(telling: Telling, rng: np.random.Generator) -> None:
+    back_s = float(rng.uniform(0.5, 20.0))
+    telling.edit = _reports("ended", lambda b: [{**b, "t_s": b["t_s"] - back_s - 1.0}])
+
+
+def _standing_gain(telling: Telling, rng: np.random.Generator) -> None:
+    """Active time that passes while the clock stands."""
+    telling.weather = Weather(pause=(2.0, float(rng.uniform(5.0, 60.0))))
+    gained_s = float(rng.uniform(0.5, 4.0))
+    jumped = [False]
+
+    def resumed(body: Json) -> list[Json]:
+        jumped[0] = True
+        telling.active_s += gained_s
+        return [{**body, "active_s": telling.active_s}]
+
+    telling.edit = _reports("resumed", resumed)
+
+
+def _fell(telling: Telling, rng: np.random.Generator) -> None:
+    """The time at which the freeze ends lies before the time was up."""
+    telling.edit = _reports("ended", lambda b: [{**b, "active_s": rng.uniform(0.0, 7.0)}])
+
+
+def _odd_times(odd: Callable[[np.random.Generator], float]) -> Lie:
+    def lie(telling: Telling, rng: np.random.Generator) -> None:
+        at = int(rng.integers(20, 100))
+
+        def change(frames: Frames, number: int) -> Frames:
+            if number != at:
+                return frames
+            times_s = frames.times_s.copy()
+            times_s[-1] = odd(rng)
+            return replace(frames, times_s=times_s, flags=np.ones_like(frames.flags))
+
+        telling.edit = _frames(change)
+
+    return lie
+
+
+def _frames_back(telling: Telling, rng: np.random.Generator) -> None:
+    at, back_s = int(rng.integers(20, 100)), float(rng.uniform(0.2, 15.0))
+
+    def change(frames: Frames, number: int) -> Frames:
+        return frames if number != at else replace(frames, times_s=frames.times_s - back_s)
+
+    telling.edit = _frames(change)
+
+
+def _idle_frames(telling: Telling, rng: np.random.Generator) -> None:
+    """The clock is said to run; the frames say that it stands."""
+    since = int(rng.integers(2, 60))
+
+    def change(frames: Frames, number: int) -> Frames:
+        return frames if number < since else replace(frames, flags=np.zeros_like(frames.flags))
+
+    telling.edit = _frames(change)
+
+
+def _contact(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
+    def lie(telling: Telling, rng: np.random.Generator) -> None:
+        telling.edit = _reports("contact", _once(lambda b: change(b, rng), int(rng.integers(8))))
+
+    return lie
+
+
+def _completion(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
+    def lie(telling: Telling, rng: np.random.Generator) -> None:
+        telling.edit = _reports("completion", _once(lambda b: change(b, rng), int(rng.integers(3))))
+
+    return lie
+
+
+def _many_completions(telling: Telling, rng: np.random.Generator) -> None:
+    """More completions than targets were touched."""
+    more = int(rng.integers(2, 40))
+
+    def change(body: Json) -> list[Json]:
+        return [{**body, "number": body["number"] * (more + 1) + at} for at in range(-more, 1)]
+
+    telling.edit = _reports("completion", change)
+
+
+def _in_free(kind: str) -> Lie:
+    """A contact or a completion in free movement, where there is nothing to touch."""
+
+    def lie(telling: Telling, rng: np.random.Generator) -> None:
+        body: Json = {
+            "phase_id": 1,
+            "kind": "contact",
+            "surface": "hand/1/panel",
+            "surface_kind": "panel",
+            "box": 1,
+            "side": None,
+            "body_part": "RightHand",
+            "effect": "green",
+        }
+        if kind == "completion":
+            body = {
+                "phase_id": 1,
+                "kind": "completion",
+                "number": 1,
+                "duration_s": 3.0,
+                "order": [1, 2, 3, 4],
+                "out_of_order_touches": 0,
+            }
+
+        def before(up: Json) -> list[Json]:
+            t_s, active_s = up["t_s"] - rng.uniform(0.5, 2.0), up["active_s"] - 2.0
+            times = {"begin_s": t_s, "end_s": t_s + 0.1}
+            times |= {"begin_active_s": active_s, "end_active_s": active_s + 0.1}
+            if kind == "completion":
+                times = {"t_s": t_s, "active_s": active_s}
+            return [{**body, **times}, up]
+
+        telling.edit = _reports("time_up", before)
+
+    return lie
+
+
+def _completion_after(telling: Telling, rng: np.random.Generator) -> None:
+    """A completion in the freeze, when the time is up."""
+    late = {
+        "phase_id": 1,
+        "kind": "completion",
+        "duration_s": 1.0,
+        "order": [1, 2, 3, 4],
+        "out_of_order_touches": 0,
+    }
+
+    def after(up: Json) -> list[Json]:
+        t_s = up["t_s"] + rng.uniform(0.2, 0.9)
+        number = telling.completions + 1
+        return [up, {**late, "number": number, "t_s": t_s, "active_s": DURATION_S}]
+
+    telling.edit = _reports("time_up", after)
+
+
+def _walk_back(telling: Telling, rng: np.random.Generator) -> None:
+    """A walk back in a hand task."""
+
+    def before(up: Json) -> list[Json]:
+        walks = [{**up, "what": f"walk_back_{what}"} for what in ("started", "ended")]
+        return [*walks, up]
+
+    telling.edit = _reports("time_up", before)
+    assert rng
+
+
+def _given_epoch(telling: Telling, rng: np.random.Generator) -> None:
+    telling.hello_epoch = int(rng.choice([2, 3, 7, 1000, 2**31 - 1]))
+    telling.weather = Weather()
+
+
+def _epoch_zero(telling: Telling, rng: np.random.Generator) -> None:
+    at = int(rng.integers(5, 60))
+    telling.edit = _frames(lambda f, n: f if n != at else replace(f, epoch=0, seq_first=0))
+
+
+def _produced(telling: Telling, rng: np.random.Generator) -> None:
+    count = int(rng.choice([10**8, 2**40, 2**53 - 1]))
+    telling.edit = _plain("produced", lambda m: [{**m, "streams": {"target": count}}])
+
+
+def _seq(telling: Telling, rng: np.random.Generator) -> None:
+    at, ahead = int(rng.integers(60, 140)), int(rng.choice([10**9, 2**40, 2**61]))
+    telling.edit = _frames(
+        lambda f, n: f if n != at else replace(f, seq_first=f.seq_first + ahead, phase_id=1)
+    )
+
+
+def _report_seq(telling: Telling, rng: np.random.Generator) -> None:
+    ahead = int(rng.choice([10**9, 2**40, 2**52]))
+
+    def edit(message: Message) -> list[Message]:
+        if isinstance(message, Frames) or message["type"] != "report":
+            return [message]
+        if message["body"].get("what") != "ended":
+            return [message]
+        return [message, {**message, "seq": ahead, "odd": True}]
+
+    telling.edit = edit
+
+
+def _echo(change: Callable[[Json, np.random.Generator], Json]) -> Lie:
+    def lie(telling: Telling, rng: np.random.Generator) -> None:
+        telling.edit = _plain("probed", lambda m: [change(m, rng)])
+
+    return lie
+
+
+def _json_time(value: float) -> Lie:
+    """A time that is no number, in a report."""
+
+    def lie(telling: Telling, rng: np.random.Generator) -> None:
+        what = str(rng.choice(["started", "time_up", "ended"]))
+        name = str(rng.choice(["t_s", "active_s"]))
+        telling.edit = _reports(what, lambda b: [{**b, name: value}])
+
+    return lie
+
+
+LIES: dict[str, Lie] = {
+    "8 s in a moment": _too_fast,
+    "more than its own clock": _slow_clock,
+    "a batch ahead of time": _batch_ahead,
+    "a report before the one before": _report_backwards,
+    "time that passes in a pause": _standing_gain,
+    "active time that falls": _fell,
+    "frames back in time": _frames_back,
+    "a frame at NaN": _odd_times(lambda _: math.nan),
+    "a frame at infinity": _odd_times(lambda rng: float(rng.choice([math.inf, -math.inf]))),
+    "a frame beyond time": _odd_times(lambda rng: float(rng.choice([1e300, -1e12]))),
+    "frames that say it stands": _idle_frames,
+    "a contact backwards": _contact(
+        lambda b, rng: {**b, "end_s": b["begin_s"] - rng.uniform(0.001, 9.0)}
+    ),
+    "a contact's active time backwards": _contact(
+        lambda b, rng: {**b, "end_active_s": b["begin_active_s"] * rng.uniform(0.0, 0.9)}
+    ),
+    "a contact longer than it is": _contact(
+        lambda b, rng: {**b, "end_active_s": b["end_active_s"] + rng.uniform(0.5, 3.0)}
+    ),
+    "a contact before the phase": _contact(lambda b, _: {**b, "begin_s": 0.5, "end_s": 0.6}),
+    "a contact beyond the phase": _contact(
+        lambda b, _: {**b, "begin_active_s": 20.0, "end_active_s": 20.1}
+    ),
+    "a contact at another time": _contact(
+        lambda b, rng: {
+            **b,
+            "begin_s": b["begin_s"] + (x := rng.uniform(0.5, 3.0)),
+            "end_s": b["end_s"] + x,
+        }
+    ),
+    "a contact with box 9": _contact(lambda b, _: {**b, "box": 9}),
+    "a contact of the other task": _contact(lambda b, _: {**b, "surface": "neck/1/panel"}),
+    "a contact in free movement": _in_free("contact"),
+    "a completion in free movement": _in_free("completion"),
+    "a completion in a blink": _completion(
+        lambda b, rng: {**b, "duration_s": rng.uniform(0.0, 0.15)}
+    ),
+    "a completion longer than it is": _completion(
+        lambda b, rng: {**b, "duration_s": b["duration_s"] + rng.uniform(0.5, 9.0)}
+    ),
+    "a completion of too many boxes": _completion(lambda b, _: {**b, "order": [1, 2, 3, 4, 5]}),
+    "a completion of one box": _completion(lambda b, _: {**b, "order": [2] * BOXES}),
+    "a completion of no box": _completion(lambda b, _: {**b, "order": []}),
+    "a completion before the phase": _completion(lambda b, _: {**b, "t_s": 1.0}),
+    "a completion at another time": _completion(
+        lambda b, rng: {**b, "active_s": b["active_s"] + rng.uniform(0.5, 3.0)}
+    ),
+    "a completion in the freeze": _completion_after,
+    "a completion out of the count": _completion(
+        lambda b, rng: {**b, "number": b["number"] + int(rng.integers(5, 9_000))}
+    ),
+    "completions without touches": _many_completions,
+    "a walk back in a hand task": _walk_back,
+    "a run that was never numbered": _given_epoch,
+    "run 0": _epoch_zero,
+    "more made than can be": _produced,
+    "frames from far ahead": _seq,
+    "a report from far ahead": _report_seq,
+    "another server time": _echo(
+        lambda m, rng: {
+            **m,
+            "server_sent_ns": m["server_sent_ns"] + (x := int(rng.integers(10**7, 10**12))),
+            "server_received_ns": m["server_received_ns"] + x,
+        }
+    ),
+    "an answer before the question": _echo(
+        lambda m, rng: {**m, "client_received_s": m["client_sent_s"] - rng.uniform(0.001, 5.0)}
+    ),
+    "a report at NaN": _json_time(math.nan),
+    "a report at infinity": _json_time(math.inf),
+}
+"""Every lie by its name."""
+OF_FREE = ("a contact in free movement", "a completion in free movement")
+OF_HAND = tuple(name for name in LIES if "contact" in name or "complet" in name or "hand" in name)

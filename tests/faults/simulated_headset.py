@@ -1,0 +1,549 @@
+"""A headset that runs one phase in simulated time, against the real connection and writer.
+
+The application's own `HeadsetConnection` reads from a socket that this module writes, and its
+writer commits at once. Nothing waits: the server's clocks are `World`'s, so ten minutes offline
+cost nothing. What the network does to an honest headset is drawn from a seed: jitter, drift, an
+offline journal, broken connections that send again what was sent, a client that starts anew, a
+wall clock that is set, pauses.
+"""
+
+import asyncio
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import SecretStr
+from sqlalchemy import event, select
+from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
+
+from app.clock import Clock
+from app.errors import NotNow, ReembodyError
+from app.features.design.studies import add_shipped
+from app.features.design.studies.service import create_study
+from app.features.record.devices.service import new_code, pair
+from app.features.record.headset.connection import HeadsetConnection
+from app.features.record.sessions import apply_command, join, plan_of, state_of
+from app.features.record.sessions import commands as c
+from app.features.record.telemetry import TelemetryWriter
+from app.features.record.telemetry.summaries import replace_rows, summary_rows
+from app.features.record.telemetry.writer import Arrival, LossContent
+from app.main import create_app
+from app.models import Phase, StudySession
+from app.platform.access import session_by_id
+from app.platform.context import AppContext
+from app.settings import Settings
+from app.wire import MalformedBatchError, StreamName, encode_batch
+from tests.wire.samples import standing
+
+Json = dict[str, Any]
+TICK_S, PER_TICK = 0.1, 2
+TOGETHER = 20
+DURATION_S, FREEZE_S = 8.0, 1.0
+BOXES = 4
+REFUSALS = ("refused", "closed", "error")
+"""What the server says where it does not take something."""
+TOUCH_S, BETWEEN_S = 0.08, 0.2
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A batch before it is packed; `times_s` (n,), `flags` (n,)."""
+
+    stream: StreamName
+    epoch: int
+    phase_id: int
+    seq_first: int
+    times_s: NDArray[np.float64]
+    flags: NDArray[np.uint8]
+    active_s: float
+
+    def packed(self) -> bytes:
+        """As it travels."""
+        closed_s = float(np.nan_to_num(self.times_s[-1], nan=0.0, posinf=0.0, neginf=0.0))
+        return encode_batch(
+            self.stream,
+            epoch=self.epoch,
+            phase_id=self.phase_id,
+            seq_first=self.seq_first,
+            times_s=self.times_s,
+            flags=self.flags,
+            values=standing(len(self.times_s)),
+            active_s=self.active_s,
+            closed_at_s=min(max(closed_s, 0.0), 1e9),
+        )
+
+
+Message = Json | Frames
+Edit = Callable[[Message], list[Message]]
+
+
+@dataclass
+class World:
+    """The server's clocks: seconds that pass, and a wall clock that may be set."""
+
+    monotonic_s: float = 5_000.0
+    wall: datetime = datetime(2026, 3, 1, 9, tzinfo=UTC)
+
+    def advance(self, seconds: float) -> None:
+        """Time passes."""
+        self.monotonic_s += seconds
+        self.wall += timedelta(seconds=seconds)
+
+    @property
+    def clock(self) -> Clock:
+        """Both, for the application."""
+        return Clock(lambda: self.wall, lambda: round(self.monotonic_s * 1e9))
+
+
+class PromptWriter(TelemetryWriter):
+    """Commits in the caller's thread: a handful together, or what has gathered when it is asked."""
+
+    def submit(self, arrival: Arrival) -> None:
+        """Store it with the next ones; that a headset was lost is stored at once."""
+        self._waiting.append(arrival)
+        if len(self._waiting) >= TOGETHER or isinstance(arrival.content, LossContent):
+            self.commit()
+
+    def commit(self) -> None:
+        """Store what has gathered."""
+        arrivals, self._waiting = self._waiting, []
+        if arrivals:
+            self._store_or_wait(arrivals)
+
+
+@dataclass
+class Socket:
+    """The server's end of a socket: reads what a headset says, keeps what it is told."""
+
+    says: Iterator[Json | bytes | str]
+    heard: list[Json] = field(default_factory=list)
+    hangs_up: Callable[[], None] = lambda: None
+    application_state: WebSocketState = WebSocketState.CONNECTED
+
+    async def receive(self) -> Json:
+        """The headset's next message; it hangs up when it has nothing more to say."""
+        for _ in range(4):
+            await asyncio.sleep(0)  # what the connection does beside reading comes first
+        said = next(self.says, None)
+        if said is None:
+            self.hangs_up()
+            for _ in range(4):
+                await asyncio.sleep(0)
+            return {"type": "websocket.disconnect", "code": 1000}
+        if isinstance(said, bytes):
+            return {"type": "websocket.receive", "bytes": said}
+        text = said if isinstance(said, str) else json.dumps(said)
+        return {"type": "websocket.receive", "text": text}
+
+    async def send_text(self, text: str) -> None:
+        """What the server says."""
+        self.heard.append(json.loads(text))
+
+    async def close(self, code: int = 1000, reason: str = "") -> None:
+        """The server hangs up."""
+        self.heard.append({"type": "closed", "code": code, "reason": reason})
+
+
+def _without_flushing(connection: Any, _record: object) -> None:
+    connection.execute("PRAGMA synchronous=OFF")
+
+
+@dataclass
+class Site:
+    """An application without a port, whose time is the world's."""
+
+    context: AppContext
+    world: World
+    writer: PromptWriter
+    study: str
+
+    @classmethod
+    def open(cls, database_url: str, data_dir: Path, study_yaml: str, key: str) -> "Site":
+        """On a migrated, empty database, with one study."""
+        world = World()
+        settings = Settings(
+            database_url=database_url, data_dir=data_dir, admin_password=SecretStr("unused here")
+        )
+        context: AppContext = create_app(settings, clock=world.clock).state.context
+        # Nothing here is about power losses, and flushing would take most of the time.
+        event.listen(context.database.engine, "connect", _without_flushing)
+        with context.database.writing() as db:
+            add_shipped(db, context.clock.utc_now())
+            create_study(db, study_yaml, context.clock.utc_now())
+        writer = PromptWriter(context, lambda *_: None)
+        return cls(context, world, writer, key)
+
+    def join(self, *, kind: str = "test", time_scale: float = 1.0, step: str) -> str:
+        """A session that stands at this step, its earlier steps skipped."""
+        with self.context.database.writing() as db:
+            session = join(
+                db,
+                self.context,
+                study_key=self.study,
+                participant_code=None,
+                kind=kind,
+                language="en",
+                time_scale=time_scale,
+            )
+            apply_command(db, self.context, session, c.Start(), actor="test")
+            while self._step(session) != step:
+                words = c.ContentRef("0", "0")
+                apply_command(db, self.context, session, c.Skip(content=words), actor="test")
+            return session.id
+
+    def command(self, session_id: str, command: c.Command) -> bool:
+        """An operator's command; False where it does not fit the moment."""
+        self.writer.commit()
+        try:
+            with self.context.database.writing() as db:
+                session = session_by_id(db, session_id, lock=True)
+                apply_command(db, self.context, session, command, actor="test")
+        except NotNow:
+            return False
+        return True
+
+    def _step(self, session: StudySession) -> str:
+        with self.context.database.reading() as db:
+            plan = plan_of(db, session)
+        current = state_of(session).current
+        return "" if current is None else plan[current].key
+
+    def summarise(self, session_id: str) -> None:
+        """What a running server does in the background once a phase has ended."""
+        self.writer.commit()
+        with self.context.database.writing() as db:
+            done = select(Phase.phase_id).where(
+                Phase.session_id == session_id, Phase.status == "done"
+            )
+            for phase_id in db.scalars(done).all():
+                rows = summary_rows(db, session_id, phase_id)
+                replace_rows(db, session_id, phase_id, rows)
+
+    def token(self, session_id: str) -> str:
+        """Pair a headset; its token."""
+        now = self.context.clock.utc_now()
+        with self.context.database.writing() as db:
+            code = new_code(db, session_id=session_id, kind="headset", now=now, minutes=10.0)
+            return pair(db, code=code.code, name="simulated", now=now).token
+
+    def connect(self, session_id: str, says: Iterator[Json | bytes | str], socket: Socket) -> None:
+        """One connection of a headset until either side hangs up; errors of the server are raised.
+
+        What a headset is refused for is in `socket.heard`, as it would hear it.
+        """
+        self.writer.commit()
+        socket.says, socket.hangs_up = says, self.writer.commit
+        token = self.token(session_id)
+
+        async def serve() -> None:
+            asked = cast("WebSocket", socket)
+            connection = HeadsetConnection(asked, self.context, self.writer, session_id, token)
+            try:
+                await connection.run()
+            except (ReembodyError, MalformedBatchError) as error:
+                socket.heard.append({"type": "closed", "code": 4400, "reason": str(error)})
+            except WebSocketDisconnect:
+                return
+
+        asyncio.run(serve())
+
+
+@dataclass
+class Weather:
+    """What an honest headset meets, drawn from a seed."""
+
+    drift: float = 0.0
+    jitter_s: float = 0.0
+    offline: tuple[float, float] | None = None
+    pause: tuple[float, float] | None = None
+    broken_at_s: float | None = None
+    new_client_at_s: float | None = None
+    wall_step_s: float = 0.0
+    time_scale: float = 1.0
+
+    @classmethod
+    def drawn(cls, rng: np.random.Generator) -> "Weather":
+        """Up to all of it at once; only one thing stops the clock."""
+        weather = cls(
+            drift=float(rng.uniform(-1e-4, 1e-4)),
+            jitter_s=float(rng.uniform(0.0, 0.03)),
+            time_scale=float(rng.choice([1.0, 1.0, 1.0, 20.0])),
+        )
+        if rng.random() < 0.3:
+            weather.wall_step_s = float(rng.choice([-3600.0, -5.0, 5.0, 3600.0]))
+        at_s = float(rng.uniform(1.0, 6.0))
+        match int(rng.integers(6)):
+            case 0:
+                weather.offline = (at_s, float(rng.choice([5.0, 60.0, 600.0])))
+            case 1:
+                weather.pause = (at_s, float(rng.uniform(1.0, 90.0)))
+            case 2:
+                weather.broken_at_s = at_s
+            case 3:
+                weather.new_client_at_s = at_s
+            case _:
+                pass
+        return weather
+
+
+@dataclass
+class Telling:
+    """A headset in one phase: its clock, its seqs, its journal, its task.
+
+    `edit` may change, drop or add messages before they are journaled: that is where a liar lies.
+    `pace` is how many real seconds pass in one of the headset's, 1 over the time scale for an
+    honest one.
+    """
+
+    site: Site
+    session_id: str
+    phase_id: int
+    limb: str | None
+    rng: np.random.Generator
+    weather: Weather
+    edit: Edit = lambda message: [message]
+    hello_epoch: int | None = None
+    pace: float = 1.0
+    duration_s: float = DURATION_S
+    socket: Socket = field(default_factory=lambda: Socket(iter(())))
+    epoch: int = 0
+    t_s: float = 20.0
+    active_s: float = 0.0
+    runs: bool = False
+    seq: int = 0
+    reports: int = 0
+    completions: int = 0
+    journal: list[Json | bytes] = field(default_factory=list)
+    sent: list[Json | bytes] = field(default_factory=list)
+    _touched: int = 0
+    _completed_active_s: float = 0.0
+    _next_touch_s: float = 0.3
+    _probed: int = 0
+
+    def play(self) -> None:
+        """The whole phase, over as many connections as it takes."""
+        self.site.connect(self.session_id, self._first(), self.socket)
+        weather = self.weather
+        if weather.broken_at_s is not None and not self.refused:
+            self.site.world.advance(float(self.rng.uniform(0.2, 600.0)))
+            self.site.connect(self.session_id, self._again(), self.socket)
+        if weather.new_client_at_s is not None and not self.refused:
+            self.site.world.advance(float(self.rng.uniform(2.0, 60.0)))
+            self.site.connect(self.session_id, self._anew(), self.socket)
+
+    @property
+    def refused(self) -> bool:
+        """Whether the server refused something, or hung up."""
+        return any(one["type"] in REFUSALS for one in self.socket.heard)
+
+    def _first(self) -> Iterator[Json | bytes]:
+        yield self._hello(self.hello_epoch)
+        self.epoch = self._heard("welcome")["epoch"]
+        self.site.command(self.session_id, c.BeginPhase(headset_connected=True))
+        self._pass(1.2)
+        self._report("started")
+        self.runs = True
+        yield from self._run()
+
+    def _again(self) -> Iterator[Json | bytes]:
+        """The same client is back: it sends the last of what it sent once more, then the rest."""
+        yield self._hello(self.epoch)
+        yield from self.sent[-int(self.rng.integers(1, 12)) :]
+        self._pass(0.5)
+        yield from self._delivered()
+        self.site.command(self.session_id, c.Resume(headset_connected=True))
+        yield from self._resume()
+        yield from self._run()
+
+    def _anew(self) -> Iterator[Json | bytes]:
+        """Another client takes over: what the first had in memory is gone, and so is its clock."""
+        yield self._hello(None)
+        welcome = [one for one in self.socket.heard if one["type"] == "welcome"][-1]
+        order = welcome["state"]["phase"]
+        self.epoch, self.seq, self.reports, self.t_s = welcome["epoch"], 0, 0, 3.0
+        self.journal, self.sent = [], []
+        self.active_s, self.completions = order["active_s"], order["completions"]
+        self._touched, self._completed_active_s = 0, self.active_s
+        self._next_touch_s = self.active_s + 0.3
+        self._pass(0.4)
+        self.site.command(self.session_id, c.Resume(headset_connected=True))
+        yield from self._resume()
+        yield from self._run()
+
+    def _resume(self) -> Iterator[Json | bytes]:
+        self._pass(0.3)
+        self._report("resumed")
+        self.runs = True
+        yield from self._delivered()
+
+    def _run(self) -> Iterator[Json | bytes]:
+        """Tick by tick until the time is up and the freeze is over."""
+        weather, offline_until_s = self.weather, None
+        while self.active_s < self.duration_s - 1e-9:
+            self._tick(min(TICK_S, self.duration_s - self.active_s))
+            at_s = self.active_s
+            if weather.offline is not None and at_s >= weather.offline[0]:
+                offline_until_s = self.site.world.monotonic_s + weather.offline[1]
+                weather = replace(weather, offline=None)
+            if offline_until_s is None or self.site.world.monotonic_s >= offline_until_s:
+                offline_until_s = None
+                yield from self._delivered()
+                yield from self._probe()
+            if weather.wall_step_s and at_s > self.duration_s / 3:
+                self.site.world.wall += timedelta(seconds=weather.wall_step_s)
+                weather = replace(weather, wall_step_s=0.0)
+            if weather.pause is not None and at_s >= weather.pause[0]:
+                yield from self._paused(weather.pause[1])
+                weather = replace(weather, pause=None)
+            first = self.epoch == 1 and self.sent
+            if first and weather.broken_at_s is not None and at_s >= weather.broken_at_s:
+                self.weather.broken_at_s = 99.0
+                self.runs = False
+                self._report("paused", cause="disconnected")
+                return
+            if first and weather.new_client_at_s is not None and at_s >= weather.new_client_at_s:
+                return
+        self.runs = False
+        self._report("time_up")
+        self._tick(FREEZE_S)
+        self._report("ended")
+        if offline_until_s is not None:
+            self.site.world.advance(max(0.0, offline_until_s - self.site.world.monotonic_s))
+        yield from self._delivered()
+        counts = {"target": self.seq, "actual": self.seq, "reports": self.reports}
+        yield from self._say({"type": "produced", "epoch": self.epoch, "streams": counts})
+
+    def _paused(self, for_s: float) -> Iterator[Json | bytes]:
+        """The operator pauses, and after a while lets it go on."""
+        yield from self._delivered()
+        self.site.command(self.session_id, c.Pause())
+        self._tick(TICK_S)
+        self.runs = False
+        self._report("paused", cause="operator")
+        yield from self._delivered()
+        for _ in range(5):
+            self._tick(TICK_S)
+        self._pass(for_s)
+        yield from self._delivered()
+        self.site.command(self.session_id, c.Resume(headset_connected=True))
+        yield from self._resume()
+
+    def _pass(self, seconds: float) -> None:
+        """Time passes at both ends; nothing is drawn."""
+        self.t_s += seconds * (1.0 + self.weather.drift)
+        self.site.world.advance(seconds * self.pace)
+
+    def _tick(self, for_s: float) -> None:
+        """A moment with its frames and, where the clock runs, the task."""
+        begin_s, begin_active_s = self.t_s, self.active_s
+        self.site.world.advance(for_s * self.pace / (1.0 + self.weather.drift))
+        self.t_s += for_s
+        if self.runs:
+            self.active_s = min(self.active_s + for_s, self.duration_s)
+        share = (np.arange(PER_TICK) + self.rng.uniform(0.05, 0.95, PER_TICK)) / PER_TICK
+        self._draw(begin_s + share * for_s)
+        if self.runs and self.limb is not None:
+            self._touch(begin_s, begin_active_s)
+
+    def _draw(self, times_s: NDArray[np.float64]) -> None:
+        for stream in StreamName:
+            self._journal(
+                Frames(
+                    stream,
+                    self.epoch,
+                    self.phase_id,
+                    self.seq,
+                    times_s,
+                    np.full(len(times_s), self.runs, np.uint8),
+                    self.active_s,
+                )
+            )
+        self.seq += len(times_s)
+
+    def _touch(self, t_s: float, active_s: float) -> None:
+        """The next thing in the order is touched for a moment, if it is time to."""
+        if active_s < self._next_touch_s or active_s + TOUCH_S > self.duration_s - 0.01:
+            return
+        self._next_touch_s = active_s + BETWEEN_S
+        box = self._touched + 1 if self._touched < BOXES else None
+        name, kind = ("target", "target") if box is None else (f"{box}/panel", "panel")
+        if box is None:
+            self.completions += 1
+            self._told(
+                kind="completion",
+                number=self.completions,
+                t_s=t_s,
+                active_s=active_s,
+                duration_s=active_s - self._completed_active_s,
+                order=[int(one) for one in self.rng.permutation(BOXES) + 1],
+                out_of_order_touches=0,
+            )
+            self._completed_active_s = active_s
+        self._told(
+            kind="contact",
+            surface=f"{self.limb}/{name}",
+            surface_kind=kind,
+            box=box,
+            side=None,
+            body_part="RightHand",
+            begin_s=t_s,
+            end_s=t_s + TOUCH_S,
+            begin_active_s=active_s,
+            end_active_s=active_s + TOUCH_S,
+            effect="completed" if box is None else "green",
+        )
+        self._touched = 0 if box is None else box
+
+    def _report(self, what: str, cause: str = "headset") -> None:
+        self._told(kind="phase", what=what, t_s=self.t_s, active_s=self.active_s, cause=cause)
+
+    def _told(self, **body: Any) -> None:
+        body = {"phase_id": self.phase_id, **body}
+        self._journal({"type": "report", "epoch": self.epoch, "seq": self.reports, "body": body})
+
+    def _journal(self, message: Message) -> None:
+        for one in self.edit(message):
+            if isinstance(one, Frames):
+                self.journal.append(one.packed())
+                continue
+            if one.get("type") == "report":
+                # A report that a liar adds has a seq, too.
+                one = {**one, "seq": one["seq"] if one.get("odd") else self.reports}
+                self.reports += 1
+            self.journal.append({key: value for key, value in one.items() if key != "odd"})
+
+    def _delivered(self) -> Iterator[Json | bytes]:
+        """Everything that was journaled, a moment later."""
+        waiting, self.journal = self.journal, []
+        if waiting and self.weather.jitter_s:
+            self.site.world.advance(float(self.rng.uniform(0.0, self.weather.jitter_s)))
+        for message in waiting:
+            self.sent.append(message)
+            yield message
+
+    def _say(self, message: Json) -> Iterator[Json | bytes]:
+        """What is not journaled: readings of the clocks and counts."""
+        for one in self.edit(message):
+            assert not isinstance(one, Frames)
+            yield one
+
+    def _probe(self) -> Iterator[Json | bytes]:
+        """Readings of the clocks, about once a second."""
+        self._probed += 1
+        if self._probed % 10:
+            return
+        sent_s = self.t_s
+        yield {"type": "probe", "client_sent_s": sent_s}
+        answer = self._heard("probe")
+        yield from self._say({**answer, "type": "probed", "client_received_s": sent_s + 0.004})
+
+    def _hello(self, epoch: int | None) -> Json:
+        return {"type": "hello", "protocol": 1, "client": "simulated", "epoch": epoch}
+
+    def _heard(self, kind: str) -> Json:
+        return [one for one in self.socket.heard if one["type"] == kind][-1]
