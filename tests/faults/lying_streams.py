@@ -40,6 +40,7 @@ class Outcome:
     told: bool
     refusals: tuple[str, ...]
     doubts: tuple[Doubt, ...]
+    welcomes: tuple[Json, ...]
 
     @property
     def believed(self) -> bool:
@@ -75,8 +76,11 @@ def play(site: Site, seed: int, lie: str | None = None) -> Outcome:
         for one in telling.socket.heard
         if one["type"] in (*REFUSALS, "resend")
     ]
+    welcomes = tuple(one for one in telling.socket.heard if one["type"] == "welcome")
     status = "none" if phase is None else phase.status
-    return Outcome(seed, lie, session_id, status, lie is not None, tuple(refusals), doubts)
+    return Outcome(
+        seed, lie, session_id, status, lie is not None, tuple(refusals), doubts, welcomes
+    )
 
 
 HAND, FOOT, FREE = "block1.hand", "block1.foot", "free_roam"
@@ -131,8 +135,8 @@ def _plain(type_: str, change: Callable[[Json], list[Json]]) -> Edit:
 
 def _too_fast(telling: Telling, rng: np.random.Generator) -> None:
     """The whole phase within a moment of the server's time: 8 s in 0.1 s."""
+    telling.pace = float(rng.uniform(0.0, 0.7)) / telling.weather.time_scale
     telling.weather = Weather()
-    telling.pace = float(rng.uniform(0.0, 0.7))
 
 
 def _slow_clock(telling: Telling, rng: np.random.Generator) -> None:
@@ -142,19 +146,19 @@ def _slow_clock(telling: Telling, rng: np.random.Generator) -> None:
     telling.weather = Weather()
 
 
-def _batch_ahead(telling: Telling, rng: np.random.Generator) -> None:
+def _batch_ahead(claimed_s: float) -> Lie:
     """A batch claims the whole phase; the headset goes, and another one has nothing left to do."""
-    telling.weather = Weather(new_client_at_s=float(rng.uniform(1.0, 3.0)))
-    claimed = float(rng.choice([DURATION_S - 0.01, DURATION_S, 1e6]))
-    first: list[float] = []
 
-    def ahead(frames: Frames, number: int) -> Frames:
-        if telling.epoch == 1 and number > 10:
-            first.append(1.0)
-            return replace(frames, active_s=claimed)
-        return frames
+    def lie(telling: Telling, rng: np.random.Generator) -> None:
+        telling.weather = Weather(new_client_at_s=float(rng.uniform(1.0, 3.0)))
 
-    telling.edit = _frames(ahead)
+        def ahead(frames: Frames, number: int) -> Frames:
+            lies = telling.epoch == 1 and number > 10
+            return replace(frames, active_s=claimed_s) if lies else frames
+
+        telling.edit = _frames(ahead)
+
+    return lie
 
 
 def _report_backwards(telling: Telling, rng: np.random.Generator) -> None:
@@ -321,6 +325,12 @@ def _produced(telling: Telling, rng: np.random.Generator) -> None:
     telling.edit = _plain("produced", lambda m: [{**m, "streams": {"target": count}}])
 
 
+def _produced_then_true(telling: Telling, rng: np.random.Generator) -> None:
+    telling.weather = Weather()
+    wrong = {"target": int(rng.choice([10**8, 2**53 - 1])), "actual": 2**50}
+    telling.edit = _plain("produced", lambda m: [{**m, "streams": wrong}, m])
+
+
 def _seq(telling: Telling, rng: np.random.Generator) -> None:
     at, ahead = int(rng.integers(60, 140)), int(rng.choice([10**9, 2**40, 2**61]))
     telling.edit = _frames(
@@ -362,7 +372,8 @@ def _json_time(value: float) -> Lie:
 LIES: dict[str, Lie] = {
     "8 s in a moment": _too_fast,
     "more than its own clock": _slow_clock,
-    "a batch ahead of time": _batch_ahead,
+    "a batch ahead of time": _batch_ahead(DURATION_S - 0.01),
+    "a batch far ahead of time": _batch_ahead(1e6),
     "a report before the one before": _report_backwards,
     "time that passes in a pause": _standing_gain,
     "active time that falls": _fell,
@@ -417,6 +428,7 @@ LIES: dict[str, Lie] = {
     "a run that was never numbered": _given_epoch,
     "run 0": _epoch_zero,
     "more made than can be": _produced,
+    "more made than can be, then the truth": _produced_then_true,
     "frames from far ahead": _seq,
     "a report from far ahead": _report_seq,
     "another server time": _echo(
@@ -433,5 +445,7 @@ LIES: dict[str, Lie] = {
     "a report at infinity": _json_time(math.inf),
 }
 """Every lie by its name."""
+CORRECTED = ("more made than can be, then the truth",)
+"""Lies that are taken back: in the end nothing untrue is on record."""
 OF_FREE = ("a contact in free movement", "a completion in free movement")
 OF_HAND = tuple(name for name in LIES if "contact" in name or "complet" in name or "hand" in name)

@@ -2,17 +2,28 @@
 
 from collections import Counter
 from collections.abc import Iterator
+from datetime import datetime
 from pathlib import Path
 
 import pytest
+from sqlalchemy import select
 
+from app.features.record.alarms import open_rows
+from app.features.record.doubts import doubts_of
+from app.features.record.headset.service import welcome
+from app.features.record.receipts import receipt_of
+from app.features.record.telemetry import Summariser, take_epoch
+from app.features.record.telemetry.summaries import SUMMARIES
+from app.features.results.analysis.tables import phases_table
+from app.models import TelemetryStream
+from app.wire import MAX_EPOCH, Hello
 from tests.faults.figures import note
-from tests.faults.lying_streams import LIES, Outcome, play
+from tests.faults.lying_streams import CORRECTED, HAND, LIES, Outcome, play
 from tests.faults.short_study import KEY, short_study
-from tests.faults.simulated_headset import Site
+from tests.faults.simulated_headset import DURATION_S, Site
 from tests.support.sqlite import fresh_sqlite
 
-HONEST, LYING = 12, len(LIES)
+HONEST, LYING = 12, len(LIES) - len(CORRECTED)
 MANY_HONEST, MANY_LYING = 300, 1000
 
 
@@ -27,7 +38,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
 
 def lying(site: Site, count: int) -> list[Outcome]:
     """So many streams, every lie in its turn."""
-    names = list(LIES)
+    names = [name for name in LIES if name not in CORRECTED]
     return [play(site, seed, names[seed % len(names)]) for seed in range(count)]
 
 
@@ -58,6 +69,74 @@ def test_no_lie_is_believed(site: Site) -> None:
 def test_no_honest_headset_is_doubted(site: Site) -> None:
     """Jitter, drift, late journals, broken connections, new clients, pauses, a wall clock set."""
     assert tell(honest(site, HONEST), "honest") == []
+
+
+def test_a_lie_is_on_the_receipt_and_before_the_operator(site: Site) -> None:
+    """The receipt names it, an alarm says that the phase does not count, and it does not."""
+    told = play(site, 1, "8 s in a moment")
+    Summariser(site.context)._run(told.session_id, 1, tuple(SUMMARIES))
+    with site.context.database.reading() as db:
+        receipt = receipt_of(db, told.session_id)
+        alarms = {row.code: row.message for row in open_rows(db, told.session_id)}
+        phases = phases_table(db, KEY, "all").set_index("session_id")
+    assert [one.kind for one in receipt.doubts] == ["active_time_server"]
+    assert not receipt.complete
+    assert any(one.startswith("phase 1: cannot be true: 8.00 s") for one in receipt.problems)
+    assert alarms["doubtful"].startswith("phase 1 does not count: 8.00 s of active time")
+    row = phases.loc[told.session_id]
+    assert (row["status"], bool(row["valid"])) == ("done", False)
+
+
+def test_a_wrong_count_is_corrected_by_a_later_honest_one(site: Site) -> None:
+    """A count beyond reason does not stay, and nothing is missing in the end."""
+    told = play(site, 3, "more made than can be, then the truth")
+    with site.context.database.reading() as db:
+        receipt = receipt_of(db, told.session_id)
+        produced = {
+            row.produced
+            for row in db.scalars(
+                select(TelemetryStream).where(TelemetryStream.session_id == told.session_id)
+            )
+            if row.stream != "reports"
+        }
+    assert (told.doubts, told.status) == ((), "done")
+    assert produced == {one.stored for one in receipt.streams if one.stream == "target"}
+    assert all(one.missing == 0 for one in receipt.streams)
+
+
+def test_a_run_of_the_highest_number_locks_nobody_out(site: Site) -> None:
+    """The next run of the client gets a number that it can use, and that nobody had."""
+    session_id = site.join(step=HAND)
+    with site.context.database.writing() as db:
+        now = site.context.clock.utc_now()
+        hello = Hello(protocol=1, client="liar", epoch=MAX_EPOCH)
+        assert welcome(db, session_id, hello, now).epoch == MAX_EPOCH
+        db.add(stream_row(session_id, MAX_EPOCH, now))
+        epochs = [take_epoch(db, session_id, now) for _ in range(3)]
+    assert epochs == [1, 2, 3]
+    with site.context.database.reading() as db:
+        assert {one.kind for one in doubts_of(db, session_id)} == {"epoch", "observed"}
+
+
+def test_who_takes_over_is_not_told_more_than_the_phase_has(site: Site) -> None:
+    """A batch that claims 1e6 s of active time does not reach the next client."""
+    told = play(site, 4, "a batch far ahead of time")
+    assert told.believed is False
+    orders = [one["state"]["phase"]["active_s"] for one in told.welcomes if one["state"]["phase"]]
+    assert orders == [DURATION_S]
+
+
+def stream_row(session_id: str, epoch: int, now: datetime) -> TelemetryStream:
+    """The row of a stream in which one report came."""
+    return TelemetryStream(
+        session_id=session_id,
+        stream="reports",
+        epoch=epoch,
+        next_seq=1,
+        frames_stored=1,
+        first_at=now,
+        last_at=now,
+    )
 
 
 @pytest.mark.long

@@ -302,7 +302,7 @@ def _server(phase: PhaseClaims, time_scale: float) -> Iterator[Doubt]:
         if moment.active_s is not None:
             passed_s = max(_passed_s(called, moment)) - stood_s
             possible_s = passed_s * time_scale * (1.0 + DRIFT)
-            if moment.active_s > possible_s + SERVER_S * max(1.0, time_scale):
+            if moment.active_s > possible_s + SERVER_S:
                 words = (
                     f"{moment.active_s:.2f} s of active time were told {passed_s:.2f} s after the"
                     " phase was called, pauses left out"

@@ -42,7 +42,8 @@ class Frames:
     def rotations(self) -> NDArray[np.float64]:
         """Local rotations (n, 22, 4), w x y z."""
         with np.errstate(invalid="ignore"):  # a signalling NaN is allowed to be there
-            return self.values[:, 3:].reshape(len(self), -1, 4).astype(np.float64)
+            joints = (self.values.shape[1] - 3) // 4
+            return self.values[:, 3:].reshape(len(self), joints, 4).astype(np.float64)
 
     @property
     def active(self) -> NDArray[np.bool_]:
