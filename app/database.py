@@ -28,12 +28,13 @@ from typing import Any, Protocol, TypeVar
 
 from anyio import CapacityLimiter
 from anyio.to_thread import run_sync
-from sqlalchemy import Connection, Engine, MetaData, create_engine, event, make_url
+from sqlalchemy import Connection, Engine, MetaData, create_engine, event
 from sqlalchemy.engine.interfaces import DBAPIConnection
 from sqlalchemy.exc import DatabaseError, OperationalError
 from sqlalchemy.orm import DeclarativeBase, Session
 from sqlalchemy.pool import ConnectionPoolEntry, NullPool
 
+from app.database_address import connect_arguments, database_address
 from app.errors import NotDurable
 
 BUSY_TIMEOUT_S, STILL_BUSY_TIMEOUT_S = 2.0, 0.1
@@ -321,16 +322,16 @@ def make_engine(url: str, *, pooled: bool = True) -> Engine:
     """An engine for `sqlite:///FILE` or `postgresql://...`, set up for durable commits.
 
     Not `pooled`, it opens a connection for every use. What a statement stores stays out of the
-    messages of errors, which get into logs: it may be somebody's answers.
+    messages of errors, which get into logs: it may be somebody's answers. Raises InvalidInput for
+    another address.
     """
-    parsed = make_url(url)
-    if parsed.drivername in {"postgresql", "postgres"}:
-        parsed = parsed.set(drivername="postgresql+psycopg")
+    parsed = database_address(url)
     pool: dict[str, Any] = {} if pooled else {"poolclass": NullPool}
     if parsed.get_backend_name() != "sqlite":
         if pooled:
             pool = {"pool_size": 10, "max_overflow": 20, "pool_pre_ping": True}
-        return create_engine(parsed, hide_parameters=True, **pool)
+        arguments = connect_arguments(parsed)
+        return create_engine(parsed, hide_parameters=True, connect_args=arguments, **pool)
     if parsed.database:
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
         # Without a file there is one connection for all, and so no pool to size.

@@ -1,5 +1,6 @@
 """The only wiring: settings in, a complete application out."""
 
+import asyncio
 import logging
 from collections.abc import AsyncIterator, Callable
 from contextlib import ExitStack, asynccontextmanager, closing
@@ -14,6 +15,7 @@ from app.api.router import add_routes
 from app.clock import Clock
 from app.database import open_database
 from app.features.care.opening import bring_up_to_date
+from app.features.care.ownership import Ownership, OwnerWatch, own_data
 from app.features.care.rights import finish_erasures
 from app.features.care.storage import StorageDesk
 from app.features.design.studies import add_shipped
@@ -27,6 +29,7 @@ from app.features.results.analysis import Drawings
 from app.features.results.exports import ExportDesk
 from app.features.results.replay import ReplayDesk
 from app.lan import Network
+from app.platform.background import Background
 from app.platform.context import AppContext, PartMaker
 from app.platform.folders import protect
 from app.platform.half_made import remove_left
@@ -34,7 +37,7 @@ from app.platform.hub import Hub
 from app.platform.rate_limit import RateLimiter
 from app.platform.storage_health import StorageHealth
 from app.resources import static_dir
-from app.settings import Settings
+from app.settings import Settings, read_settings
 
 log = logging.getLogger(__name__)
 LOGIN_ATTEMPTS = 10
@@ -46,8 +49,8 @@ PARTS: tuple[PartMaker, ...] = (
     Folder.of,
     Drawings.of,
     ReplayDesk.of,
-    lambda _: Workbench(),
-    lambda _: Bench(),
+    lambda context: Workbench().watched_by(context.background, "captures"),
+    lambda context: Bench().watched_by(context.background, "walking"),
     FittingDesk.of,
     ExportDesk.of,
     StorageDesk.of,
@@ -62,13 +65,17 @@ def create_app(
     clock: Clock | None = None,
     network: Network | None = None,
     on_first_password: Callable[[str], None] | None = None,
+    ownership: Ownership | None = None,
+    on_taken_over: Callable[[], object] = lambda: None,
 ) -> FastAPI:
     """The application for `settings` (from the environment if None), reachable over `network`.
 
     Start-up migrates the database, makes the first account (telling a random password to
-    `on_first_password`), stores the shipped studies and pauses phases that a crash cut off.
+    `on_first_password`), stores the shipped studies and pauses phases that a crash cut off. Before
+    any of that it becomes the owner of the data, unless its caller did and hands the `ownership`
+    over; `on_taken_over` is called where another process has them later.
     """
-    settings = settings or Settings()
+    settings = settings or read_settings()
     clock, hub = clock or Clock(), Hub()
     storage = StorageHealth(clock, settings.data_dir, settings.low_disk_bytes, hub.publish_storage)
     context = AppContext(
@@ -77,6 +84,7 @@ def create_app(
         clock=clock,
         hub=hub,
         storage=storage,
+        background=Background(clock, hub.publish_storage),
         login_limiter=RateLimiter(LOGIN_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
         pairing_limiter=RateLimiter(PAIRING_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
         network=network or Network(),
@@ -86,10 +94,15 @@ def create_app(
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        with closing(context.database), ExitStack() as stopping:
+        with (
+            ownership or own_data(context.settings) as own,
+            closing(context.database),
+            ExitStack() as stopping,
+        ):
             try:
+                context.background.watch_loop(asyncio.get_running_loop())
                 _prepare(context, on_first_password)
-                for part in context.parts:
+                for part in (*context.parts, OwnerWatch(own, context.background, on_taken_over)):
                     part.start()
                     stopping.callback(part.stop)
             except Exception as error:

@@ -4,10 +4,17 @@ Built once in `create_app` or a command, never at import, so that two applicatio
 (tests, the rehearsal's own server) can differ.
 """
 
+import os
 from pathlib import Path
 
-from pydantic import SecretStr
-from pydantic_settings import BaseSettings, SettingsConfigDict
+from pydantic import SecretStr, ValidationError
+from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
+
+from app.errors import InvalidInput
+
+PREFIX = "REEMBODY_"
+NEVER_EMPTY = ("data_dir", "database_url")
+"""An empty value would mean somewhere else than whoever wrote it thinks of."""
 
 
 class Settings(BaseSettings):
@@ -25,7 +32,7 @@ class Settings(BaseSettings):
     are full names that the lab's name server has for this machine.
     """
 
-    model_config = SettingsConfigDict(env_prefix="REEMBODY_", frozen=True, extra="ignore")
+    model_config = SettingsConfigDict(env_prefix=PREFIX, frozen=True, extra="ignore")
 
     data_dir: Path = Path("data")
     database_url: str = ""
@@ -60,3 +67,30 @@ class Settings(BaseSettings):
         if self.database_url:
             return self.database_url
         return f"sqlite:///{(self.data_dir / 'reembody.sqlite').resolve()}"
+
+
+def read_settings() -> Settings:
+    """The settings of the environment.
+
+    Raises InvalidInput that names each variable at fault, and no value: one may hold a password.
+    """
+    for name in NEVER_EMPTY:
+        variable = f"{PREFIX}{name.upper()}"
+        given = [value for key, value in os.environ.items() if key.upper() == variable]
+        if given and not given[0].strip():
+            raise InvalidInput(
+                f"{variable} is set, but empty",
+                remedy="Unset it to work with the usual place, or give it a value",
+            )
+    try:
+        return Settings()
+    except ValidationError as error:
+        problems = "; ".join(
+            f"{PREFIX}{str(one['loc'][0]).upper()}: {one['msg']}" for one in error.errors()
+        )
+    except SettingsError as error:
+        problems = str(error)
+    raise InvalidInput(
+        f"the settings cannot be used: {problems}",
+        remedy="Correct or unset these environment variables",
+    )

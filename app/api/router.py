@@ -41,22 +41,25 @@ from app.features.results.exports.endpoints import router as exports
 from app.features.results.imports.endpoints import router as imports
 from app.features.results.preregistration.endpoints import router as preregistrations
 from app.features.results.replay.endpoints import router as replays
+from app.platform.background import Failing
 from app.platform.dependencies import API_PREFIX, Context
 
 
 class Health(BaseModel):
     """Whether the server and its database answer, and whether the record can be written.
 
-    `low_disk`: little space is left in the data folder.
+    `status` is degraded while something in the background fails, which `failing` names; `storage`
+    speaks for itself. `low_disk`: little space is left in the data folder.
     """
 
-    status: str
+    status: Literal["ok", "degraded"]
     version: str
     database: str
     storage: Literal["ok", "failing"]
     storage_since: datetime | None
     storage_reason: str | None
     low_disk: bool
+    failing: tuple[Failing, ...]
 
 
 class Refusal(BaseModel):
@@ -116,13 +119,14 @@ def get_health(context: Context) -> Health:
     """Whether the server and its database answer."""
     with context.database.reading() as db:
         db.execute(text("SELECT 1"))
-    storage = context.storage.state()
+    storage, failing = context.storage.state(), context.background.failing()
     return Health(
-        status="ok",
+        status="degraded" if failing else "ok",
         version=__version__,
         database=context.database.engine.dialect.name,
         storage=storage.status,
         storage_since=storage.since,
         storage_reason=storage.reason,
         low_disk=storage.low_disk,
+        failing=failing,
     )

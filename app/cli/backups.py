@@ -31,6 +31,7 @@ from app.features.care.opening import (
     existing_database,
     put_away_if_damaged,
 )
+from app.features.care.ownership import own_data
 from app.features.care.rights import (
     ErasuresKept,
     Tombstone,
@@ -46,7 +47,7 @@ from app.platform.folders import backups_of, home_of
 from app.platform.half_made import Notes
 from app.platform.trouble import plainly
 from app.schema_revisions import newest_revision
-from app.settings import Settings
+from app.settings import Settings, read_settings
 
 
 def back_up_to(to: Path, *, as_json: bool) -> str:
@@ -54,7 +55,7 @@ def back_up_to(to: Path, *, as_json: bool) -> str:
 
     Progress goes to standard error.
     """
-    settings = Settings()
+    settings = read_settings()
     with told_plainly():
         database = existing_database(settings)
         notes = Notes.of(settings)
@@ -151,14 +152,36 @@ def restore_from(
     Phases whose clock ran when the backup was made are paused afterwards, as after a crash. A
     damaged database is put into quarantine first. `erasures` is the list of an earlier data folder,
     whose erasures are made here, too; where there is no list at all it is asked for on a terminal,
-    and elsewhere standard error says what that may mean.
+    and elsewhere standard error says what that may mean. Nobody else may work with the data from
+    the first look at them until all of that is done.
     """
+    settings = read_settings()
+    with own_data(settings, "restore"), told_plainly():
+        return _restored(
+            path,
+            settings,
+            replace=replace,
+            even_though_active=even_though_active,
+            even_though_altered=even_though_altered,
+            erasures=erasures,
+            as_json=as_json,
+        )
+
+
+def _restored(
+    path: Path,
+    settings: Settings,
+    *,
+    replace: bool,
+    even_though_active: bool,
+    even_though_altered: bool,
+    erasures: Path | None,
+    as_json: bool,
+) -> str:
     from app.main import create_app  # a backup needs no application
 
-    settings, clock = Settings(), Clock()
-    kept = backups_of(settings)
+    clock, kept = Clock(), backups_of(settings)
     with (
-        told_plainly(),
         Counter("restoring") as counter,
         _no_folder_left(kept),
         checked_backup(path, kept, counter) as backup,

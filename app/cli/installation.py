@@ -8,30 +8,51 @@ from sqlalchemy import select
 from app.clock import Clock
 from app.database import Database, open_database
 from app.features.care.opening import prepare_database
+from app.features.care.ownership import own_data, prepared_beside_owner
 from app.models import Account
-from app.settings import Settings
+from app.settings import read_settings
 
 
 @contextmanager
-def opened_database() -> Iterator[Database]:
+def opened_database(command: str) -> Iterator[Database]:
     """The database, brought up to date as a starting server does; closed behind the block.
 
-    Raises ReembodyError for one that cannot be worked with, saying what to do.
+    For a `command` that reads, or adds rows of its own: beside a running server, too. Raises
+    ReembodyError for a database that cannot be worked with, saying what to do.
     """
-    settings = Settings()
-    prepare_database(settings, Clock())
-    database = open_database(settings.resolved_database_url)
-    try:
-        yield database
-    finally:
-        database.close()
+    settings = read_settings()
+
+    def prepare() -> None:
+        prepare_database(settings, Clock())
+
+    with prepared_beside_owner(settings, command, prepare):
+        database = open_database(settings.resolved_database_url)
+        try:
+            yield database
+        finally:
+            database.close()
+
+
+@contextmanager
+def owned_database(command: str) -> Iterator[Database]:
+    """The same for a `command` that changes what a running server knows: nobody else has the data
+    meanwhile. Raises Owned where somebody has.
+    """
+    settings = read_settings()
+    with own_data(settings, command):
+        prepare_database(settings, Clock())
+        database = open_database(settings.resolved_database_url)
+        try:
+            yield database
+        finally:
+            database.close()
 
 
 def new_token(username: str, hours: float) -> str:
     """A bearer token for an account of this installation; raises LookupError if there is none."""
     from app.features.people.accounts import issue_token  # only tokens need accounts
 
-    with opened_database() as database, database.writing() as db:
+    with opened_database("token") as database, database.writing() as db:
         account = db.scalar(select(Account).where(Account.username == username))
         if account is None:
             raise LookupError(

@@ -31,7 +31,7 @@ from app.features.record.receipts import SessionReceipt, receipt_of, receipt_tex
 from app.features.results.analysis.tables import KINDS, Kind
 from app.features.results.exports.writing import Exported, export_study, usual_kind
 from app.platform.half_made import Notes
-from app.settings import Settings
+from app.settings import read_settings
 
 SAID_EVERY_S = 5.0
 
@@ -43,8 +43,8 @@ def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
     standard error which file it is at. Raises ValueError for an unknown kind, ReembodyError for an
     unknown study or a folder that is not ours to replace, OSError where it cannot be written.
     """
-    notes = Notes.of(Settings())
-    with opened_database() as database, database.reading() as db:
+    notes = Notes.of(read_settings())
+    with opened_database("export") as database, database.reading() as db:
         chosen = usual_kind(db, study) if kind is None else _known(kind)
         done = export_study(
             db,
@@ -122,7 +122,7 @@ def verify_record(
     parts: list[str] = []
     found: dict[str, Any] = {}
     holds = True
-    with opened_database() as database, database.reading() as db:
+    with opened_database("verify") as database, database.reading() as db:
         if session_id is not None:
             receipt = _receipt(db, session_id)
             found, holds = receipt.as_json(), receipt.complete

@@ -77,10 +77,10 @@ def _own_server(data: Path | None) -> Iterator[tuple[str, str]]:
     """A server on a scratch folder (or `data`): its address and the admin's password."""
     with tempfile.TemporaryDirectory(prefix="reembody-") as scratch:
         port, password = _free_port(), secrets.token_urlsafe(12)
+        inherited = {k: v for k, v in os.environ.items() if k.upper() != "REEMBODY_DATABASE_URL"}
         environment = {
-            **os.environ,
+            **inherited,
             "REEMBODY_DATA_DIR": str(data or scratch),
-            "REEMBODY_DATABASE_URL": "",
             "REEMBODY_ADMIN_PASSWORD": password,
             # Whatever the installation opens, this one is for the rehearsal alone.
             "REEMBODY_LAN": "false",

@@ -12,6 +12,7 @@ from typing import TypeVar
 from app.clock import Clock
 from app.database import Database
 from app.lan import Network
+from app.platform.background import Background
 from app.platform.hub import Hub
 from app.platform.rate_limit import RateLimiter
 from app.platform.storage_health import StorageHealth
@@ -42,6 +43,7 @@ class AppContext:
     clock: Clock
     hub: Hub
     storage: StorageHealth
+    background: Background
     login_limiter: RateLimiter
     pairing_limiter: RateLimiter
     network: Network = field(default_factory=Network)

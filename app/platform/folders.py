@@ -5,8 +5,7 @@ import stat
 from collections.abc import Iterator
 from pathlib import Path
 
-from sqlalchemy import make_url
-
+from app.database_address import database_address
 from app.settings import Settings
 
 OTHERS = 0o077
@@ -23,7 +22,7 @@ _TRACES_IN_DATA_DIR = ("*.reembody", "walking/*", "scratch/exports/*", "*/codebo
 
 def database_file(settings: Settings) -> Path | None:
     """The embedded database's file; None for PostgreSQL, and for one in memory."""
-    url = make_url(settings.resolved_database_url)
+    url = database_address(settings.resolved_database_url)
     if url.get_backend_name() != "sqlite" or url.database in (None, "", ":memory:"):
         return None
     return Path(str(url.database))

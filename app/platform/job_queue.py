@@ -12,11 +12,12 @@ from collections.abc import AsyncIterator, Callable, Hashable
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, ParamSpec, TypeVar
+from typing import Any, ClassVar, ParamSpec, Self, TypeVar
 
 from anyio.to_thread import run_sync
 
 from app.errors import InvalidInput, NotDurable
+from app.platform.background import Background
 from app.platform.context import Part
 from app.platform.workers import Worker
 
@@ -63,6 +64,11 @@ class WorkingLine(Part, ABC):
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _waiting: int = 0
     _kept: "OrderedDict[Hashable, Any]" = field(default_factory=OrderedDict)
+
+    def watched_by(self, background: Background, name: str) -> Self:
+        """Have it noticed under a name when its process dies."""
+        self._worker.watched_by(background, name)
+        return self
 
     async def run(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
         """Have a task done.

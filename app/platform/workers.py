@@ -13,9 +13,10 @@ from collections.abc import Callable
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
-from typing import ParamSpec, TypeVar
+from typing import ParamSpec, Self, TypeVar
 
 from app.collecting import start_unhurried
+from app.platform.background import Background
 
 NICENESS = 5
 """Running sessions go first where both want the processor."""
@@ -33,7 +34,13 @@ class Worker:
 
     prepare: Callable[[], None] | None = None
     _pool: ProcessPoolExecutor | None = None
+    _watched: tuple[Background, str] | None = None
     _lock: threading.RLock = field(default_factory=threading.RLock)
+
+    def watched_by(self, background: Background, name: str) -> Self:
+        """Have it noticed under a name when the process dies without being ended."""
+        self._watched = (background, name)
+        return self
 
     def submit(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> "Future[T]":
         """Have a task done after those that wait; a dead process fails it as BrokenProcessPool."""
@@ -63,13 +70,25 @@ class Worker:
             pool.shutdown(wait=True, cancel_futures=True)
 
     def _look(self, pool: ProcessPoolExecutor, done: "Future[T]") -> None:
-        if not done.cancelled() and isinstance(done.exception(), BrokenProcessPool):
-            self._forget(pool)
+        if done.cancelled():
+            return
+        error = done.exception()
+        if isinstance(error, BrokenProcessPool):
+            if self._forget(pool) and self._watched is not None:
+                background, name = self._watched
+                background.failed(name, error)
+        elif self._watched is not None:
+            # Whatever became of the task, the process did it.
+            background, name = self._watched
+            background.well(name)
 
-    def _forget(self, pool: ProcessPoolExecutor) -> None:
+    def _forget(self, pool: ProcessPoolExecutor) -> bool:
+        """Leave a pool whose process is gone; False where that was done, or the end was wanted."""
         with self._lock:
-            if self._pool is pool:
+            known = self._pool is pool
+            if known:
                 self._pool = None
+            return known
 
 
 def _begin(prepare: Callable[[], None] | None) -> None:

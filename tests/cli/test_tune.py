@@ -35,7 +35,7 @@ def installation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "data").mkdir()
     arm = replace(default_configuration(), locked_groups=_HELD)
     wish = NewAvatar(key="arm", title="Arm", origin="by_hand", configuration=file_of(arm))
-    with opened_database() as database, database.writing() as db:
+    with opened_database("test") as database, database.writing() as db:
         create_avatar(db, "tester", wish, Clock().utc_now())
     return tmp_path
 
@@ -64,7 +64,7 @@ def test_a_tuned_configuration_is_written_and_stored_as_versions(installation: P
     figures = _figures("--avatar", "arm", "--out", out, "--save", "arm-tuned")
     assert figures["saved"] == "arm-tuned, version 1"
     written = load_avatar(out.read_text())
-    with opened_database() as database, database.reading() as db:
+    with opened_database("test") as database, database.reading() as db:
         stored = newest_version(db, avatar_by_key(db, "arm-tuned"))
         assert stored.content_hash == written.content_hash
         assert stored.origin == "tuned"
@@ -124,7 +124,7 @@ def test_gains_that_are_there_are_evaluated_and_kept(shared_data: Path) -> None:
 @pytest.mark.usefixtures("installation")
 def test_the_body_of_a_model_is_tuned_without_what_it_lacks() -> None:
     """An avatar with a skin and four fingers: its own axes, and the model stays its model."""
-    with opened_database() as database, database.writing() as db:
+    with opened_database("test") as database, database.writing() as db:
         db.add(CaptureContent(hash=HASH, size=1))
         db.flush()
         db.add(
@@ -146,7 +146,7 @@ def test_the_body_of_a_model_is_tuned_without_what_it_lacks() -> None:
         name for name in AXIS_NAMES if "Little" not in name
     }
     assert figures["summary"]["tuned"] == 8
-    with opened_database() as database, database.reading() as db:
+    with opened_database("test") as database, database.reading() as db:
         tuned = typed(newest_version(db, avatar_by_key(db, "skin-tuned")))
     assert (tuned.humanoid, tuned.colliders) == (HASH, "mesh")
 

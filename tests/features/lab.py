@@ -129,17 +129,21 @@ def error(response: Response, status: int, code: str) -> Json:
 def running_lab(
     database_url: str, clock: Clock | None = None, data_dir: Path | None = None
 ) -> Iterator[Lab]:
-    """Start the application on `database_url` and stop it afterwards."""
-    with TemporaryDirectory() as folder:
-        # Never one folder for several: each sweeps at its start what a crash left in its own.
+    """Start the application on `database_url` and stop it afterwards.
+
+    Without a `data_dir` its data folder is one of its own, which goes with it.
+    """
+    with TemporaryDirectory(prefix="reembody-lab-") as own_folder:
         settings = Settings(
             database_url=database_url,
+            data_dir=data_dir or Path(own_folder),
             admin_password=SecretStr(PASSWORD),
-            data_dir=data_dir or Path(folder),
         )
-        yield from _running(create_app(settings, clock=clock))
+        with _running(create_app(settings, clock=clock)) as lab:
+            yield lab
 
 
+@contextmanager
 def _running(app: FastAPI) -> Iterator[Lab]:
     with TestClient(app) as operator:
         lab = Lab(app, operator)

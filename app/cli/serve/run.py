@@ -18,8 +18,10 @@ from app.cli.errors import reported
 from app.cli.serve.output import addresses, certificate_text
 from app.clock import Clock
 from app.collecting import settle
+from app.database_address import first_line, shown_address
 from app.errors import InvalidInput, ReembodyError
 from app.features.care.opening import prepare_database, put_away_if_damaged
+from app.features.care.ownership import Ownership, own_data
 from app.lan import Network
 from app.lan.serving import (
     CertificateWatch,
@@ -35,10 +37,13 @@ from app.lan.serving import (
     tls_context,
 )
 from app.main import create_app
+from app.platform.background import Background
 from app.platform.trouble import in_plain_words
-from app.settings import Settings
+from app.settings import Settings, read_settings
 
 ENDS_WITHIN_S = 15.0
+CERTIFICATE = "certificate"
+"""The name of its watch among what runs in the background."""
 SWITCH_INTERVAL_S = 0.0005
 """The event loop and the telemetry writer let go of the interpreter at every call into the network
 or the database. With Python's own 5 ms, each then waits that long for a thread that computes."""
@@ -57,7 +62,15 @@ def serve_forever(
     """
     if until_input_ends:
         threading.Thread(target=_end_with_the_input, daemon=True).start()
-    settings = settings_with(given)
+    with reported():
+        settings = settings_with(given)
+        # Before anything else: even a certificate is a file of somebody's folder.
+        own = own_data(settings, port=settings.port)
+    with own:
+        _serve(settings, own, new_database=new_database)
+
+
+def _serve(settings: Settings, own: Ownership, *, new_database: bool) -> None:
     with reported():
         plan = make_plan(settings, Clock())
         watch = CertificateWatch(
@@ -65,8 +78,21 @@ def serve_forever(
         )
         watch.refresh()
         bound = _Bound(plan)
+    own.announce(bound.local[0].getsockname()[1])
     _prepare(settings, new_database=new_database)
-    app = create_app(settings, network=watch.network, on_first_password=_tell_password)
+    app = create_app(
+        settings,
+        network=watch.network,
+        on_first_password=_tell_password,
+        ownership=own,
+        # As a service manager would: sessions' phases are paused by whoever has the data now.
+        on_taken_over=lambda: os.kill(os.getpid(), signal.SIGTERM),
+    )
+    background: Background = app.state.context.background
+    background.watch_process()
+    watch.report_to(
+        lambda error: background.failed(CERTIFICATE, error), lambda: background.well(CERTIFICATE)
+    )
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     settle()
     print(addresses(watch.network.reach, _where(settings)), flush=True)
@@ -86,8 +112,11 @@ def serve_forever(
 
 
 def settings_with(given: Mapping[str, object]) -> Settings:
-    """The settings of the environment, with those that were `given` in their place."""
-    return Settings().model_copy(
+    """The settings of the environment, with those that were `given` in their place.
+
+    Raises InvalidInput where a variable cannot be one.
+    """
+    return read_settings().model_copy(
         update={name: value for name, value in given.items() if value is not None}
     )
 
@@ -117,7 +146,7 @@ def renew_certificate(*, new_authority: bool, as_json: bool) -> str:
 
 
 class _Bound:
-    """The ports, taken before anything else is touched: two servers must not share the data."""
+    """The ports, taken before the database is looked at."""
 
     def __init__(self, plan: Plan) -> None:
         self.local = bind(plan.local_hosts, plan.local_port, "--port")
@@ -154,7 +183,10 @@ def _config(app: object, settings: Settings) -> uvicorn.Config:
 
 def _prepare(settings: Settings, *, new_database: bool) -> None:
     with reported():
-        kept = prepare_database(settings, Clock(), new_database=new_database, to_write=True)
+        try:
+            kept = prepare_database(settings, Clock(), new_database=new_database, to_write=True)
+        except DBAPIError as error:
+            fail(f"the database cannot be opened: {first_line(error)}")
     if kept is not None:
         print(f"Backup     {kept}, made before the database was migrated", flush=True)
 
@@ -188,7 +220,7 @@ def _end_with_the_input() -> None:
 
 def _where(settings: Settings) -> str:
     if settings.database_url:
-        return settings.database_url.rpartition("@")[2]
+        return shown_address(settings.database_url)
     return str(settings.data_dir.resolve())
 
 

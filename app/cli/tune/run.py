@@ -9,7 +9,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from app.cli.tune.storage import check_key, save_tuned, stored_avatar
+from app.cli.tune.storage import check_key, lab_database, save_tuned, stored_avatar
+from app.database import Database
 from app.protocol.avatar import avatar_text
 from app.science.avatar.body import Figure
 from app.science.avatar.configuration import Configuration
@@ -81,9 +82,16 @@ def carry_out(order: TuneOrder) -> Tuned:
     )
     if order.evaluate and (order.save is not None or order.out is not None):
         raise ValueError("--evaluate changes nothing, so there is nothing to --save or write --out")
+    if order.save is None and order.avatar is None:
+        return _carried_out(order, options, None)
     if order.save is not None:
         check_key(order.save)
-    configuration, figure = _avatar(order)
+    with lab_database(saves=order.save is not None) as database:
+        return _carried_out(order, options, database)
+
+
+def _carried_out(order: TuneOrder, options: TuningOptions, database: Database | None) -> Tuned:
+    configuration, figure = _avatar(order, database)
     # A capture that cannot be read is said before the tuning.
     movement = None if order.capture is None else _movement(order.capture, order.stature_m)
     started_s = time.process_time()
@@ -105,15 +113,15 @@ def carry_out(order: TuneOrder) -> Tuned:
     if order.out is not None:
         order.out.write_text(avatar_text(report.configuration), encoding="utf-8")
     saved = None
-    if order.save is not None and isinstance(report, TuningReport):
-        saved = save_tuned(order.save, report, tracking)
+    if database is not None and order.save is not None and isinstance(report, TuningReport):
+        saved = save_tuned(database, order.save, report, tracking)
     return Tuned(order, report, tracking, cpu_s, saved)
 
 
-def _avatar(order: TuneOrder) -> tuple[Configuration, Figure | None]:
+def _avatar(order: TuneOrder, database: Database | None) -> tuple[Configuration, Figure | None]:
     found, figure = default_configuration(), None
-    if order.avatar is not None:
-        found, figure = stored_avatar(order.avatar)
+    if database is not None and order.avatar is not None:
+        found, figure = stored_avatar(database, order.avatar)
     if order.mass_kg is not None:
         found = replace(found, total_mass_kg=order.mass_kg)
     return found, figure

@@ -1,11 +1,15 @@
 """Configurations of avatars in the lab's database, for the command `tune`."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from pydantic import TypeAdapter, ValidationError
 from sqlalchemy.orm import Session
 
-from app.cli.installation import opened_database
+from app.cli.installation import opened_database, owned_database
 from app.cli.tune.output_json import report_json
 from app.clock import Clock
+from app.database import Database
 from app.features.movement.avatar import (
     SHIPPED,
     AvatarKey,
@@ -41,12 +45,21 @@ def check_key(key: str) -> None:
         ) from None
 
 
-def stored_avatar(key: str) -> tuple[Configuration, Figure | None]:
+@contextmanager
+def lab_database(*, saves: bool) -> Iterator[Database]:
+    """The lab's database. Where the tuning `saves` into it, nobody else has it from now until then:
+    that is said before the tuning takes minutes.
+    """
+    with owned_database("tune") if saves else opened_database("tune") as database:
+        yield database
+
+
+def stored_avatar(database: Database, key: str) -> tuple[Configuration, Figure | None]:
     """The newest version of an avatar, without parts that its model lacks, and the model.
 
     Raises NotFound with the keys there are.
     """
-    with opened_database() as database, database.writing() as db:
+    with database.writing() as db:
         # A server that was never started has not put the product's own there yet.
         if SHIPPED not in newest_numbers(db):
             add_shipped_avatar(db, Clock().utc_now())
@@ -57,9 +70,11 @@ def stored_avatar(key: str) -> tuple[Configuration, Figure | None]:
     return configuration, figure
 
 
-def save_tuned(key: str, report: TuningReport, tracking: Followed | None) -> str:
+def save_tuned(
+    database: Database, key: str, report: TuningReport, tracking: Followed | None
+) -> str:
     """Store it under a new key, or as the next version of one; return `key, version n`."""
-    with opened_database() as database, database.writing() as db:
+    with database.writing() as db:
         row = _appended(db, key, report, tracking)
         return f"{row.key}, version {row.number}"
 

@@ -33,6 +33,12 @@ class CertificateWatch:
     tls: ssl.SSLContext | None = None
     look: Callable[[], Machine] = look_around
     identity: Identity | None = None
+    _failed: Callable[[Exception], object] = lambda _: None
+    _well: Callable[[], object] = lambda: None
+
+    def report_to(self, failed: Callable[[Exception], object], well: Callable[[], object]) -> None:
+        """Have each look noticed: `failed` with what went wrong, or `well`."""
+        self._failed, self._well = failed, well
 
     def refresh(self) -> None:
         """Look once; raises ReembodyError where there is no usable certificate."""
@@ -58,3 +64,9 @@ class CertificateWatch:
                 await asyncio.to_thread(self.refresh)
             except (ReembodyError, OSError, ValueError) as error:
                 log.error("the certificate could not be renewed: %s", error)
+                self._failed(error)
+            except Exception as error:  # whatever it is, the next look may be luckier
+                log.exception("the certificate could not be looked at")
+                self._failed(error)
+            else:
+                self._well()

@@ -26,10 +26,12 @@ from app.features.movement.walking.progress import FitFolder, Progress
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
 from app.features.movement.walking.tasks import fit_model
 from app.models import WalkingModelRow
+from app.platform.background import Background
 from app.platform.context import AppContext, Part
 from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
+QUEUE = "walking-fits"
 BROKE = "the process that fitted it ended: resume it, and if that fails too, look at the log"
 
 
@@ -56,6 +58,7 @@ class FittingDesk(Part):
     url: str
     database: Database
     clock: Clock
+    background: Background
     _fits: dict[str, _Fit] = field(default_factory=dict)
     _lock: threading.RLock = field(default_factory=threading.RLock)
     _maker: ThreadPoolExecutor = field(
@@ -71,6 +74,7 @@ class FittingDesk(Part):
             settings.resolved_database_url,
             context.database,
             context.clock,
+            context.background,
         )
 
     def start(self) -> None:
@@ -101,7 +105,8 @@ class FittingDesk(Part):
         fit = _Fit(model_id, order, files)
         with self._lock:
             self._fits[model_id] = fit
-        self._maker.submit(self._make, fit)
+        done = self._maker.submit(self._make, fit)
+        done.add_done_callback(lambda one: self.background.watched(QUEUE, one))
 
     def halt(self, model_id: str) -> None:
         """End the process of a fit, or take it out of the queue."""

@@ -22,6 +22,8 @@ SEVERITIES: dict[str, Severity] = {
     "clock_unknown": "warning",
     "clock_uncertain": "info",
     "storage": "critical",
+    "writer_failed": "critical",
+    "background_failed": "warning",
     "stop_rule_met": "critical",
     "stop_rule_near": "warning",
     "stop_rule_unknown": "warning",

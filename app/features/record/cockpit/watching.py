@@ -11,6 +11,7 @@ from app.errors import ReembodyError
 from app.features.record.cockpit.view import session_view
 from app.features.record.sessions import protocol_of_session
 from app.platform.access import Caller, is_blind, session_by_id
+from app.platform.background import Failing
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, SignedIn, get_caller
 
@@ -77,18 +78,23 @@ async def get_live(
     session_id: str, reader: Annotated[Reader, Depends(_reader)], context: Context
 ) -> AsyncIterator[ServerSentEvent]:
     """News of a session: `session` on every change, `telemetry` a few times a second, and
-    `storage` at first and when the record ceases to be written, or the disk gets low.
+    `storage` at first and when the record ceases to be written, or the disk gets low, and
+    `background` when something that runs beside the requests fails or works again.
 
     Ends when the login does.
     """
     with context.hub.subscribe(session_id, "telemetry") as subscription:
         news: dict[str, Any] = {"session": None}
-        told = None
+        told, failing_before = None, tuple[Failing, ...]()
         while await reader.may_go_on(now="access" in news):
             storage = await asyncio.to_thread(context.storage.state)
             if storage != told:
                 yield ServerSentEvent(data=storage, event="storage")
                 told = storage
+            failing = context.background.failing()
+            if failing != failing_before:
+                yield ServerSentEvent(data=failing, event="background")
+                failing_before = failing
             if "session" in news:
                 try:
                     event = await reader.session()

@@ -22,6 +22,7 @@ from app.rows import insert_rows
 
 log = logging.getLogger(__name__)
 TURN_S = 0.2
+FOLDER = "telemetry-folder"
 CHUNKS = cast("Table", TelemetryChunk.__table__)
 
 
@@ -48,8 +49,7 @@ class Folder(Part):
 
     def start(self) -> None:
         """Begin to fold."""
-        self._thread = threading.Thread(target=self._run, name="telemetry-folder", daemon=True)
-        self._thread.start()
+        self._thread = self.context.background.thread(FOLDER, self._run)
 
     def stop(self) -> None:
         """End after the turn under way."""
@@ -68,10 +68,13 @@ class Folder(Part):
                 checkpoints.turn()
                 if self.encoder is not None and self.context.hub.any_headset_connected:
                     self.encoder.begin()
+                self.context.background.well(FOLDER)
             except Exception as error:  # the next turn tries again; nothing is lost meanwhile
+                # Where storage is at fault, its own health says so.
                 trouble = explain(error)
                 if trouble is None:
                     log.exception("batches could not be folded; they stay as they are")
+                    self.context.background.failed(FOLDER, error)
                 else:
                     log.error("batches could not be folded and stay: %s", trouble.message)  # noqa: TRY400 - no fault of the program
                 self._stop.wait(1.0)

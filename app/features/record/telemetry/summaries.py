@@ -31,8 +31,10 @@ from app.models import (
 )
 from app.platform.access import session_by_id
 from app.platform.context import AppContext, Part
+from app.platform.trouble import explain
 
 log = logging.getLogger(__name__)
+SUMMARIES_OF_PHASES = "phase-summaries"
 Row = JointErrorRow | JointErrorCourseRow | PhaseLatency | PhaseQuality
 Tables = tuple[type[Row], ...]
 Summary = Callable[[Phase, Sequence[Run]], Sequence[Row]]
@@ -98,9 +100,12 @@ class Summariser(Part):
                     return
                 replace_rows(db, session_id, phase_id, rows, wanted)
             self._tell_doubts(session_id, phase_id)
-        except Exception:
+        except Exception as error:
             log.exception("summaries of phase %s of %s failed", phase_id, session_id)
+            if explain(error) is None:
+                self.context.background.failed(SUMMARIES_OF_PHASES, error)
         else:
+            self.context.background.well(SUMMARIES_OF_PHASES)
             self.context.hub.publish(session_id, "session")
 
     def _tell_doubts(self, session_id: str, phase_id: int) -> None:

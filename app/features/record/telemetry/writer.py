@@ -26,6 +26,9 @@ from app.wire import Batch, FrameFlags, Probed, Produced, Report, flag_batches
 
 log = logging.getLogger(__name__)
 RETRY_S = 0.5
+WRITER = "telemetry-writer"
+MOST_TRIES = 3
+"""How often messages are tried that end the writer itself, before their senders are refused."""
 
 
 class Sender(Protocol):
@@ -98,6 +101,7 @@ class TelemetryWriter(Part):
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _wake: threading.Event = field(default_factory=threading.Event)
     _stopping: bool = False
+    _tries: int = 0
     _thread: threading.Thread | None = None
 
     @classmethod
@@ -107,8 +111,7 @@ class TelemetryWriter(Part):
 
     def start(self) -> None:
         """Begin to commit."""
-        self._thread = threading.Thread(target=self._run, name="telemetry-writer", daemon=True)
-        self._thread.start()
+        self._thread = self.context.background.thread(WRITER, self._run, critical=True)
 
     def stop(self) -> None:
         """Commit what waits and end."""
@@ -133,9 +136,29 @@ class TelemetryWriter(Part):
             with self._lock:
                 arrivals, self._waiting = self._waiting, []
             if arrivals:
-                self._store_or_wait(arrivals)
+                self._store_or_keep(arrivals)
+            self.context.background.well(WRITER)
+            self._record_incidents()
             if self._stopping and not self._waiting:
                 return
+
+    def _store_or_keep(self, arrivals: list[Arrival]) -> None:
+        """Where it ends by an error that nobody foresaw, nothing that waits is lost: the writer is
+        begun anew and tries the same messages again, but not for ever.
+        """
+        try:
+            self._store_or_wait(arrivals)
+        except Exception as error:
+            self._tries += 1
+            if self._tries < MOST_TRIES:
+                with self._lock:
+                    self._waiting = arrivals + self._waiting
+            else:
+                self._tries = 0
+                for sender in {id(one.sender): one.sender for one in arrivals}.values():
+                    sender.fail(error)
+            raise
+        self._tries = 0
 
     def _store_or_wait(self, arrivals: Sequence[Arrival]) -> None:
         while True:
@@ -156,6 +179,17 @@ class TelemetryWriter(Part):
             condition = Condition("storage", outage.reason)
             raised = Change("raised", condition, outage.since)
             cleared = Change("cleared", condition, outage.until)
+            for session_id in self.context.hub.sessions_with_headsets():
+                for change in (raised, cleared):
+                    self.submit(Arrival(session_id, Nobody(), AlarmContent(change)))
+
+    def _record_incidents(self) -> None:
+        """The same for what did not work in the background."""
+        for incident in self.context.background.take_incidents():
+            code = "writer_failed" if incident.name == WRITER else "background_failed"
+            condition = Condition(code, f"{incident.name}: {incident.error}")
+            raised = Change("raised", condition, incident.since)
+            cleared = Change("cleared", condition, incident.until)
             for session_id in self.context.hub.sessions_with_headsets():
                 for change in (raised, cleared):
                     self.submit(Arrival(session_id, Nobody(), AlarmContent(change)))

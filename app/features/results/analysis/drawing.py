@@ -76,7 +76,13 @@ class Drawings(Part):
     @classmethod
     def of(cls, context: AppContext) -> Self:
         """The drawings of a server's studies."""
-        return cls(context.settings.resolved_database_url, context.clock.utc_now)
+        background = context.background
+        return cls(
+            context.settings.resolved_database_url,
+            context.clock.utc_now,
+            _worker=Worker().watched_by(background, "figures"),
+            _tester=Worker().watched_by(background, "statistics"),
+        )
 
     def dashboard(
         self,

@@ -21,9 +21,11 @@ from app.errors import NotFound, NotNow
 from app.features.results.exports.jobs import KEPT, Job
 from app.features.results.exports.orders import Made, NotMade, Order
 from app.features.results.exports.schemas import ExportTrouble, ExportView
+from app.platform.background import Background
 from app.platform.context import AppContext, Part
 
 log = logging.getLogger(__name__)
+QUEUE = "exports"
 AT_ONCE = 5
 """How many a person may have waiting or under way."""
 ENDED = NotMade(
@@ -48,6 +50,7 @@ class ExportDesk(Part):
     url: str
     clock: Clock
     keep_free_bytes: int
+    background: Background
     _jobs: dict[str, Job] = field(default_factory=dict)
     _lock: threading.RLock = field(default_factory=threading.RLock)
     _maker: ThreadPoolExecutor = field(
@@ -63,6 +66,7 @@ class ExportDesk(Part):
             settings.resolved_database_url,
             context.clock,
             settings.low_disk_bytes,
+            context.background,
         )
 
     def start(self) -> None:
@@ -92,7 +96,7 @@ class ExportDesk(Part):
                 )
             self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             self._jobs[job.id] = job
-            self._maker.submit(self._make, job)
+            self._maker.submit(self._make_or_fail, job)
             return self._view(job)
 
     def exports_of(self, owner: str) -> list[ExportView]:
@@ -131,6 +135,16 @@ class ExportDesk(Part):
     def _view(self, job: Job) -> ExportView:
         return job.view(self.clock.monotonic_ns())
 
+    def _make_or_fail(self, job: Job) -> None:
+        """Whatever happens, nobody waits for ever, and the next one is made."""
+        try:
+            self._make(job)
+        except Exception as error:
+            log.exception("an export could not be made")
+            self.background.failed(QUEUE, error)
+            job.trouble = ExportTrouble(message=ENDED.message, remedy=ENDED.remedy)
+            job.state = "failed"
+
     def _make(self, job: Job) -> None:
         order = Order(
             url=self.url,
@@ -149,11 +163,15 @@ class ExportDesk(Part):
             future = job.worker.submit(make_archive, order)
         try:
             result = future.result()
-        except (BrokenProcessPool, CancelledError):
+            self.background.well(QUEUE)
+        except (BrokenProcessPool, CancelledError) as error:
             result = ENDED
-        except Exception:
+            if not job.given_up:
+                self.background.failed(QUEUE, error)
+        except Exception as error:
             log.exception("an export could not be made")
             result = ENDED
+            self.background.failed(QUEUE, error)
         finally:
             job.worker.end()
         self._settle(job, result)
@@ -188,7 +206,11 @@ class ExportDesk(Part):
         self._drop(lambda job: job.expires_at is not None and job.expires_at <= now)
 
     def _forget_in_time(self) -> None:
-        self._forget_old()
+        try:
+            self._forget_old()
+        except OSError as error:
+            log.exception("a file that is due could not be removed")
+            self.background.failed(QUEUE, error)
         with self._lock:
             if any(job.state == "ready" for job in self._jobs.values()):
                 self._forget_later()

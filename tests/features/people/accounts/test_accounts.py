@@ -124,10 +124,12 @@ def test_getting_it_right_forgets_the_wrong_ones(fresh_lab: Lab) -> None:
         ok(log_in(client))
 
 
-def test_a_first_start_makes_a_random_password_and_tells_it_once(database_url: str) -> None:
+def test_a_first_start_makes_a_random_password_and_tells_it_once(
+    database_url: str, tmp_path: Path
+) -> None:
     """Without REEMBODY_ADMIN_PASSWORD each installation gets its own."""
     told: list[str] = []
-    settings = Settings(database_url=database_url, admin_password=None)
+    settings = Settings(data_dir=tmp_path, database_url=database_url, admin_password=None)
     for _ in range(2):
         with TestClient(create_app(settings, on_first_password=told.append)) as client:
             assert len(told) == 1
@@ -135,10 +137,13 @@ def test_a_first_start_makes_a_random_password_and_tells_it_once(database_url: s
     assert len(told[0]) >= 16
 
 
-def test_a_given_password_is_not_told(database_url: str, caplog: pytest.LogCaptureFixture) -> None:
+def test_a_given_password_is_not_told(
+    database_url: str, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
     """With REEMBODY_ADMIN_PASSWORD nothing is printed or logged."""
     told: list[str] = []
-    settings = Settings(database_url=database_url, admin_password=SecretStr(PASSWORD))
+    secret = SecretStr(PASSWORD)
+    settings = Settings(data_dir=tmp_path, database_url=database_url, admin_password=secret)
     with caplog.at_level(logging.DEBUG):
         app = create_app(settings, on_first_password=told.append)
         with TestClient(app) as client:
@@ -148,11 +153,12 @@ def test_a_given_password_is_not_told(database_url: str, caplog: pytest.LogCaptu
     assert PASSWORD not in repr(settings)
 
 
-def test_a_later_start_does_not_change_the_password(database_url: str) -> None:
+def test_a_later_start_does_not_change_the_password(database_url: str, tmp_path: Path) -> None:
     """The variable makes the first account; it never overwrites one."""
     with running_lab(database_url):
         pass
-    settings = Settings(database_url=database_url, admin_password=SecretStr("another one"))
+    other = SecretStr("another one")
+    settings = Settings(data_dir=tmp_path, database_url=database_url, admin_password=other)
     with TestClient(create_app(settings)) as client:
         ok(log_in(client))
         error(log_in(client, password="another one"), 401, "not_signed_in")

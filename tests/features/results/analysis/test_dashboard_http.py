@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
@@ -13,9 +14,11 @@ from tests.features.builders import STUDY, SessionSpec, build_session
 
 
 @pytest.fixture
-def client(sqlite_url: str) -> Iterator[TestClient]:
+def client(sqlite_url: str, tmp_path: Path) -> Iterator[TestClient]:
     """A signed-in client of an application with two simulated sessions."""
-    app = create_app(Settings(database_url=sqlite_url, admin_password=SecretStr("secret-words")))
+    secret = SecretStr("secret-words")
+    settings = Settings(data_dir=tmp_path, database_url=sqlite_url, admin_password=secret)
+    app = create_app(settings)
     with TestClient(app) as client:
         with app.state.context.database.writing() as db:
             build_session(db, SessionSpec("SIM-0001", kind="simulated"))

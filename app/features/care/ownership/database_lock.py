@@ -1,0 +1,118 @@
+"""The lock of a PostgreSQL database: an advisory lock of a session, on a connection of its own.
+
+The connection belongs to no pool, so nothing recycles it, and the server lets go of the lock when
+the connection ends, however that happens. Who holds it stands in the connection's name. It has to
+reach the server itself: behind a pooler that hands connections round (PgBouncer's transaction mode)
+a session's lock is worth nothing, which `is_held` notices.
+"""
+
+import contextlib
+import re
+
+from sqlalchemy import Connection, text
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError
+
+from app.database_address import connected, disconnect, first_line, shown_address
+from app.errors import NotDurable
+from app.features.care.ownership.owner import Owned, Owner
+
+KEY = int.from_bytes(b"reembody", "big")
+"""Of the lock, in every database: its first half is the `classid` of `pg_locks`, its second the
+`objid`."""
+LONGEST_NAME = 63
+"""What PostgreSQL keeps of a connection's name."""
+_NAME = re.compile(r"reembody (\S+) (\d+) (\d+|-) (\S*)")
+"""Command, process id, port, machine."""
+_MINE = "locktype = 'advisory' AND classid = :high AND objid = :low AND objsubid = 1 AND granted"
+_KEYS = {"key": KEY, "high": KEY >> 32, "low": KEY & 0xFFFFFFFF}
+_ENDED_NOTICED_BY_SERVER = (
+    "SET tcp_keepalives_idle = 10",
+    "SET tcp_keepalives_interval = 5",
+    "SET tcp_keepalives_count = 3",
+)
+"""A machine that lost its power says no farewell: else its lock would stand for two hours."""
+
+
+class DatabaseLock:
+    """The lock on the database at `url`, held from its making on.
+
+    Raises Owned, and what `connected` raises.
+    """
+
+    def __init__(self, url: str, owner: Owner) -> None:
+        self._url, self._owner = url, owner
+        self._connection = self._taken()
+
+    def announce(self, owner: Owner) -> None:
+        """Name the connection after who holds it."""
+        self._owner = owner
+        with contextlib.suppress(SQLAlchemyError):
+            _name(self._connection, owner)
+
+    def is_held(self) -> bool:
+        """Whether this connection still holds it; asks the server."""
+        query = f"SELECT count(*) FROM pg_locks WHERE pid = pg_backend_pid() AND {_MINE}"  # noqa: S608 - constants
+        try:
+            return bool(self._connection.execute(text(query), _KEYS).scalar())
+        except SQLAlchemyError:  # also that of a connection which is closed already
+            return False
+
+    def take_again(self) -> None:
+        """Connect anew and take it; raises as the first time."""
+        disconnect(self._connection)
+        self._connection = self._taken()
+
+    def release(self) -> None:
+        """Let go."""
+        disconnect(self._connection)
+
+    def _taken(self) -> Connection:
+        connection = connected(self._url)
+        try:
+            for statement in _ENDED_NOTICED_BY_SERVER:
+                connection.execute(text(statement))
+            _name(connection, self._owner)
+            if not connection.execute(text("SELECT pg_try_advisory_lock(:key)"), _KEYS).scalar():
+                what = f"the database {shown_address(self._url)}"
+                raise Owned(what, _holder(connection))
+        except DBAPIError as error:
+            disconnect(connection)
+            raise NotDurable(
+                f"the database {shown_address(self._url)} cannot be locked: {first_line(error)}",
+                remedy="See whether it runs and is whole, then try again.",
+            ) from error
+        except Owned:
+            disconnect(connection)
+            raise
+        return connection
+
+
+def _name(connection: Connection, owner: Owner) -> None:
+    host = re.sub(r"[^\x21-\x7e]", "?", owner.host)
+    name = f"reembody {owner.command} {owner.pid} {owner.port or '-'} {host}"
+    connection.execute(
+        text("SELECT set_config('application_name', :name, false)"), {"name": name[:LONGEST_NAME]}
+    )
+
+
+def _holder(connection: Connection) -> Owner | None:
+    """Who holds it; None where this role may not read another one's connections."""
+    found = connection.execute(
+        text(
+            "SELECT application_name, backend_start FROM pg_stat_activity WHERE pid IN "  # noqa: S608 - constants
+            f"(SELECT pid FROM pg_locks WHERE {_MINE} AND database ="
+            " (SELECT oid FROM pg_database WHERE datname = current_database()))"
+        ),
+        _KEYS,
+    ).first()
+    named = None if found is None else _NAME.match(found.application_name or "")
+    if found is None or named is None:
+        return None
+    command, pid, port, host = named.groups()
+    return Owner(
+        pid=int(pid),
+        port=None if port == "-" else int(port),
+        host=host,
+        since=found.backend_start.isoformat(timespec="seconds"),
+        command=command,
+    )

@@ -1,0 +1,140 @@
+"""The operating system's lock on a folder: held by an open file, gone with its process.
+
+The lock is on the file `owner.lock` in the folder, which is never removed, so every path that leads
+to the folder leads to the same lock. Its text says who holds it, and means nothing by itself: what
+counts is the lock. It is `flock`, which belongs to the open file. No process that this one starts
+inherits the file, and a plain fork closes it again, so that a worker which outlives its server
+holds nothing; and closing some other handle, as with POSIX record locks, loses nothing.
+"""
+
+import errno
+import os
+import sys
+import time
+import weakref
+from pathlib import Path
+
+from app.errors import NotDurable
+from app.features.care.ownership.owner import Owned, Owner
+
+NAME = "owner.lock"
+_TRIES = 20
+_SETTLES_S = 0.02
+"""How long an owner needs to write its text, many times over."""
+_HELD = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
+
+
+class FolderLock:
+    """The lock on a folder, held from its making on. Raises Owned, and NotDurable where the folder
+    cannot be written or its file system has no locks.
+    """
+
+    def __init__(self, folder: Path, owner: Owner) -> None:
+        self.folder = folder.resolve()
+        self._file, self._owner = self.folder / NAME, owner
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            self._handle: int | None = self._taken()
+        except OSError as error:
+            raise NotDurable(
+                f"the folder {self.folder} cannot be locked: {error.strerror or error}",
+                value=str(self.folder),
+                remedy="Check that it may be written here and is on a disk of this machine: some "
+                "network file systems have no locks.",
+            ) from error
+        _HOLDING.add(self)
+        self.announce(owner)
+
+    def announce(self, owner: Owner) -> None:
+        """Write down who holds it; a full disk keeps nobody from holding it."""
+        self._owner = owner
+        text = owner.as_text().encode()
+        if self._handle is not None:
+            try:
+                # In place first: the block is there already, and a full disk gives no other.
+                os.lseek(self._handle, 0, os.SEEK_SET)
+                os.write(self._handle, text)
+                os.ftruncate(self._handle, len(text))
+            except OSError:
+                return
+
+    def is_held(self) -> bool:
+        """Whether others still meet this lock: not where somebody removed or replaced its file."""
+        return self._handle is not None and _is_at(self._handle, self._file)
+
+    def take_again(self) -> None:
+        """Lock the file that is there now; raises as the first time."""
+        before, self._handle = self._handle, self._taken()
+        if before is not None:
+            os.close(before)
+        self.announce(self._owner)
+
+    def release(self) -> None:
+        """Let go; the file stays, since removing it would be a race with the next owner."""
+        handle, self._handle = self._handle, None
+        _HOLDING.discard(self)
+        if handle is not None:
+            os.close(handle)
+
+    def forget(self) -> None:
+        """In a fork: the lock is the parent's, and ends with the parent."""
+        self.release()
+
+    def _taken(self) -> int:
+        for _ in range(_TRIES):
+            handle = os.open(self._file, os.O_RDWR | os.O_CREAT, 0o644)
+            try:
+                _lock(handle)
+            except OSError as error:
+                os.close(handle)
+                if error.errno in _HELD:
+                    raise Owned(f"the data folder {self.folder}", self._holder()) from None
+                raise
+            if _is_at(handle, self._file):
+                return handle
+            # Somebody replaced the file in between.
+            os.close(handle)
+        raise OSError(errno.EAGAIN, "its lock file is replaced again and again")
+
+    def _holder(self) -> Owner | None:
+        # Whoever has just taken it may not have replaced the text of the owner before.
+        time.sleep(_SETTLES_S)
+        try:
+            return Owner.from_text(self._file.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return None
+
+
+_HOLDING: "weakref.WeakSet[FolderLock]" = weakref.WeakSet()
+
+
+def _forget_all() -> None:
+    for lock in list(_HOLDING):
+        lock.forget()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_all)
+
+
+def _is_at(handle: int, path: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(handle), path.stat())
+    except OSError:
+        return False
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    _FAR = 1 << 30
+    """A locked byte cannot be read there, so it is one far behind the text."""
+
+    def _lock(handle: int) -> None:
+        os.lseek(handle, _FAR, os.SEEK_SET)
+        msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+else:
+    import fcntl
+
+    def _lock(handle: int) -> None:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,0 +1,238 @@
+"""A second server, or a command that writes, on data that a server has: refused, nothing touched.
+
+The short form tries a few times what `--long` tries fifty times.
+"""
+
+import asyncio
+import contextlib
+import json
+import signal
+import subprocess
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import httpx2
+import pytest
+from sqlalchemy import func, select
+
+from app.features.record.sessions import events_of
+from app.models import SessionEvent
+from app.rehearsal.cast import answer, operate
+from app.rehearsal.rehearse import RehearsalPlan, assembled
+from tests.faults.commands import UNUSABLE, reembody
+from tests.faults.figures import note
+from tests.faults.record import record_of
+from tests.faults.short_study import KEY, Watch, add_short_study
+from tests.rehearsal.ledger import LedgerJournal
+from tests.support.nursery import Child, Wish, nursery
+from tests.support.postgres import fresh_postgres
+from tests.support.server import ADMIN_PASSWORD, LiveServer, free_port
+
+SHORT, LONG = 3, 50
+HAND = 2
+"""The id of the first task phase."""
+CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}
+ANSWERS_WITHIN_S = 60.0
+
+
+@pytest.fixture
+def times(request: pytest.FixtureRequest) -> int:
+    """How often something is tried."""
+    return LONG if request.config.getoption("--long") else SHORT
+
+
+def test_of_two_servers_started_at_once_one_serves(tmp_path: Path, times: int) -> None:
+    """Whichever is first; the other ends in a sentence. A session that runs gets no event."""
+    server = LiveServer(tmp_path / "live")
+    with server:
+        session_id = running_session(server)
+    before = event_count(server, session_id)
+    outcomes = []
+    for _ in range(times):
+        with pair(server, server._full_environment()) as (serving, refused):
+            outcomes.append(len(serving))
+            for child, said in refused:
+                assert child.wait(60.0) == UNUSABLE, said.read_text()
+                assert f"process id {serving[0].pid}" in said.read_text()
+                assert "Traceback" not in said.read_text()
+    note(40, f"{times} pairs", "times that exactly one served", outcomes.count(1))
+    assert outcomes == [1] * times
+    added = event_count(server, session_id) - before
+    note(40, f"{times} pairs", "events added to a session that was paused", added)
+    assert added == 0
+
+
+def test_a_second_server_leaves_a_running_phase_and_an_export_alone(
+    live_server: LiveServer, times: int
+) -> None:
+    """Refused with process and port, in one line; nothing is paused, deleted or said to anybody."""
+    asyncio.run(refused_beside_a_running_phase(live_server, times))
+
+
+async def refused_beside_a_running_phase(server: LiveServer, times: int) -> None:
+    """Second servers, one after the other, while a participant reaches."""
+    plan = RehearsalPlan(server.url, add_short_study(server), password=ADMIN_PASSWORD)
+    async with assembled(plan, journal=LedgerJournal()) as cast, asyncio.TaskGroup() as group:
+        playing = [
+            group.create_task(work) for work in (cast.headset.run(), operate(cast), answer(cast))
+        ]
+        await Watch(cast).running(HAND)
+        refused = await asyncio.to_thread(second_servers, server, times)
+        await Watch(cast).running(HAND if times == SHORT else HAND + 1)
+        for task in playing:
+            task.cancel()
+        session_id = cast.operator.session_id
+    with record_of(server) as db:
+        kinds = [event.type for event in events_of(db, session_id)]
+    note(40, f"{times} starts on a served folder", "refused", refused)
+    note(40, f"{times} starts on a served folder", "pauses of the session", paused(kinds))
+    assert refused == times
+    assert paused(kinds) == 0
+
+
+def second_servers(server: LiveServer, times: int) -> int:
+    """How many of them were refused as they should be; the export that is there stays."""
+    with server.client() as client:
+        assert client.post("/api/login", json=CREDENTIALS).is_success
+        export, refused = made_export(client), 0
+        for _ in range(times):
+            said = reembody(server, "serve", "--port", free_port())
+            assert f"process id {server.pid} on port {server.port}" in said.err
+            assert said.err.count("\n") == 1
+            refused += said.code == UNUSABLE
+        assert client.get(f"/api/exports/{export}/file").is_success
+        assert client.get("/api/health").json()["status"] == "ok"
+        return refused
+
+
+def paused(kinds: Sequence[str]) -> int:
+    """How often a phase was paused."""
+    return sum("paused" in kind for kind in kinds)
+
+
+def test_commands_that_write_are_refused_and_those_that_read_are_not(
+    live_server: LiveServer, tmp_path: Path
+) -> None:
+    """Restoring and storing a tuning need the data for themselves; the rest works beside it."""
+    session_id, file = running_session(live_server), tmp_path / "all.reembody"
+    works = [
+        ("backup", file),
+        ("verify", "--session", session_id),
+        ("export", "--study", KEY, "--kind", "test", "--to", tmp_path / "export"),
+        ("token",),
+        ("tls", "show"),
+    ]
+    for command in works:
+        said = reembody(live_server, *command)
+        assert said.code in (0, 1), said.err
+        assert "in use" not in said.err
+    before = event_count(live_server, session_id)
+    for command in (
+        ("restore", file, "--replace", "--even-though-active"),
+        ("tune", "--save", "mine"),
+        ("rehearse", "--data", live_server.data_dir),
+    ):
+        said = reembody(live_server, *command)
+        assert said.code == UNUSABLE, said.err
+        assert f"process id {live_server.pid} on port {live_server.port}" in said.err
+        assert "Traceback" not in said.err
+    assert event_count(live_server, session_id) == before
+
+
+def test_a_database_of_postgres_has_one_server(tmp_path: Path) -> None:
+    """Whatever the data folders: started at once, and one after the other."""
+    with fresh_postgres() as url:
+        server = LiveServer(tmp_path / "live", environment={"REEMBODY_DATABASE_URL": url})
+        other = LiveServer(tmp_path / "other", environment={"REEMBODY_DATABASE_URL": url})
+        with pair(server, server._full_environment(), other._full_environment()) as (serving, _):
+            assert len(serving) == 1
+        with server:
+            said = reembody(other, "serve", "--port", free_port())
+            assert said.code == UNUSABLE
+            assert f"process id {server.pid} on port {server.port}" in said.err
+            # A kill leaves nothing behind that would hold the next one up.
+            server.kill()
+            with other:
+                pass
+
+
+def test_a_server_that_was_killed_is_followed_at_once(tmp_path: Path) -> None:
+    """As a service manager does it: the lock has died with its process, workers or not."""
+    server = LiveServer(tmp_path / "live")
+    for _ in range(2):
+        server.start()
+        server.kill()
+    with server:
+        pass
+
+
+@contextlib.contextmanager
+def pair(
+    server: LiveServer, *environments: Mapping[str, str]
+) -> Iterator[tuple[list[Child], list[tuple[Child, Path]]]]:
+    """Two servers started at once, on ports of their own: those that serve, and those that do not
+    with what they said.
+    """
+    folder = server.data_dir.parent
+    folder.mkdir(parents=True, exist_ok=True)
+    children: list[tuple[Child, int, Path]] = []
+    for at in range(2):
+        port, said = free_port(), folder / f"pair-{at}-{free_port()}.log"
+        environment = dict(environments[min(at, len(environments) - 1)])
+        wish = Wish(["serve", "--port", str(port)], environment, folder, said)
+        children.append((nursery().start(wish), port, said))
+    try:
+        serving = [child for child, port, _ in children if _serves(child, port)]
+        refused = [(child, said) for child, _, said in children if child not in serving]
+        yield serving, refused
+    finally:
+        for child, _, _ in children:
+            child.send_signal(signal.SIGTERM)
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                child.wait(30.0)
+            child.kill()
+            child.wait()
+
+
+def _serves(child: Child, port: int) -> bool:
+    give_up_s = time.monotonic() + ANSWERS_WITHIN_S
+    while child.poll() is None and time.monotonic() < give_up_s:
+        try:
+            return httpx2.get(f"http://127.0.0.1:{port}/api/health").is_success
+        except httpx2.TransportError:
+            time.sleep(0.05)
+    return False
+
+
+def running_session(server: LiveServer) -> str:
+    """A session that was started, of a short study."""
+    key = add_short_study(server)
+    with server.client() as client:
+        assert client.post("/api/login", json=CREDENTIALS).is_success
+        made = client.post(f"/api/studies/{key}/sessions", json={"kind": "test"}).json()
+        body = {"command_id": "a" * 32, "expected_version": made["version"], "type": "start"}
+        assert client.post(f"/api/sessions/{made['id']}/commands", json=body).is_success
+        return str(made["id"])
+
+
+def event_count(server: LiveServer, session_id: str) -> int:
+    """How many events a session has."""
+    with record_of(server) as db:
+        query = select(func.count()).where(SessionEvent.session_id == session_id)
+        return db.scalar(query) or 0
+
+
+def made_export(client: httpx2.Client) -> str:
+    """An export that is ready; its id."""
+    ordered = client.post(f"/api/studies/{KEY}/exports", json={"kind": "test"})
+    assert ordered.is_success, ordered.text
+    export_id = str(ordered.json()["id"])
+    give_up_s = time.monotonic() + ANSWERS_WITHIN_S
+    while time.monotonic() < give_up_s:
+        view = client.get(f"/api/exports/{export_id}").json()
+        if view["state"] == "ready":
+            return export_id
+        assert view["state"] != "failed", json.dumps(view)
+        time.sleep(0.1)
+    pytest.fail("the export is not made")

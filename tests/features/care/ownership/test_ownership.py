@@ -1,0 +1,283 @@
+"""One owner for the data: what its lock survives, what ends it, and what it says of the owner."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from sqlalchemy import text
+
+from app.clock import Clock
+from app.database_address import connected, disconnect
+from app.errors import NotDurable, NotNow
+from app.features.care.ownership import Owned, Ownership, OwnerWatch, own_data
+from app.features.care.ownership.folder_lock import NAME, FolderLock
+from app.features.care.ownership.owner import Owner
+from app.features.care.ownership.service import prepared_beside_owner
+from app.platform.background import Background
+from app.settings import Settings
+from tests.support.sqlite import fresh_sqlite
+
+HOLDER = """
+import sys, time
+from pathlib import Path
+from app.features.care.ownership import own_data
+from app.settings import Settings
+own = own_data(Settings(data_dir=Path(sys.argv[1]), database_url=sys.argv[2]), port=4711)
+{more}
+print("holds", flush=True)
+time.sleep(600)
+"""
+FORKS = """
+import os
+worker = os.fork()
+if worker == 0:
+    time.sleep(600)
+    os._exit(0)
+print("worker", worker, flush=True)
+"""
+SPAWNS = """
+import subprocess
+worker = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+print("worker", worker.pid, flush=True)
+"""
+
+
+@contextmanager
+def holder(settings: Settings, more: str = "") -> Iterator[tuple[int, list[int]]]:
+    """Another process that owns the data: its id, and those of the workers it began."""
+    arguments = [str(settings.data_dir), settings.database_url]
+    process = subprocess.Popen(
+        [sys.executable, "-c", HOLDER.format(more=more), *arguments],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    workers: list[int] = []
+    try:
+        assert process.stdout is not None
+        while (line := process.stdout.readline().split()) != ["holds"]:
+            assert line, "it ended"
+            workers.append(int(line[1]))
+        yield process.pid, workers
+    finally:
+        for worker in workers:
+            os.kill(worker, signal.SIGKILL)
+        process.kill()
+        process.wait()
+        if process.stdout is not None:
+            process.stdout.close()
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    """Data that nobody has."""
+    return Settings(data_dir=tmp_path / "data")
+
+
+def test_the_second_is_refused_with_process_port_machine_and_time(settings: Settings) -> None:
+    """And goes on as soon as the first has let go; nothing else is written into the folder."""
+    with own_data(settings, port=8321), pytest.raises(Owned) as refused:
+        own_data(settings, port=8400)
+    said = refused.value.message
+    assert f"the server with the process id {os.getpid()} on port 8321" in said
+    assert os.uname().nodename in said
+    assert "since 20" in said
+    assert "nothing was changed" in said
+    assert "REEMBODY_DATA_DIR" in refused.value.remedy
+    with own_data(settings) as own:
+        assert own.owner.port is None
+    assert [path.name for path in settings.data_dir.iterdir()] == [NAME]
+
+
+@pytest.mark.parametrize("more", ["", FORKS, SPAWNS])
+def test_a_killed_owner_holds_nothing_although_its_worker_lives(
+    settings: Settings, more: str
+) -> None:
+    """No forked or spawned worker keeps the lock of a dead server, or loses it before."""
+    with holder(settings, more) as (pid, workers):
+        with pytest.raises(Owned, match=f"process id {pid} on port 4711"):
+            own_data(settings)
+        os.kill(pid, signal.SIGKILL)
+        _wait_for_end(pid)
+        assert all(_lives(worker) for worker in workers)
+        with own_data(settings):
+            pass
+
+
+@pytest.mark.parametrize("more", [FORKS, SPAWNS])
+def test_an_owner_keeps_its_lock_when_a_worker_ends(settings: Settings, more: str) -> None:
+    """Whatever the worker inherited or closed."""
+    with holder(settings, more) as (_, workers):
+        os.kill(workers.pop(), signal.SIGKILL)
+        with pytest.raises(Owned):
+            own_data(settings)
+
+
+def test_every_path_to_a_folder_leads_to_one_lock(tmp_path: Path, settings: Settings) -> None:
+    """A link to the folder, a link to the file of the database, a path through another folder."""
+    settings.data_dir.mkdir()
+    (tmp_path / "link").symlink_to(settings.data_dir)
+    (settings.data_dir / "reembody.sqlite").touch()
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / "linked.sqlite").symlink_to(settings.data_dir / "reembody.sqlite")
+    with own_data(settings):
+        for same in (
+            Settings(data_dir=tmp_path / "link"),
+            Settings(data_dir=tmp_path / "other" / ".." / "data"),
+            Settings(data_dir=other, database_url=f"sqlite:///{tmp_path}/data/reembody.sqlite"),
+            Settings(data_dir=other, database_url=f"sqlite:///{other}/linked.sqlite"),
+            # The folder alone is enough: it holds exports and fits of whoever has it.
+            Settings(data_dir=tmp_path / "data", database_url=f"sqlite:///{other}/own.sqlite"),
+        ):
+            with pytest.raises(Owned):
+                own_data(same)
+        # What was refused half-way holds nothing.
+        with own_data(Settings(data_dir=other)):
+            pass
+
+
+def test_a_command_is_waited_for_and_a_server_is_not(settings: Settings) -> None:
+    """A server that starts while somebody verifies a session does not fail."""
+    first = own_data(settings, "verify")
+    threading.Timer(0.3, first.release).start()
+    with own_data(settings):
+        began_s = time.monotonic()
+        with pytest.raises(Owned):
+            own_data(settings, "verify")
+        assert time.monotonic() - began_s < 2.0
+
+
+def test_a_lock_file_that_was_removed_is_made_and_held_again(settings: Settings) -> None:
+    """`rm -r data/*` beside a running server: its watch takes the new file before anybody else."""
+    background = Background(Clock())
+    with own_data(settings) as own:
+        watch = OwnerWatch(own, background, _never)
+        (settings.data_dir / NAME).unlink()
+        watch.look()
+        with pytest.raises(Owned):
+            own_data(settings)
+    assert background.failing() == ()
+
+
+def test_an_owner_whose_data_another_has_taken_ends(settings: Settings) -> None:
+    """Health names it, and the server is asked to end: two are worse than none."""
+    background, ended = Background(Clock()), []
+    with own_data(settings) as own:
+        watch = OwnerWatch(own, background, lambda: ended.append(True))
+        (settings.data_dir / NAME).unlink()
+        with own_data(settings):
+            watch.look()
+    assert ended == [True]
+    assert [one.name for one in background.failing()] == ["owner"]
+
+
+def test_a_full_disk_keeps_nobody_from_owning(settings: Settings) -> None:
+    """The text may be missing then; the lock counts, and says so without the text."""
+    settings.data_dir.mkdir()
+    owner = Owner.myself("serve", 1)
+    held = FolderLock(settings.data_dir, owner)
+    (settings.data_dir / NAME).write_text("")
+    with pytest.raises(Owned, match="in use by another process of Reembody"):
+        own_data(settings)
+    held.release()
+
+
+def test_a_path_that_is_a_file_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    """A data folder cannot be made there."""
+    (tmp_path / "file").touch()
+    with pytest.raises(NotDurable, match="cannot be locked"):
+        own_data(Settings(data_dir=tmp_path / "file"))
+
+
+def test_what_reads_works_beside_an_owner_who_has_prepared(tmp_path: Path) -> None:
+    """It prepares nothing then; beside one who is still at it, it says so."""
+    settings, prepared = Settings(data_dir=tmp_path), []
+
+    def read() -> None:
+        with prepared_beside_owner(settings, "verify", lambda: prepared.append(True)):
+            pass
+
+    read()
+    assert prepared == [True]
+    with own_data(settings):
+        with pytest.raises(NotNow, match="works with it"):
+            read()
+        fresh_sqlite(tmp_path / "reembody.sqlite")
+        read()
+    assert prepared == [True]
+
+
+def test_a_postgres_database_has_one_owner_whatever_the_folder(
+    tmp_path: Path, postgres_url: str
+) -> None:
+    """A lock of a session of its own: refused with process and port, free once it is killed."""
+    first = Settings(data_dir=tmp_path / "a", database_url=postgres_url)
+    second = Settings(data_dir=tmp_path / "b", database_url=postgres_url)
+    with holder(first) as (pid, _):
+        with pytest.raises(Owned, match=f"process id {pid} on port 4711") as refused:
+            own_data(second)
+        assert os.uname().nodename[:10] in refused.value.message
+        os.kill(pid, signal.SIGKILL)
+        _wait_for_end(pid)
+        with own_data(second):
+            pass
+
+
+def test_a_lost_lock_of_postgres_is_taken_again_or_given_up(
+    tmp_path: Path, postgres_url: str
+) -> None:
+    """Where the connection was ended; if somebody was quicker, this server ends."""
+    background, ended = Background(Clock()), []
+    own = own_data(Settings(data_dir=tmp_path / "a", database_url=postgres_url))
+    other = Settings(data_dir=tmp_path / "b", database_url=postgres_url)
+    watch = OwnerWatch(own, background, lambda: ended.append(True))
+    _end_connections_of(postgres_url, own)
+    watch.look()
+    with pytest.raises(Owned):
+        own_data(other)
+    assert (background.failing(), ended) == ((), [])
+    _end_connections_of(postgres_url, own)
+    with own_data(other):
+        watch.look()
+    assert [one.urgency for one in background.failing()] == ["warning"]
+    assert ended == [True]
+    own.release()
+
+
+def _end_connections_of(url: str, own: Ownership) -> None:
+    connection = connected(url)
+    try:
+        query = (
+            "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity "
+            "WHERE application_name LIKE :name AND datname = current_database()"
+        )
+        name = f"reembody serve {own.owner.pid} %"
+        assert connection.execute(text(query), {"name": name}).scalar() == 1
+    finally:
+        disconnect(connection)
+    time.sleep(0.2)
+
+
+def _never() -> None:
+    pytest.fail("the data were taken over")
+
+
+def _lives(pid: int) -> bool:
+    return Path(f"/proc/{pid}").exists()
+
+
+def _wait_for_end(pid: int) -> None:
+    give_up_s = time.monotonic() + 10.0
+    while time.monotonic() < give_up_s:
+        status = Path(f"/proc/{pid}/status")
+        if not status.exists() or "State:\tZ" in status.read_text():
+            return
+        time.sleep(0.01)
+    pytest.fail("it does not end")
