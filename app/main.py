@@ -17,7 +17,7 @@ from app.database import open_database
 from app.features.care.opening import bring_up_to_date
 from app.features.care.ownership import Ownership, OwnerWatch, own_data
 from app.features.care.rights import finish_erasures
-from app.features.care.storage import StorageDesk
+from app.features.care.storage import StorageDesk, StorageRecovery
 from app.features.design.studies import add_shipped
 from app.features.movement.avatar import add_shipped_avatar
 from app.features.movement.captures import Workbench
@@ -31,10 +31,11 @@ from app.features.results.replay import ReplayDesk
 from app.lan import Network
 from app.platform.background import Background
 from app.platform.context import AppContext, PartMaker
-from app.platform.folders import protect
+from app.platform.folders import database_file, home_of, protect
 from app.platform.half_made import remove_left
 from app.platform.hub import Hub
 from app.platform.rate_limit import RateLimiter
+from app.platform.space_reserve import SpaceReserve
 from app.platform.storage_health import StorageHealth
 from app.resources import static_dir
 from app.settings import Settings, read_settings
@@ -44,6 +45,7 @@ LOGIN_ATTEMPTS = 10
 PAIRING_ATTEMPTS = 20
 WINDOW_S = 60.0
 PARTS: tuple[PartMaker, ...] = (
+    StorageRecovery,
     Summariser,
     TelemetryWriter.of,
     Folder.of,
@@ -77,7 +79,15 @@ def create_app(
     """
     settings = settings or read_settings()
     clock, hub = clock or Clock(), Hub()
-    storage = StorageHealth(clock, settings.data_dir, settings.low_disk_bytes, hub.publish_storage)
+    # Erasing has nothing to gain from room on this machine where the database is on another.
+    embedded = None if database_file(settings) is None else home_of(settings)
+    storage = StorageHealth(
+        clock,
+        settings.data_dir,
+        settings.low_disk_bytes,
+        hub.publish_storage,
+        reserve=SpaceReserve(embedded),
+    )
     context = AppContext(
         settings=settings,
         database=open_database(settings.resolved_database_url, storage),

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy.orm import Session
-
 from sqlalchemy.exc import DBAPIError
+from sqlalchemy.orm import Session
 
 from app.cli.errors import warn
 from app.cli.installation import opened_database

@@ -6,6 +6,7 @@
 from collections.abc import AsyncIterator, Callable, Iterator
 from typing import Annotated, TypeVar, cast
 
+from anyio.to_thread import run_sync
 from fastapi import Depends, Request
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
@@ -47,6 +48,15 @@ async def _writing(context: Context) -> AsyncIterator[Session]:
             refusal = error
     if refusal is not None:
         raise refusal
+
+
+async def _make_room(context: Context) -> None:
+    """Before the transaction is opened, hence first among the dependencies of its route."""
+    await run_sync(context.storage.make_room)
+
+
+FREES_SPACE = Depends(_make_room)
+"""For routes that free space or stop what takes it: they go on where the disk is full."""
 
 
 async def write(context: AppContext, work: Callable[[Session], Result]) -> Result:

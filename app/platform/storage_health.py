@@ -19,7 +19,8 @@ from pydantic import BaseModel, ConfigDict
 
 from app.clock import Clock
 from app.errors import NotDurable
-from app.platform.trouble import Trouble, explain
+from app.platform.space_reserve import SpaceReserve
+from app.platform.trouble import FULL, Trouble, explain
 
 log = logging.getLogger(__name__)
 LOOK_EVERY_NS = TRY_AGAIN_NS = 5_000_000_000
@@ -64,6 +65,7 @@ class StorageHealth:
     low_disk_bytes: int
     on_change: Callable[[], None] = lambda: None
     free_bytes: Callable[[Path], int] = lambda folder: shutil.disk_usage(folder).free
+    reserve: SpaceReserve = field(default_factory=lambda: SpaceReserve(None))
     _failure: Failure | None = None
     _outages: list[Outage] = field(default_factory=list)
     _lock: threading.Lock = field(default_factory=threading.Lock)
@@ -85,10 +87,12 @@ class StorageHealth:
             self.on_change()
 
     def succeeded(self) -> None:
-        """Changes are on disk."""
+        """Changes are on disk; that counts only if they did not need the reserve for it."""
         if self._failure is None:
             return
         with self._lock:
+            if not self.reserve.take_back():
+                return
             failure, self._failure = self._failure, None
             if failure is None:
                 return
@@ -96,6 +100,25 @@ class StorageHealth:
             self._outages.append(outage)
         log.warning("the record is written again; it was not since %s", outage.since.isoformat())
         self.on_change()
+
+    def make_room(self) -> None:
+        """For whatever frees space, before it writes: on a full disk it has the reserve."""
+        failure = self._failure
+        if failure is not None and failure.trouble == FULL:
+            with self._lock:
+                self.reserve.give_up()
+
+    def must_wait(self) -> bool:
+        """Whether what fills the disk has to wait, until the reserve is there again."""
+        if not self.reserve.given_up:
+            return False
+        with self._lock:
+            return not self.reserve.take_back()
+
+    def is_untried(self, for_ns: int) -> bool:
+        """Whether it fails, and nobody has tried to write for so long."""
+        failure = self._failure
+        return failure is not None and self.clock.monotonic_ns() - failure.last_ns > for_ns
 
     def take_outages(self) -> tuple[Outage, ...]:
         """The outages that are over, each told once: for whoever puts them on record."""

@@ -9,19 +9,25 @@ import os
 import resource
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+import time
+import uuid
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
+import httpx2
 import pytest
 
 from tests.faults.outage import Outage
 from tests.faults.outage_report import check_outage, check_recorded, outage_figures, reconciled
-from tests.faults.streaming import pair_headsets
+from tests.faults.streaming import pair_headsets, signed_in
+from tests.rehearsal.performed import STUDY
 from tests.support.server import LiveServer
 
 LIMIT_BYTES = 16 * 1024
 DISK_MIB, ENOUGH_BYTES = 48, 256 * 1024
+WAIT_S = 30.0
 
 
 def test_a_server_that_may_not_write_says_so_and_goes_on_when_it_may(
@@ -48,6 +54,91 @@ def test_a_server_that_may_not_write_says_so_and_goes_on_when_it_may(
         sys.stdout.write(outage_figures("no file may grow", watch, found))
     check_outage(watch, found)
     check_recorded(server, headsets, watch.reason)
+
+
+def test_on_a_full_disk_what_frees_space_still_works(tmp_path: Path) -> None:
+    """Not a byte is left: logging in, removing an export, ending a session and erasing all work,
+    nothing new starts, and health recovers by itself once there is space.
+    """
+    folder = tmp_path / "live"
+    server = LiveServer(folder, environment={"REEMBODY_LOW_DISK_BYTES": "0"})
+    with small_disk(folder / "data") as disk, server, signed_in(server) as client:
+        session, export = new_session(client), made_export(client)
+        assert (disk / "reserve").stat().st_size >= 1024 * 1024
+        ballast = disk / "ballast"
+        fill_up(ballast)
+        wait_for(lambda: command(client, session, "note").status_code == 503)
+        assert health(client)["storage_reason"] == "the disk of the server is full"
+        with signed_in(server) as other:
+            fetched = other.get(f"/api/exports/{export}/file")
+            assert fetched.is_success, fetched.text
+            assert other.delete(f"/api/exports/{export}").status_code == 204
+            for done in (command(other, session, "abort"), erased(other, session)):
+                assert done.is_success, done.text
+            joined = other.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"})
+            assert joined.status_code == 503
+        assert health(client)["storage"] == "failing"
+        assert not (disk / "reserve").exists()
+        ballast.unlink()
+        wait_for(lambda: health(client)["storage"] == "ok")
+        assert (disk / "reserve").exists()
+        new_session(client)
+
+
+def new_session(client: httpx2.Client) -> dict[str, Any]:
+    """A session that has started."""
+    made = client.post(f"/api/studies/{STUDY}/sessions", json={"kind": "test"})
+    made.raise_for_status()
+    assert command(client, made.json(), "start").is_success
+    session: dict[str, Any] = made.json()
+    return session
+
+
+def command(client: httpx2.Client, session: dict[str, Any], kind: str) -> httpx2.Response:
+    """Something done with a session, as it stands now."""
+    version = client.get(f"/api/sessions/{session['id']}").json()["version"]
+    body = {"command_id": str(uuid.uuid4()), "expected_version": version, "type": kind}
+    words = {"reason": "the disk is full", "text": "x" * 1500}
+    return client.post(f"/api/sessions/{session['id']}/commands", json=body | words)
+
+
+def erased(client: httpx2.Client, session: dict[str, Any]) -> httpx2.Response:
+    """The erasure of a session's participant."""
+    people = client.get(f"/api/studies/{STUDY}/participants").json()
+    one = next(one for one in people if one["code"] == session["participant_code"])
+    path = f"/api/studies/{STUDY}/participants/{one['id']}/erasure"
+    return client.post(path, json={"confirm": one["code"], "reason_code": "requested"})
+
+
+def made_export(client: httpx2.Client) -> str:
+    """An export that is ready; its id."""
+    ordered = client.post(f"/api/studies/{STUDY}/exports", json={"kind": "test"}).json()
+    path = f"/api/exports/{ordered['id']}"
+    wait_for(lambda: client.get(path).json()["state"] == "ready")
+    return str(ordered["id"])
+
+
+def health(client: httpx2.Client) -> dict[str, Any]:
+    """How the server is."""
+    told: dict[str, Any] = client.get("/api/health").json()
+    return told
+
+
+def wait_for(is_so: Callable[[], bool]) -> None:
+    """Until it is; fails after a while."""
+    give_up_s = time.monotonic() + WAIT_S
+    while not is_so():
+        assert time.monotonic() < give_up_s
+        time.sleep(0.05)
+
+
+def fill_up(ballast: Path) -> None:
+    """Take every byte."""
+    with ballast.open("wb", buffering=0) as file:
+        for size in (1024 * 1024, 4096):
+            with suppress(OSError):
+                while True:
+                    file.write(bytes(size))
 
 
 @pytest.mark.long

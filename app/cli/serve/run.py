@@ -13,8 +13,9 @@ from collections.abc import Mapping
 
 import uvicorn
 from fastapi import FastAPI
+from sqlalchemy.exc import DBAPIError
 
-from app.cli.errors import reported
+from app.cli.errors import fail, reported
 from app.cli.serve.output import addresses, certificate_text
 from app.clock import Clock
 from app.collecting import settle
@@ -38,6 +39,7 @@ from app.lan.serving import (
 )
 from app.main import create_app
 from app.platform.background import Background
+from app.platform.folders import database_file
 from app.platform.trouble import in_plain_words
 from app.settings import Settings, read_settings
 
@@ -186,6 +188,8 @@ def _prepare(settings: Settings, *, new_database: bool) -> None:
         try:
             kept = prepare_database(settings, Clock(), new_database=new_database, to_write=True)
         except DBAPIError as error:
+            if database_file(settings) is not None:
+                raise
             fail(f"the database cannot be opened: {first_line(error)}")
     if kept is not None:
         print(f"Backup     {kept}, made before the database was migrated", flush=True)

@@ -24,7 +24,7 @@ from app.features.record.questionnaires import StoredAnswers, stored_answers
 from app.features.results.exports import ExportDesk
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
-from app.platform.dependencies import Context, Reading, SignedIn, Writing
+from app.platform.dependencies import FREES_SPACE, Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["rights"])
 
@@ -35,7 +35,11 @@ def get_participants(key: str, db: Reading, context: Context, _: SignedIn) -> li
     return participants_of(db, context.settings, study_by_key(db, key))
 
 
-@router.post("/studies/{key}/participants/{participant_id}/erasure", status_code=201)
+@router.post(
+    "/studies/{key}/participants/{participant_id}/erasure",
+    status_code=201,
+    dependencies=[FREES_SPACE],
+)
 async def post_erasure(
     key: str, participant_id: str, request: ErasureRequest, context: Context, caller: SignedIn
 ) -> ErasureView:

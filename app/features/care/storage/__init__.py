@@ -4,5 +4,6 @@ Looking takes seconds, so one `StorageDesk` looks for everybody and keeps what i
 """
 
 from app.features.care.storage.measuring import StorageDesk
+from app.features.care.storage.recovery import StorageRecovery
 
-__all__ = ["StorageDesk"]
+__all__ = ["StorageDesk", "StorageRecovery"]

@@ -19,6 +19,7 @@ from app.models import Account
 from app.platform.access import Caller, caller_of
 from app.platform.context import AppContext
 from app.platform.dependencies import (
+    FREES_SPACE,
     LOGIN_COOKIE,
     Context,
     SignedIn,
@@ -32,7 +33,7 @@ from app.platform.tokens import delete_cookie, hash_token, read_cookie, set_cook
 router = APIRouter(tags=["accounts"])
 
 
-@router.post("/login")
+@router.post("/login", dependencies=[FREES_SPACE])
 def post_login(
     credentials: Credentials, request: Request, response: Response, context: Context
 ) -> SignedInView:

@@ -19,6 +19,8 @@ from app.protocol import Step
 
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop", "reopen_consent")
 _STARTS = ("start", "begin_phase")
+_ENDS = ("pause", "skip", "complete_step", "abort", "withdraw")
+"""What stops filling the disk: it is done on a full one, too."""
 
 
 def command_of(
@@ -27,8 +29,7 @@ def command_of(
     """The engine's command; raises InvalidInput where words are missing, and NotDurable where
     something would start that cannot be stored.
     """
-    if request.type in _STARTS:
-        context.storage.require_storage()
+    _look_at_storage(context, request.type)
     reason = (request.reason or "").strip()
     if request.type in _NEEDS_REASON:
         reason_given(reason, request.type)
@@ -55,6 +56,13 @@ def command_of(
             return c.AddNote(content=store.put("note", _note_text(request)))
         case _:
             return c.Start()
+
+
+def _look_at_storage(context: AppContext, kind: str) -> None:
+    if kind in _STARTS:
+        context.storage.require_storage()
+    if kind in _ENDS:
+        context.storage.make_room()
 
 
 def reason_given(reason: str, what: str) -> str:

@@ -76,7 +76,7 @@ class Folder(Part):
                     log.exception("batches could not be folded; they stay as they are")
                     self.context.background.failed(FOLDER, error)
                 else:
-                    log.error("batches could not be folded and stay: %s", trouble.message)  # noqa: TRY400 - no fault of the program
+                    log.error("batches could not be folded and stay: %s", trouble.message)
                 self._stop.wait(1.0)
 
     def fold_once(self) -> int:

@@ -162,6 +162,8 @@ class TelemetryWriter(Part):
 
     def _store_or_wait(self, arrivals: Sequence[Arrival]) -> None:
         while True:
+            while self.context.storage.must_wait() and not self._stopping:
+                time.sleep(RETRY_S)
             try:
                 self._store(arrivals)
             except DBAPIError:

@@ -20,7 +20,7 @@ from app.features.results.exports.schemas import ExportView, ExportWish
 from app.models import Participant, Study
 from app.platform.access import Caller, require_object, session_by_id
 from app.platform.context import AppContext
-from app.platform.dependencies import Context, Reading, SignedIn, Writing
+from app.platform.dependencies import FREES_SPACE, Context, Reading, SignedIn, Writing
 
 router = APIRouter(tags=["exports"])
 MEDIA_TYPE = "application/zip"
@@ -92,6 +92,7 @@ def delete_export(export_id: str, context: Context, caller: SignedIn) -> None:
 
 @router.get(
     "/exports/{export_id}/file",
+    dependencies=[FREES_SPACE],
     response_class=FileResponse,
     responses={200: {"content": {MEDIA_TYPE: {}}, "description": "A ZIP of CSV files."}},
 )

@@ -1,0 +1,56 @@
+"""Noticing that storing works again, also where nobody stores anything.
+
+A headset's movement finds that out within a second. Without one, health would say for ever that
+nothing can be stored, and the next who wants to start something would have to try twice.
+"""
+
+import threading
+from dataclasses import dataclass, field
+
+from sqlalchemy import text
+from sqlalchemy.exc import DBAPIError
+
+from app.platform.context import AppContext, Part
+
+LOOK_EVERY_S = 1.0
+UNTRIED_NS = 5_000_000_000
+"""As long as whoever wants to start something waits before trying it."""
+THREAD = "storage-recovery"
+_CHANGES_NOTHING = text("UPDATE alembic_version SET version_num = version_num")
+"""A row is written, flushed and committed like any other, and is what it was."""
+
+
+@dataclass(eq=False)
+class StorageRecovery(Part):
+    """Keeps the reserve of the disk, and tries to write while nothing can be stored."""
+
+    context: AppContext
+    _stop: threading.Event = field(default_factory=threading.Event)
+    _thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begin; the reserve is there before anything is recorded."""
+        self.context.storage.reserve.keep()
+        self._thread = self.context.background.thread(THREAD, self._run)
+
+    def stop(self) -> None:
+        """End."""
+        self._stop.set()
+        if self._thread is not None:
+            self._thread.join(timeout=10.0)
+
+    def _run(self) -> None:
+        while not self._stop.wait(LOOK_EVERY_S):
+            if self.context.storage.is_untried(UNTRIED_NS):
+                self.try_to_write()
+            self.context.background.well(THREAD)
+
+    def try_to_write(self) -> None:
+        """Once; what comes of it the database tells to the storage's health."""
+        if self.context.storage.must_wait():
+            return
+        try:
+            with self.context.database.writing() as db:
+                db.execute(_CHANGES_NOTHING)
+        except DBAPIError:
+            return

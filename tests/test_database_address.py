@@ -1,0 +1,200 @@
+"""What is wrong with the address of a database: one sentence, exit 2, and nothing of a password."""
+
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import psycopg
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.database import make_engine
+from app.database_address import database_address, shown_address
+from app.errors import InvalidInput
+from app.settings import Settings, read_settings
+from tests.cli.invoked import Invoked
+from tests.support.postgres import Cluster, running_cluster
+
+SECRET = "tiger-in-the-tank"
+
+
+@pytest.mark.parametrize(
+    ("url", "said"),
+    [
+        ("", "is empty"),
+        ("   ", "is empty"),
+        (" postgresql://host/db", "begins or ends with a space"),
+        ("postgresql://host/db\n", "begins or ends with a space"),
+        (SECRET, "does not begin with a scheme"),
+        ("localhost:5432/db", "does not begin with a scheme"),
+        (f"mysql://u:{SECRET}@host/db", "begins with mysql://, which is not supported"),
+        (f"postgresql+psycopg2://u:{SECRET}@host/db", "postgresql+psycopg2://"),
+        (f"postgresql://u:p@{SECRET}@host/db", "more than one @"),
+        (f"postgresql://u:p@{SECRET}/x@host/db", "more than one @"),
+        (f"postgresql://u:{SECRET}@ho st/db", "host name with a space"),
+        (f"postgresql://u:{SECRET}@host:port/db", "port that is not a number"),
+        (f"postgresql://u:{SECRET}@host:5 432/db", "port that is not"),
+        (f"postgresql://u:{SECRET}@host:70000/db", "not between 1 and 65535"),
+        (f"postgresql://u:{SECRET}@host:0/db", "not between 1 and 65535"),
+        ("sqlite://reembody.sqlite", "names a host"),
+    ],
+)
+def test_an_address_that_cannot_be_one_is_refused_without_its_secret(url: str, said: str) -> None:
+    """Whatever is wrong with it, and wherever it is opened."""
+    for read in (database_address, make_engine, shown_address):
+        with pytest.raises(InvalidInput) as refused:
+            read(url)
+        assert said in refused.value.message
+        everything = str(refused.value.as_json())
+        assert SECRET not in everything
+        assert "postgresql://ROLE:PASSWORD@HOST:5432/DATABASE" in everything
+
+
+@given(st.text(max_size=60))
+def test_whatever_is_written_there_is_read_or_refused(rest: str) -> None:
+    """Never another error."""
+    for scheme in ("", "postgresql://", "postgresql://u:p@", "sqlite:///", "sqlite://"):
+        try:
+            database_address(scheme + rest)
+        except InvalidInput as refused:
+            assert refused.remedy
+
+
+@pytest.mark.parametrize(
+    ("url", "shown"),
+    [
+        (f"postgresql://u:{SECRET}@host/db", "host/db"),
+        (f"postgres://u:{SECRET}@host:5433/db?sslmode=require&password={SECRET}", "host:5433/db"),
+        ("postgresql+psycopg://u@/db?host=/run/postgresql", "/run/postgresql/db"),
+        ("sqlite:////srv/my data/lab.sqlite", "/srv/my data/lab.sqlite"),
+    ],
+)
+def test_an_address_is_shown_without_role_and_password(url: str, shown: str) -> None:
+    """As the terminal and errors name it."""
+    assert shown_address(url) == shown
+
+
+@pytest.mark.parametrize("name", ["REEMBODY_DATABASE_URL", "REEMBODY_DATA_DIR"])
+def test_a_variable_that_is_set_but_empty_is_refused(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It would begin an empty database somewhere else than thought."""
+    monkeypatch.setenv(name, "")
+    with pytest.raises(InvalidInput, match=f"{name} is set, but empty"):
+        read_settings()
+
+
+def test_settings_that_cannot_be_read_name_the_variable_and_no_value(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A port that is none, a list that is none."""
+    monkeypatch.setenv("REEMBODY_PORT", SECRET)
+    with pytest.raises(InvalidInput, match="REEMBODY_PORT") as refused:
+        read_settings()
+    assert SECRET not in str(refused.value.as_json())
+    monkeypatch.delenv("REEMBODY_PORT")
+    monkeypatch.setenv("REEMBODY_HOST_NAMES", SECRET)
+    with pytest.raises(InvalidInput, match="host_names"):
+        read_settings()
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("serve", "--port", "0"),
+        ("backup", "x.reembody"),
+        ("verify", "--session", "x"),
+        ("token",),
+        ("tls", "show"),
+    ],
+)
+def test_each_command_says_it_in_a_sentence_and_leaves_with_2(
+    command: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """No trace, no address banner, no secret."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path))
+    wrong = "" if command[0] == "tls" else f"postgresql://u:p@{SECRET}@host/db"
+    monkeypatch.setenv("REEMBODY_DATABASE_URL", wrong)
+    said = Invoked(*command[:1]).refusal(*command[1:])
+    assert "REEMBODY_DATABASE_URL" in said
+    assert SECRET not in said
+    assert said.count("\n") <= 1
+
+
+@contextmanager
+def database(cluster: Cluster, name: str, *, encoding: str = "UTF8") -> Iterator[str]:
+    """A database of its own with an encoding; its address."""
+    with psycopg.connect(
+        host=str(cluster.folder), user="postgres", dbname="postgres", autocommit=True
+    ) as connection:
+        connection.execute(f"DROP DATABASE IF EXISTS {name}".encode())
+        connection.execute(
+            f"CREATE DATABASE {name} ENCODING '{encoding}' LOCALE 'C' TEMPLATE template0".encode()
+        )
+        try:
+            yield cluster.url(name)
+        finally:
+            connection.execute(f"DROP DATABASE {name} WITH (FORCE)".encode())
+
+
+@pytest.mark.parametrize(
+    ("encoding", "statement", "said"),
+    [
+        ("LATIN1", "SELECT 1", "stores text as LATIN1"),
+        ("SQL_ASCII", "SELECT 1", "stores text as SQL_ASCII"),
+        (
+            "UTF8",
+            "ALTER DATABASE unusable SET default_transaction_read_only = on",
+            "is read-only",
+        ),
+        ("UTF8", "DROP SCHEMA public", "the role postgres has no schema"),
+    ],
+)
+def test_a_database_that_cannot_hold_the_record_is_refused_before_anything(
+    encoding: str, statement: str, said: str, tmp_path: Path
+) -> None:
+    """With what to do; no banner, no trace, and nothing was made in it."""
+    cluster = running_cluster()
+    with database(cluster, "unusable", encoding=encoding) as url:
+        with psycopg.connect(
+            host=str(cluster.folder), user="postgres", dbname="unusable", autocommit=True
+        ) as connection:
+            connection.execute(statement.encode())
+        done = serve(tmp_path, url)
+        with psycopg.connect(
+            host=str(cluster.folder), user="postgres", dbname="unusable"
+        ) as connection:
+            tables = connection.execute(
+                "SELECT count(*) FROM pg_tables WHERE tablename = 'alembic_version'"
+            ).fetchone()
+    assert (done.returncode, done.stdout) == (2, "")
+    assert said in done.stderr
+    assert "docs/postgresql.md" in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert tables == (0,)
+
+
+def test_a_server_that_is_not_there_is_said_in_a_sentence(tmp_path: Path) -> None:
+    """With what to check, and without the password."""
+    done = serve(tmp_path, f"postgresql://role:{SECRET}@127.0.0.1:1/db")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "the database 127.0.0.1:1/db cannot be reached" in done.stderr
+    assert SECRET not in done.stderr
+    assert done.stderr.count("\n") == 1
+
+
+def serve(folder: Path, url: str) -> "subprocess.CompletedProcess[str]":
+    """`reembody serve` until it ends."""
+    settings = Settings(data_dir=folder)
+    return subprocess.run(
+        [str(Path(sys.executable).with_name("reembody")), "serve", "--port", "0"],
+        env={"REEMBODY_DATA_DIR": str(settings.data_dir), "REEMBODY_DATABASE_URL": url},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
