@@ -3,7 +3,7 @@
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import psycopg
@@ -57,10 +57,8 @@ def test_an_address_that_cannot_be_one_is_refused_without_its_secret(url: str, s
 def test_whatever_is_written_there_is_read_or_refused(rest: str) -> None:
     """Never another error."""
     for scheme in ("", "postgresql://", "postgresql://u:p@", "sqlite:///", "sqlite://"):
-        try:
+        with suppress(InvalidInput):
             database_address(scheme + rest)
-        except InvalidInput as refused:
-            assert refused.remedy
 
 
 @pytest.mark.parametrize(

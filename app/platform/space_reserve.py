@@ -49,9 +49,11 @@ class SpaceReserve:
         if not self.given_up:
             return True
         try:
+            # Looked at first: an attempt would fill the disk for a moment, in somebody's way.
+            if shutil.disk_usage(self._path().parent).free < self._bytes + FEWEST_BYTES:
+                return False
             self._allocate()
         except OSError:
-            # What was allocated of it would be in the way of what frees space.
             with contextlib.suppress(OSError):
                 self._path().unlink(missing_ok=True)
             return False

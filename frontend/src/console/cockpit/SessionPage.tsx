@@ -72,7 +72,7 @@ function Cockpit({ session, live: direct }: CockpitProps): JSX.Element {
   const send: Send = (command, onDone) =>
     command.type === "start" ? void flight.start() : direct.send(command, onDone);
   const live = { ...direct, send, sending: direct.sending || flight.looking };
-  const alarms = useAlarms(session, live.store, live.storage);
+  const alarms = useAlarms(session, live.store, live.storage, live.failing);
   const worst = alarms.on[0];
   const ended = session.ended_at !== null;
   // Whoever looks at another tab still sees it.

@@ -48,9 +48,15 @@ export const alarmsEn = {
   "alarm.clock_uncertain.do": "The network is slow. Durations are not affected.",
   "alarm.storage": "Nothing can be stored",
   "alarm.storage.do":
-    "The server's disk is full or its database is locked. Headsets and tablets keep what they have.",
+    "The server's disk is full or its database is locked. Headsets and tablets keep what they have. To free space, delete exports (Downloads), end sessions, erase data or remove old backups.",
   "alarm.low_disk": "Little space on the server's disk",
   "alarm.low_disk.do": "Make space before the next session. Everything is still stored.",
+  "alarm.writer_failed": "The server has a fault",
+  "alarm.writer_failed.do":
+    "Recording is being restarted; headsets keep what they have. If this stays, restart the server.",
+  "alarm.background_failed": "Part of the server has failed",
+  "alarm.background_failed.do":
+    "Recording goes on. The server tries again by itself; its log says what happened.",
   "alarm.stop_rule_met": "Stop rule met",
   "alarm.stop_rule_met.do": "See how the participant is; then end the session or go on.",
   "alarm.stop_rule_near": "Sickness is rising",
@@ -140,9 +146,15 @@ export const alarmsDe: Readonly<Record<keyof typeof alarmsEn, string>> = {
   "alarm.clock_uncertain.do": "Das Netz ist langsam. Dauern sind nicht betroffen.",
   "alarm.storage": "Nichts kann gespeichert werden",
   "alarm.storage.do":
-    "Die Platte des Servers ist voll oder seine Datenbank gesperrt. Headsets und Tablets behalten, was sie haben.",
+    "Die Platte des Servers ist voll oder seine Datenbank gesperrt. Headsets und Tablets behalten, was sie haben. Platz schaffen: Exporte löschen (Downloads), Sitzungen beenden, Daten löschen, alte Sicherungen entfernen.",
   "alarm.low_disk": "Wenig Platz auf der Platte des Servers",
   "alarm.low_disk.do": "Vor der nächsten Sitzung Platz schaffen. Noch wird alles gespeichert.",
+  "alarm.writer_failed": "Störung im Server",
+  "alarm.writer_failed.do":
+    "Die Aufzeichnung wird neu gestartet; Headsets behalten, was sie haben. Hält das an, den Server neu starten.",
+  "alarm.background_failed": "Ein Teil des Servers ist ausgefallen",
+  "alarm.background_failed.do":
+    "Die Aufzeichnung läuft weiter. Der Server versucht es von selbst erneut; sein Protokoll nennt den Grund.",
   "alarm.stop_rule_met": "Stoppregel erfüllt",
   "alarm.stop_rule_met.do": "Nach der Person sehen; dann die Sitzung beenden oder fortfahren.",
   "alarm.stop_rule_near": "Übelkeit nimmt zu",

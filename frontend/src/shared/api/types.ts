@@ -176,6 +176,14 @@ export interface StorageNews {
   readonly low_disk: boolean;
 }
 
+/** What runs beside the requests on the server and fails: told when that changes. */
+export interface FailingNews {
+  readonly name: string;
+  readonly state: "failing" | "stopped";
+  readonly urgency: "critical" | "warning";
+  readonly since: string;
+}
+
 export type Pairing = Schemas["PairingView"];
 
 export type ItemType = "likert" | "integer" | "number" | "text" | "boolean" | "choice";

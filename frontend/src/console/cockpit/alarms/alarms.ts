@@ -1,5 +1,5 @@
 /** Which alarms are on, in the order in which they matter, and the words for them. */
-import type { Alarm, LiveAlarm, SessionView, StorageNews } from "@shared/api/types";
+import type { Alarm, FailingNews, LiveAlarm, SessionView, StorageNews } from "@shared/api/types";
 import { clockFace, number } from "@shared/format";
 import { type Milliseconds, milliseconds, seconds } from "@shared/units";
 import { useEffect, useState } from "react";
@@ -29,11 +29,12 @@ export function currentAlarms(
   quality: Quality | null,
   storage: Storage | null,
   now: Milliseconds,
+  failing: readonly FailingNews[] = [],
 ): readonly ShownAlarm[] {
   const fresh = quality !== null && now - quality.at < NEWS_LAST;
   const recorded = session.alarms.filter((alarm) => !fresh || isOfPerson(alarm.code));
   const alarms = [...(fresh ? quality.alarms.map(fromNews) : []), ...recorded.map(fromRecord)];
-  return [...alarms, ...storageAlarms(storage)].toSorted(
+  return [...alarms, ...storageAlarms(storage), ...failing.map(failingAlarm)].toSorted(
     (a, b) => urgency(b) - urgency(a) || Date.parse(b.since) - Date.parse(a.since),
   );
 }
@@ -95,6 +96,8 @@ const CODES = [
   "clock_uncertain",
   "storage",
   "low_disk",
+  "writer_failed",
+  "background_failed",
   ...OF_PERSON,
   "impossible",
   "doubtful",
@@ -149,6 +152,12 @@ function storageAlarms(storage: Storage | null): readonly ShownAlarm[] {
   return news.low_disk ? [alarm("low_disk", "warning", heardAt)] : [];
 }
 
+/** A part of the server that fails, while it does. */
+const failingAlarm = (failing: FailingNews): ShownAlarm => {
+  const code = failing.urgency === "critical" ? "writer_failed" : "background_failed";
+  return alarm(code, failing.urgency, failing.since);
+};
+
 const alarm = (code: string, severity: ShownAlarm["severity"], since: string): ShownAlarm => ({
   key: `${code} ${since}`,
   code,
@@ -172,12 +181,13 @@ export function useAlarms(
   session: SessionView,
   store: TelemetryStore,
   storage: Storage | null,
+  failing: readonly FailingNews[],
 ): Alarms {
   const quality = useQuality(store);
   const [seen, setSeen] = useState<ReadonlySet<string>>(new Set());
   useAgain(quality);
   return {
-    on: currentAlarms(session, quality, storage, milliseconds(performance.now())),
+    on: currentAlarms(session, quality, storage, milliseconds(performance.now()), failing),
     quality,
     isSeen: (alarm) => seen.has(alarm.key),
     see: (alarm) => setSeen((before) => new Set([...before, alarm.key])),

@@ -2,7 +2,13 @@
 import { sessions } from "@shared/api/endpoints";
 import { type FeedState, openFeed } from "@shared/api/live";
 import { isApiError, isUnauthorised } from "@shared/api/request";
-import type { Command, SessionView, StorageNews, TelemetryNews } from "@shared/api/types";
+import type {
+  Command,
+  FailingNews,
+  SessionView,
+  StorageNews,
+  TelemetryNews,
+} from "@shared/api/types";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useMemo, useState } from "react";
 import { lookAgain } from "../../account";
@@ -37,6 +43,7 @@ export function useSession(id: string) {
   const query = useQuery(sessionQuery(id));
   const store = useMemo(() => new TelemetryStore(), []);
   const [storage, setStorage] = useState<Storage | null>(null);
+  const [failing, setFailing] = useState<readonly FailingNews[]>([]);
   const [feed, setFeed] = useState<FeedState>("connecting");
   const [overtaken, setOvertaken] = useState<Overtaken | null>(null);
   const { queryKey } = sessionQuery(id);
@@ -59,6 +66,7 @@ export function useSession(id: string) {
           telemetry: (data) => store.put(data as TelemetryNews),
           storage: (data) =>
             setStorage({ news: data as StorageNews, heardAt: new Date().toISOString() }),
+          background: (data) => setFailing(data as readonly FailingNews[]),
         },
       }),
     [id],
@@ -102,6 +110,7 @@ export function useSession(id: string) {
     query,
     store,
     storage,
+    failing,
     feed,
     send,
     sendAnew,
