@@ -1125,7 +1125,8 @@ export interface paths {
         /**
          * Get Live
          * @description News of a session: `session` on every change, `telemetry` a few times a second, and
-         *     `storage` at first and when the record ceases to be written, or the disk gets low.
+         *     `storage` at first and when the record ceases to be written, or the disk gets low, and
+         *     `background` when something that runs beside the requests fails or works again.
          *
          *     Ends when the login does.
          */
@@ -4378,6 +4379,37 @@ export interface components {
             readonly session_id?: string | null;
         };
         /**
+         * Failing
+         * @description Something in the background that has failed, as health and the consoles name it.
+         *
+         *     `state`: whether it goes on and is tried again, or has stopped until the server is restarted.
+         *     `times`: how often it failed since it worked last. `error`: the kind of the newest error; what
+         *     it says stands in the log.
+         */
+        readonly Failing: {
+            /** Error */
+            readonly error: string;
+            /** Name */
+            readonly name: string;
+            /**
+             * Since
+             * Format: date-time
+             */
+            readonly since: string;
+            /**
+             * State
+             * @enum {string}
+             */
+            readonly state: "failing" | "stopped";
+            /** Times */
+            readonly times: number;
+            /**
+             * Urgency
+             * @enum {string}
+             */
+            readonly urgency: "critical" | "warning";
+        };
+        /**
          * FigureFilter
          * @description Which sessions and rows are drawn; everything unless named.
          *
@@ -4619,15 +4651,21 @@ export interface components {
          * Health
          * @description Whether the server and its database answer, and whether the record can be written.
          *
-         *     `low_disk`: little space is left in the data folder.
+         *     `status` is degraded while something in the background fails, which `failing` names; `storage`
+         *     speaks for itself. `low_disk`: little space is left in the data folder.
          */
         readonly Health: {
             /** Database */
             readonly database: string;
+            /** Failing */
+            readonly failing: readonly components["schemas"]["Failing"][];
             /** Low Disk */
             readonly low_disk: boolean;
-            /** Status */
-            readonly status: string;
+            /**
+             * Status
+             * @enum {string}
+             */
+            readonly status: "ok" | "degraded";
             /**
              * Storage
              * @enum {string}

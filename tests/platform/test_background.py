@@ -1,0 +1,216 @@
+"""What runs beside the requests: an error is noticed, named by health, and mostly mended."""
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from app.clock import Clock
+from app.features.record.alarms import Change, Condition
+from app.features.record.telemetry import AlarmContent, Arrival, TelemetryWriter
+from app.features.results.exports.desk import QUEUE, ExportDesk
+from app.features.results.exports.jobs import Job
+from app.platform.background import REMEMBERED_NS, Background
+from app.platform.workers import Worker
+from tests.features.lab import Lab, running_lab
+from tests.support.sqlite import fresh_sqlite
+
+PATIENCE_S = 20.0
+
+
+@pytest.fixture
+def small_lab(tmp_path: Path) -> Iterator[Lab]:
+    """An application on SQLite."""
+    with running_lab(fresh_sqlite(tmp_path / "reembody.sqlite"), data_dir=tmp_path) as lab:
+        yield lab
+
+
+@pytest.fixture
+def background() -> Background:
+    """Nothing runs yet."""
+    return Background(Clock())
+
+
+def test_a_thread_that_ends_by_an_error_is_named_and_begun_again(background: Background) -> None:
+    """And is well once it says so; what it does not foresee is noticed all the same."""
+    runs, stop = [], threading.Event()
+
+    def work() -> None:
+        runs.append(True)
+        if len(runs) == 1:
+            raise ValueError("a bug")
+        stop.wait(PATIENCE_S)
+
+    thread = background.thread("work", work, critical=True)
+    wait_for(lambda: len(runs) == 2)
+    (one,) = background.failing()
+    assert (one.name, one.state, one.urgency, one.error) == (
+        *("work", "failing", "critical"),
+        "ValueError",
+    )
+    background.well("work")
+    assert background.failing() == ()
+    (incident,) = background.take_incidents()
+    assert incident.name == "work"
+    stop.set()
+    thread.join(PATIENCE_S)
+    assert background.failing() == ()
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_thread_that_is_gone_for_good_is_named_for_good(background: Background) -> None:
+    """As when the interpreter itself gives up in it."""
+
+    def work() -> None:
+        raise SystemExit(1)
+
+    background.thread("work", work).join(PATIENCE_S)
+    assert [(one.name, one.state) for one in background.failing()] == [("work", "stopped")]
+
+
+def test_what_nothing_proves_to_be_over_is_forgotten_after_a_while() -> None:
+    """A queue may have no next task that could show it."""
+    passed = [0]
+    background = Background(Clock(monotonic_ns=lambda: passed[0]))
+    with ThreadPoolExecutor(1) as pool:
+        done = pool.submit(int, "no number")
+    background.watched("queue", done)
+    assert [one.name for one in background.failing()] == ["queue"]
+    passed[0] += REMEMBERED_NS + 1
+    assert background.failing() == ()
+
+
+def test_a_process_that_dies_is_named_until_the_next_one_works(background: Background) -> None:
+    """One that is ended on purpose is not."""
+    worker = Worker().watched_by(background, "figures")
+    try:
+        pid = worker.submit(os.getpid).result()
+        worker.end()
+        assert background.failing() == ()
+        pid = worker.submit(os.getpid).result()
+        with pytest.raises(BrokenProcessPool):
+            worker.submit(os.kill, pid, signal.SIGKILL).result()
+        wait_for(lambda: [one.name for one in background.failing()] == ["figures"])
+        worker.submit(os.getpid).result()
+        wait_for(lambda: background.failing() == ())
+    finally:
+        worker.end()
+
+
+class _Ended:
+    """A sender that counts what became of its messages."""
+
+    def __init__(self) -> None:
+        self.stored, self.refused = 0, 0
+        self.last: object = None
+
+    def deliver(self, outcome: object) -> None:
+        """It is on disk."""
+        self.stored, self.last = self.stored + 1, outcome
+
+    def fail(self, error: Exception) -> None:
+        """It cannot be stored."""
+        self.refused, self.last = self.refused + 1, error
+
+
+def test_a_writer_that_dies_is_named_begun_again_and_loses_nothing(
+    small_lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Health says degraded with its name; what waited is stored by its successor; a session with a
+    headset has the alarm on record.
+    """
+    lab, sender = small_lab, _Ended()
+    view = lab.join(kind="test")
+    writer = lab.context.part(TelemetryWriter)
+    store, failures = writer._store, [OSError("the first"), OSError("the second")]
+
+    def fails(arrivals: Any) -> None:
+        if failures:
+            raise failures.pop()
+        store(arrivals)
+
+    monkeypatch.setattr(writer, "_store", fails)
+    lab.context.hub.headset_joined(view["id"])
+    raised = Change("raised", Condition("gap", "a gap"), lab.context.clock.utc_now())
+    writer.submit(Arrival(view["id"], sender, AlarmContent(raised)))
+    wait_for(lambda: health(lab)["status"] == "degraded")
+    (named,) = health(lab)["failing"]
+    assert (named["name"], named["urgency"], named["error"]) == (
+        *("telemetry-writer", "critical"),
+        "OSError",
+    )
+    wait_for(lambda: health(lab)["status"] == "ok")
+    assert (sender.stored, sender.refused) == (1, 0)
+    wait_for(lambda: alarms(lab, view["id"]) == {"gap", "writer_failed"})
+
+
+def test_messages_that_end_the_writer_again_and_again_are_refused(
+    small_lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Else nobody's movement would ever be stored again."""
+    lab, poisoned, sound = small_lab, _Ended(), _Ended()
+    view = lab.join(kind="test")
+    writer = lab.context.part(TelemetryWriter)
+    store = writer._store
+
+    def fails(arrivals: Any) -> None:
+        if any(one.sender is poisoned for one in arrivals):
+            raise OSError("this message")
+        store(arrivals)
+
+    monkeypatch.setattr(writer, "_store", fails)
+    raised = Change("raised", Condition("gap", "a gap"), lab.context.clock.utc_now())
+    writer.submit(Arrival(view["id"], poisoned, AlarmContent(raised)))
+    wait_for(lambda: poisoned.refused == 1)
+    writer.submit(Arrival(view["id"], sound, AlarmContent(raised)))
+    wait_for(lambda: sound.stored == 1)
+    wait_for(lambda: health(lab)["status"] == "ok")
+
+
+def test_an_export_that_breaks_its_queue_fails_and_the_next_is_made(
+    small_lab: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nobody waits for ever for one that will not come."""
+    desk = small_lab.context.part(ExportDesk)
+
+    def breaks(job: Job) -> None:
+        raise OSError("no process can be started")
+
+    monkeypatch.setattr(desk, "_make", breaks)
+    path = "/api/studies/reembodiment-latency/exports"
+    ordered = small_lab.operator.post(path, json={"kind": "test"}).json()
+    wait_for(
+        lambda: small_lab.operator.get(f"/api/exports/{ordered['id']}").json()["state"] == "failed"
+    )
+    assert [one["name"] for one in health(small_lab)["failing"]] == [QUEUE]
+    monkeypatch.undo()
+    small_lab.operator.post(path, json={"kind": "test"})
+    wait_for(lambda: health(small_lab)["status"] == "ok")
+
+
+def health(lab: Lab) -> dict[str, Any]:
+    """What anybody is told of the server."""
+    told: dict[str, Any] = lab.stranger().get("/api/health").json()
+    return told
+
+
+def alarms(lab: Lab, session_id: str) -> set[str]:
+    """The kinds of alarms that a session has had."""
+    return {
+        str(one["code"]) for one in lab.operator.get(f"/api/sessions/{session_id}/alarms").json()
+    }
+
+
+def wait_for(is_so: Callable[[], bool]) -> None:
+    """Until it is; fails after a while."""
+    give_up_s = time.monotonic() + PATIENCE_S
+    while not is_so():
+        assert time.monotonic() < give_up_s
+        time.sleep(0.01)
