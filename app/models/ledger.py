@@ -68,7 +68,8 @@ class SlotAttempt(Base):
     """A session's hold on a slot. At most one attempt of a slot is open or completed.
 
     The partial unique index makes a double booking impossible whatever the code does; a withdrawn
-    or aborted attempt stays with its data and reason and frees the slot for the next.
+    or aborted attempt stays with its data and reason and frees the slot for the next, and so does
+    an `invalid` one: its session was completed and does not count by the rules of the study.
     """
 
     __tablename__ = "slot_attempts"
@@ -80,7 +81,9 @@ class SlotAttempt(Base):
             sqlite_where=text("outcome IN ('open', 'completed')"),
             postgresql_where=text("outcome IN ('open', 'completed')"),
         ),
-        CheckConstraint("outcome IN ('open', 'completed', 'withdrawn', 'aborted')", name="outcome"),
+        CheckConstraint(
+            "outcome IN ('open', 'completed', 'withdrawn', 'aborted', 'invalid')", name="outcome"
+        ),
     )
 
     id: Mapped[Id]

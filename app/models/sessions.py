@@ -23,7 +23,9 @@ class StudySession(Base):
     """One visit of one participant. `version` counts events; `snapshot` is the state after them.
 
     `avatar_configuration_hash` names the content of the avatar's configuration that was used, if
-    the avatar has one (AvatarVersion).
+    the avatar has one (AvatarVersion). `shortfalls`: what a completed session lacks by its study's
+    rules in order to count, an empty list if nothing; null where there are no rules, or nothing was
+    decided yet.
     """
 
     __tablename__ = "sessions"
@@ -45,6 +47,7 @@ class StudySession(Base):
     status: Mapped[str] = mapped_column(String(20), index=True)
     version: Mapped[int] = mapped_column(default=0)
     snapshot: Mapped[dict[str, Any]] = mapped_column(JSON)
+    shortfalls: Mapped[list[dict[str, Any]] | None] = mapped_column(JSON(none_as_null=True))
     created_at: Mapped[UtcTime]
     started_at: Mapped[datetime | None] = mapped_column(UtcDateTime)
     ended_at: Mapped[datetime | None] = mapped_column(UtcDateTime)

@@ -33,6 +33,7 @@ from app.protocol.safety import StopRule
 from app.protocol.source import Path, Plain, Source, path_text, read_source
 from app.protocol.study import StudyProtocol
 from app.protocol.tasks import Tasks
+from app.protocol.validity import PhaseRule, ValidWhen
 
 __all__ = [
     "BY_HAND_S",
@@ -49,6 +50,7 @@ __all__ = [
     "LoadedInstrument",
     "LoadedStudy",
     "Path",
+    "PhaseRule",
     "Plain",
     "PlanError",
     "Preregistration",
@@ -61,6 +63,7 @@ __all__ = [
     "Tasks",
     "Text",
     "TimedStep",
+    "ValidWhen",
     "canonical_json",
     "compile_plan",
     "differences",

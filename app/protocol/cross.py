@@ -18,6 +18,7 @@ from app.protocol.safety import practice_problems, safety_problems
 from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
 from app.protocol.study import SCREEN_TEXTS
+from app.protocol.validity import validity_problems
 from app.science.instruments import DefinitionProblem, Instrument, text_problems
 
 _AVATAR_KEY = "avatar_configuration"
@@ -47,6 +48,7 @@ def cross_problems(
     yield from _sequences(tree)
     yield from safety_problems(tree, instruments)
     yield from practice_problems(tree)
+    yield from validity_problems(tree)
     yield from avatar_problems(tree, avatars)
     yield from preregistration_problems(tree, instruments)
 

@@ -89,6 +89,19 @@ class Step:
     until_completions: int | None = None
     consent: ConsentStep | None = None
 
+    @property
+    def phase_key(self) -> str | None:
+        """What rules call a timed step: hand, foot, free_roam, practice_hand, practice_foot."""
+        match self.kind:
+            case "task":
+                return str(self.limb)
+            case "practice":
+                return f"practice_{self.limb}"
+            case "free_roam":
+                return "free_roam"
+            case _:
+                return None
+
 
 def compile_plan(
     protocol: StudyProtocol, sequence: Sequence[str], *, block_limb_flip: bool = False

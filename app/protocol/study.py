@@ -10,6 +10,7 @@ from app.protocol.preregistration import Preregistration
 from app.protocol.procedure import FormStep, Procedure
 from app.protocol.safety import Safety
 from app.protocol.tasks import Appearance, Tasks
+from app.protocol.validity import ValidWhen
 from app.science.skeleton import JOINT_NAMES
 
 SCREEN_TEXTS = ("waiting", "freeze", "walk_back")
@@ -54,11 +55,16 @@ class LatencySettings(Strict):
     """How the added latency acts on the remote avatar.
 
     `undelayed_parts`: parts whose target is never delayed; in the thesis the hips, which guards
-    balance. `bypass_at_zero`: 0 ms means that no buffer is used at all.
+    balance. Nothing is ever buffered at 0 ms. `bypass_at_zero` said so in older files: it is read
+    there, kept in their content and decides nothing.
     """
 
     undelayed_parts: Annotated[tuple[str, ...], AfterValidator(_joints)] = ("Hips",)
-    bypass_at_zero: bool
+    bypass_at_zero: Annotated[
+        bool | None,
+        # Marked for the editor, which does not offer it.
+        Field(json_schema_extra={"deprecated": True}, exclude_if=lambda value: value is None),
+    ] = None
 
 
 class AvatarChoice(Strict):
@@ -103,6 +109,7 @@ class StudyProtocol(Strict):
     avatar_configuration: Annotated[
         AvatarChoice | None, Field(exclude_if=lambda value: value is None)
     ] = None
+    valid_when: Annotated[ValidWhen | None, Field(exclude_if=lambda value: value is None)] = None
     preregistration: Annotated[
         Preregistration | None, Field(exclude_if=lambda value: value is None)
     ] = None

@@ -27,6 +27,10 @@ def instruments() -> dict[str, Instrument]:
     return {instrument.key: instrument for instrument in loaded}
 
 
+BEFORE_RULES = Path(__file__).with_name("study_before_rules.yaml").read_text(encoding="utf-8")
+"""The latency study as it was shipped before studies said when a session counts."""
+
+
 def edited(*changes: tuple[str, str]) -> str:
     """The shipped study with words replaced; each must be there."""
     text = STUDY

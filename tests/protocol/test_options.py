@@ -5,7 +5,7 @@ import json
 import pytest
 
 from app.protocol import compile_plan
-from tests.protocol.helpers import STUDY, loaded, problems
+from tests.protocol.helpers import BEFORE_RULES, loaded, problems
 from tests.protocol.options import with_options
 
 ORDER = ("latency_0", "latency_125", "latency_350")
@@ -15,8 +15,8 @@ SHIPPED = "b62b8ecfa6a59a5feb957632fbfa65517f9d9542630c98bad2c496b2d90255a8"
 
 
 def test_the_hash_of_a_study_without_options_stays() -> None:
-    """What is not used is not part of the content: the shipped study is what it was."""
-    study = loaded()
+    """What is not used is not part of the content: an older study is what it was."""
+    study = loaded(BEFORE_RULES)
     assert study.content_hash == SHIPPED
     for word in ("safety", "signature", "statements", "practice", "optional"):
         assert word not in json.loads(study.canonical_json)["procedure"]["before"][0]
@@ -27,7 +27,7 @@ def test_a_signature_of_none_is_no_change() -> None:
     """Writing the default down gives the same content."""
     plain = "{step: consent, text: consent}"
     said = "{step: consent, text: consent, signature: none, statements: []}"
-    assert loaded(STUDY.replace(plain, said)).content_hash == SHIPPED
+    assert loaded(BEFORE_RULES.replace(plain, said)).content_hash == SHIPPED
 
 
 def test_a_practice_stands_outside_the_blocks() -> None:

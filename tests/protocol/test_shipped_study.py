@@ -13,7 +13,6 @@ def test_conditions_and_orders_are_those_of_the_thesis() -> None:
     assert [one.latency_ms for one in STUDY.conditions] == [0, 125, 350]
     assert (STUDY.orders.design, STUDY.orders.replicates) == ("all_permutations", 2)
     assert STUDY.latency.undelayed_parts == ("Hips",)
-    assert STUDY.latency.bypass_at_zero
     assert STUDY.instrument_keys == ("demographics", "karas2020")
     assert STUDY.condition("latency_125").latency_ms == 125
 

@@ -6,7 +6,7 @@ from typing import Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from app.features.record.alarms import AlarmView
-from app.features.record.ledger import Kind
+from app.features.record.ledger import Kind, Shortfall
 from app.features.record.questionnaires import StoredScores
 from app.features.record.sessions import ConsentForm, PaperConsent
 from app.protocol import StepKind
@@ -206,7 +206,11 @@ class NoteView(BaseModel):
 
 
 class SessionSummary(BaseModel):
-    """A row of a list of sessions."""
+    """A row of a list of sessions.
+
+    `shortfalls`: what a completed session lacks by its study's rules; it counts if there are none.
+    Null where the study has no rules, or the session is not completed.
+    """
 
     id: str
     participant_code: str
@@ -218,6 +222,7 @@ class SessionSummary(BaseModel):
     created_at: datetime
     started_at: datetime | None
     ended_at: datetime | None
+    shortfalls: list[Shortfall] | None
 
 
 class SessionView(SessionSummary):

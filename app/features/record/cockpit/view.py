@@ -23,7 +23,7 @@ from app.features.record.cockpit.schemas import (
     StepView,
 )
 from app.features.record.devices import TABLET_SILENT_AFTER_S, devices_of_session
-from app.features.record.ledger import slot_of
+from app.features.record.ledger import shortfalls_of, slot_of
 from app.features.record.questionnaires import stored_scores
 from app.features.record.sessions import (
     SessionState,
@@ -149,6 +149,9 @@ def _summary(
         created_at=session.created_at,
         started_at=session.started_at,
         ended_at=session.ended_at,
+        shortfalls=(
+            None if session.shortfalls is None else list(shortfalls_of(session.shortfalls))
+        ),
     )
 
 

@@ -6,16 +6,22 @@ from app.features.record.ledger.service import (
     close_attempt,
     hold_slot,
     planned_slots,
+    settle_attempt,
     slot_of,
     take_slot,
 )
+from app.features.record.ledger.shortfalls import Shortfall, ShortfallCode, shortfalls_of
 
 __all__ = [
     "Kind",
+    "Shortfall",
+    "ShortfallCode",
     "close_attempt",
     "find_or_add_participant",
     "hold_slot",
     "planned_slots",
+    "settle_attempt",
+    "shortfalls_of",
     "slot_of",
     "take_slot",
 ]

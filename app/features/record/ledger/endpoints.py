@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 from app.features.design.studies import newest_version, protocol_of, study_by_key
 from app.features.record.ledger.schemas import AttemptView, Kind, LedgerView, SequenceRow, SlotRow
 from app.features.record.ledger.service import SlotView, end_reason, ledger_of, planned_slots
+from app.models import SlotAttempt
 from app.platform.access import Caller, is_blind
 from app.platform.dependencies import Reading, SignedIn
 
@@ -63,16 +64,21 @@ def _row(db: Session, view: SlotView, latency_ms: dict[str, float]) -> SlotRow:
         state=view.state,
         attempts=[
             AttemptView(
-                session_id=attempt.session_id,
-                participant_code=code,
-                outcome=attempt.outcome,
-                opened_at=attempt.opened_at,
-                closed_at=attempt.closed_at,
-                reason=end_reason(db, attempt.session_id) if attempt.outcome in GIVEN_UP else None,
+                session_id=held.attempt.session_id,
+                participant_code=held.code,
+                outcome=held.attempt.outcome,
+                opened_at=held.attempt.opened_at,
+                closed_at=held.attempt.closed_at,
+                reason=_reason(db, held.attempt),
+                shortfalls=list(held.shortfalls),
             )
-            for attempt, code in view.attempts
+            for held in view.attempts
         ],
     )
+
+
+def _reason(db: Session, attempt: SlotAttempt) -> str | None:
+    return end_reason(db, attempt.session_id) if attempt.outcome in GIVEN_UP else None
 
 
 def _sequences(rows: Sequence[SlotRow]) -> list[SequenceRow]:

@@ -5,19 +5,26 @@ from typing import Literal
 
 from pydantic import BaseModel
 
+from app.features.record.ledger.shortfalls import Shortfall
+
 Kind = Literal["people", "simulated", "test", "expert"]
 """Whose sessions a ledger orders; each kind has slots of its own."""
 
 
 class AttemptView(BaseModel):
-    """A session that holds or held a slot."""
+    """A session that holds or held a slot.
+
+    `reason`: why it was aborted or withdrawn. `shortfalls`: why it was completed and does not count
+    (`invalid`); without any it counts, and its slot had been given to somebody else by then.
+    """
 
     session_id: str
     participant_code: str
-    outcome: Literal["open", "completed", "withdrawn", "aborted"]
+    outcome: Literal["open", "completed", "withdrawn", "aborted", "invalid"]
     opened_at: datetime
     closed_at: datetime | None
     reason: str | None
+    shortfalls: list[Shortfall]
 
 
 class SlotRow(BaseModel):

@@ -2,8 +2,9 @@
 
 The ledger is an immutable list of slots, every order in every replicate, with the slots permuted
 within each block by a stored seed. A session holds a slot by an attempt. When it is withdrawn or
-aborted the attempt closes with its data and the same slot is the next to be taken, so balance
-counts completed sessions. People, simulated, test and expert sessions have ledgers of their own.
+aborted, or is completed and does not count by the study's rules, the attempt closes with its data
+and the same slot is the next to be taken, so balance counts completed sessions that are valid.
+People, simulated, test and expert sessions have ledgers of their own.
 """
 
 import json
@@ -15,6 +16,7 @@ from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
 from app.errors import Conflict
+from app.features.record.ledger.shortfalls import Shortfall, shortfalls_of
 from app.models import (
     Ledger,
     LedgerSlot,
@@ -29,19 +31,30 @@ from app.models import (
 from app.protocol import StudyProtocol, ledger_block
 
 HOLDING = ("open", "completed")
+ENDED = ("completed", "invalid")
+"""Outcomes of completed sessions: that count, and that do not."""
+
+
+@dataclass(frozen=True)
+class Held:
+    """An attempt with the participant's code, and what its session lacks in order to count."""
+
+    attempt: SlotAttempt
+    code: str
+    shortfalls: tuple[Shortfall, ...]
 
 
 @dataclass(frozen=True)
 class SlotView:
-    """A slot with everybody who ever held it: (attempt, participant's code), oldest first."""
+    """A slot with everybody who ever held it, oldest first."""
 
     slot: LedgerSlot
-    attempts: tuple[tuple[SlotAttempt, str], ...]
+    attempts: tuple[Held, ...]
 
     @property
     def state(self) -> str:
         """free, open or completed."""
-        outcomes = {attempt.outcome for attempt, _ in self.attempts}
+        outcomes = {held.attempt.outcome for held in self.attempts}
         if "completed" in outcomes:
             return "completed"
         return "open" if "open" in outcomes else "free"
@@ -148,11 +161,32 @@ def hold_slot(db: Session, slot: LedgerSlot, session: StudySession, now: datetim
 
 
 def close_attempt(db: Session, session: StudySession, outcome: str, now: datetime) -> None:
-    """The session has ended: completed keeps the slot, withdrawn and aborted free it."""
+    """The session has ended: completed keeps the slot for now, withdrawn and aborted free it."""
     attempt = db.scalar(select(SlotAttempt).where(SlotAttempt.session_id == session.id))
     if attempt is not None and attempt.outcome == "open":
         attempt.outcome = outcome
         attempt.closed_at = now
+
+
+def settle_attempt(db: Session, session: StudySession, *, counts: bool) -> None:
+    """A completed session keeps its slot if it counts, and frees it if not.
+
+    One that turns out to count after all takes its slot back, unless somebody else has it by then.
+    """
+    attempt = db.scalar(select(SlotAttempt).where(SlotAttempt.session_id == session.id))
+    if attempt is None or attempt.outcome not in ENDED:
+        return
+    if not counts:
+        attempt.outcome = "invalid"
+    elif attempt.outcome == "invalid":
+        slot = db.get_one(LedgerSlot, attempt.slot_id)
+        # Simultaneous joins queue on the ledger, too.
+        db.scalar(select(Ledger.id).where(Ledger.id == slot.ledger_id).with_for_update())
+        held = select(SlotAttempt.id).where(
+            SlotAttempt.slot_id == attempt.slot_id, SlotAttempt.outcome.in_(HOLDING)
+        )
+        if db.scalar(held) is None:
+            attempt.outcome = "completed"
 
 
 def slot_of(db: Session, session: StudySession) -> LedgerSlot:
@@ -179,16 +213,17 @@ def ledger_of(db: Session, version: StudyVersion, kind: str) -> tuple[SlotView, 
         select(LedgerSlot).where(LedgerSlot.ledger_id == ledger.id).order_by(LedgerSlot.position)
     ).all()
     rows = db.execute(
-        select(SlotAttempt, Participant.code)
+        select(SlotAttempt, Participant.code, StudySession.shortfalls)
         .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
         .join(StudySession, StudySession.id == SlotAttempt.session_id)
         .join(Participant, Participant.id == StudySession.participant_id)
         .where(LedgerSlot.ledger_id == ledger.id)
         .order_by(SlotAttempt.opened_at)
     )
-    held: dict[str, list[tuple[SlotAttempt, str]]] = {}
-    for attempt, code in rows:
-        held.setdefault(attempt.slot_id, []).append((attempt, code))
+    held: dict[str, list[Held]] = {}
+    for attempt, code, stored in rows:
+        one = Held(attempt, code, shortfalls_of(stored))
+        held.setdefault(attempt.slot_id, []).append(one)
     return tuple(SlotView(slot, tuple(held.get(slot.id, ()))) for slot in slots)
 
 

@@ -27,8 +27,10 @@ from app.features.record.sessions.engine import (
     state_from_json,
     state_to_json,
 )
+from app.features.record.sessions.engine.events import SessionEnded
 from app.features.record.sessions.journal import append_events
 from app.features.record.sessions.projection import project
+from app.features.record.sessions.validity import settle_validity
 from app.models import KINDS, SessionEvent, StudySession, StudyVersion, new_id
 from app.platform.context import AppContext
 from app.platform.immutable_cache import Unchanging
@@ -206,8 +208,16 @@ def apply_command(
     session.status = str(state.status)
     session.snapshot = state_to_json(state)
     db.flush()
+    if any(isinstance(event, SessionEnded) for event in events):
+        settle_validity(db, session, plan, state)
+        db.flush()
     context.hub.publish_after_commit(db, session.id)
     return Applied(session, state, tuple(events))
+
+
+def judge_again(db: Session, session: StudySession) -> None:
+    """Decide once more whether a session counts, since a latency was measured after its end."""
+    settle_validity(db, session, plan_of(db, session), state_of(session))
 
 
 def is_repeated(db: Session, session_id: str, command_id: str) -> bool:

@@ -15,7 +15,7 @@ from sqlalchemy.orm import Session
 
 from app.features.record.alarms import Change, Condition, store_change
 from app.features.record.doubts import doubts_of
-from app.features.record.sessions import erased_session, not_erased
+from app.features.record.sessions import erased_session, judge_again, not_erased
 from app.features.record.telemetry.joint_errors import joint_error_rows
 from app.features.record.telemetry.latencies import history_s, latency_rows
 from app.features.record.telemetry.movement import Run, phase_runs
@@ -95,10 +95,12 @@ class Summariser(Part):
             with self.context.database.reading() as db:
                 rows = summary_rows(db, session_id, phase_id, wanted)
             with self.context.database.writing() as db:
-                session_by_id(db, session_id, lock=True)
+                session = session_by_id(db, session_id, lock=True)
                 if erased_session(db, session_id):
                     return
                 replace_rows(db, session_id, phase_id, rows, wanted)
+                db.flush()
+                judge_again(db, session)
             self._tell_doubts(session_id, phase_id)
         except Exception as error:
             log.exception("summaries of phase %s of %s failed", phase_id, session_id)

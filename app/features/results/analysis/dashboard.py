@@ -5,6 +5,7 @@ sessions are drawn, so that nobody who still runs a session can learn its latenc
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 
 import pandas as pd
@@ -31,7 +32,7 @@ from app.features.results.analysis.figures import (
     progress_time_drawing,
     quality_drawing,
 )
-from app.features.results.analysis.material import Material, read_material
+from app.features.results.analysis.material import Material, n_not_valid, read_material
 from app.features.results.analysis.schemas import (
     NO_FILTER,
     DashboardFigures,
@@ -44,6 +45,7 @@ from app.features.results.analysis.schemas import (
 from app.protocol import StudyProtocol
 
 TITLE_PREFIX = {"people": "", "simulated": "Simulated: ", "test": "Test: "}
+NONE_COUNTS = "There are data, but none that count: choose all rows to see them."
 BLINDED_NOTE = "The study is blinded: measures of sessions that are still open are left out."
 
 
@@ -67,6 +69,7 @@ def dashboard_of(
         simulated=material.kind == "simulated",
         n_sessions=len(left.sessions),
         n_completed=int((left.sessions["status"] == "completed").sum()),
+        n_not_valid=n_not_valid(left.sessions),
         avatar=sorted(set(left.sessions["avatar"])),
         filter=chosen,
         choices=_choices(material),
@@ -82,9 +85,23 @@ def drawings_of(
     note = f"{chosen.words()} {BLINDED_NOTE if material.blinded else ''}".strip()
     rows = _Rows(material.chosen(chosen), invalid=chosen.rows == "all")
     for draw in _GROUPS.values() if group is None else (_GROUPS[group],):
-        for drawing in draw(rows):
+        for drawing in _explained(draw, rows):
             told = drawing if chosen.is_all else drawing.among_chosen()
             yield told.marked(prefix, note)
+
+
+def _explained(draw: "Draw", rows: "_Rows") -> Iterator[Drawing]:
+    """The drawings; an empty one says so where there are data, and only none that count."""
+    everything: dict[str, Drawing] | None = None
+    for drawing in draw(rows):
+        if drawing.empty is not None and not rows.invalid and not rows.left.sessions.empty:
+            if everything is None:
+                everything = {one.key: one for one in draw(_Rows(rows.left, invalid=True))}
+            other = everything.get(drawing.key)
+            if other is not None and other.empty is None:
+                yield replace(drawing, empty=f"{drawing.empty} {NONE_COUNTS}")
+                continue
+        yield drawing
 
 
 class _Rows:
@@ -92,7 +109,7 @@ class _Rows:
 
     def __init__(self, left: Material, *, invalid: bool) -> None:
         self.left = left
-        self._invalid = invalid
+        self.invalid = invalid
 
     @cached_property
     def phases(self) -> pd.DataFrame:
@@ -106,7 +123,7 @@ class _Rows:
 
     def counting(self, table: pd.DataFrame) -> pd.DataFrame:
         """Of a table the rows that count."""
-        return self.left.counting(table, invalid=self._invalid)
+        return self.left.counting(table, invalid=self.invalid)
 
 
 def _embodiment(rows: _Rows) -> Iterator[Drawing]:
@@ -151,7 +168,8 @@ def _progress(rows: _Rows) -> Iterator[Drawing]:
     )
 
 
-_GROUPS: Mapping[FigureGroup, Callable[[_Rows], Iterator[Drawing]]] = {
+Draw = Callable[[_Rows], Iterator[Drawing]]
+_GROUPS: Mapping[FigureGroup, Draw] = {
     "embodiment": _embodiment,
     "answers": _answers,
     "tasks": _tasks,

@@ -98,9 +98,10 @@ def get_statistics(
 def get_codebook(key: str, db: Reading, _: SignedIn) -> list[ColumnView]:
     """What every column of the study's export holds."""
     # Loads pandas, which the start of the server need not wait for.
-    from app.features.results.analysis.codebook import CODEBOOK
+    from app.features.results.analysis.codebook import codebook
+    from app.features.results.analysis.tables import has_rules
 
-    study_by_key(db, key)
+    rules = has_rules(db, study_by_key(db, key))
     return [
         ColumnView(
             table=column.table,
@@ -110,7 +111,7 @@ def get_codebook(key: str, db: Reading, _: SignedIn) -> list[ColumnView]:
             type=column.type,
             levels=column.levels,
         )
-        for column in CODEBOOK
+        for column in codebook(rules=rules)
     ]
 
 

@@ -157,6 +157,11 @@ class Material:
         return rows[seen] if invalid else rows[seen & rows["valid"]]
 
 
+def n_not_valid(sessions: pd.DataFrame) -> int:
+    """How many sessions were completed and do not count by the rules of their study."""
+    return int(((sessions["status"] == "completed") & ~sessions["valid"]).sum())
+
+
 def read_material(db: Session, study_key: str, kind: DashboardKind) -> Material:
     """Read every table at once; raises NotFound for an unknown study."""
     material = _Reader(study_key, kind, db).material()

@@ -18,9 +18,10 @@ FigureGroup = Literal["progress", "embodiment", "answers", "tasks", "movement", 
 class FigureFilter(BaseModel):
     """Which sessions and rows are drawn; everything unless named.
 
-    `rows`: "valid" leaves out what does not count (broken-off sessions, superseded and skipped
-    steps), "all" draws it too. `since` and `until`: days, both included, on which a session was
-    created, in UTC. `order`: added latencies in ms in the order of the blocks, as in "0 125 350".
+    `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
+    by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
+    days, both included, on which a session was created, in UTC. `order`: added latencies in ms in
+    the order of the blocks, as in "0 125 350".
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -43,7 +44,9 @@ class FigureFilter(BaseModel):
         if self.limb is not None:
             told.append(f"the {self.limb} task")
         chosen = f"Only {', '.join(told)}." if told else ""
-        everything = "Rows that do not count are drawn too (broken off, superseded, skipped)."
+        everything = (
+            "Rows that do not count are drawn too (broken off, not valid, superseded, skipped)."
+        )
         return f"{chosen} {everything if self.rows == 'all' else ''}".strip()
 
     def _of_whom(self) -> list[str]:
@@ -111,12 +114,16 @@ class FilterChoices(BaseModel):
 
 
 class DashboardFigures(BaseModel):
-    """The figures of a study's sessions of one kind, as far as a filter leaves them."""
+    """The figures of a study's sessions of one kind, as far as a filter leaves them.
+
+    `n_not_valid` of the `n_completed` sessions do not count by the study's rules.
+    """
 
     kind: str
     simulated: bool
     n_sessions: int
     n_completed: int
+    n_not_valid: int
     avatar: list[str]
     filter: FigureFilter
     choices: FilterChoices
@@ -189,6 +196,7 @@ class StatisticsResults(BaseModel):
     simulated: bool
     n_sessions: int
     n_completed: int
+    n_not_valid: int
     alpha: float
     declared: bool
     notes: list[str]

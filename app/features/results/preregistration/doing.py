@@ -27,8 +27,11 @@ def done(
     protocol = protocol_of(newest_version(db, study))
     tables = read_tables(db, study.key, kind)
     excluded = exclude(tables, declared.preregistration.exclusions)
-    # Broken-off sessions count in no test, whether or not a rule says so.
-    completed = tables.sessions[tables.sessions["status"] == "completed"]
+    # Broken-off sessions, and those that are not valid by the study's own rules, count in no test,
+    # whether or not a declared rule says so.
+    completed = tables.sessions[
+        (tables.sessions["status"] == "completed") & tables.sessions["valid"]
+    ]
     kept = set(completed["session_id"]) - excluded.session_ids
     found = values_of(db, tables, protocol, kind, kept)
     result, why = _result(declared, found)

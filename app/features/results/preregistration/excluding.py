@@ -70,11 +70,16 @@ def read_tables(db: Session, study_key: str, kind: Kind) -> Tables:
 
 
 def exclude(tables: Tables, rules: tuple[ExclusionRule, ...]) -> Excluded:
-    """Apply every rule to every session that is over."""
+    """Apply every rule to every session that is over, beginning with the study's `valid_when`."""
     out = Excluded()
     over = tables.sessions[tables.sessions["status"].isin(BEGUN)]
-    rows = over[["session_id", "participant_code", "status"]]
-    for session_id, code, status in rows.itertuples(index=False, name=None):
+    rows = over[["session_id", "participant_code", "status", "valid", "reasons_not_valid"]]
+    for session_id, code, status, valid, why in rows.itertuples(index=False, name=None):
+        if status == "completed" and not valid:
+            # The study's own rules come first, and the rest was not measured to be judged.
+            out.found.append(ExclusionView(participant_code=code, rule="valid_when", reason=why))
+            out.session_ids.add(session_id)
+            continue
         for rule in rules:
             if rule.rule == "complete_session":
                 told = None if status == "completed" else f"the session was {status}"

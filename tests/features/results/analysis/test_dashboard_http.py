@@ -31,8 +31,8 @@ def client(sqlite_url: str, tmp_path: Path) -> Iterator[TestClient]:
 def test_a_dashboard_has_its_shape(client: TestClient) -> None:
     """Kind, counts, avatars, and figures with words for people and a figure for plotly.js."""
     view = client.get(f"/api/studies/{STUDY}/dashboard", params={"kind": "simulated"}).json()
-    about = {"kind", "simulated", "n_sessions", "n_completed", "avatar", "drawn_at", "current"}
-    assert set(view) == about | {"figures", "filter", "choices"}
+    about = {"kind", "simulated", "n_sessions", "n_completed", "n_not_valid", "avatar"}
+    assert set(view) == about | {"drawn_at", "current", "figures", "filter", "choices"}
     assert (view["kind"], view["simulated"], view["n_completed"]) == ("simulated", True, 2)
     for entry in view["figures"]:
         words = {"key", "title", "caption", "empty", "n", "group", "wide"}

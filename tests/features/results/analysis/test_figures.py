@@ -209,19 +209,22 @@ def test_no_contact_at_all_is_said() -> None:
 
 
 def test_progress_shows_every_order_also_one_nobody_had() -> None:
-    """Completed, open and withdrawn sessions of each order."""
+    """Completed, open and withdrawn sessions of each order; those that do not count stand apart."""
     sessions = pd.DataFrame(
         {
-            "participant_code": ["P-1", "P-2", "P-3"],
-            "order": ["0 125 350", "0 125 350", "350 125 0"],
-            "status": ["completed", "withdrawn", "active"],
+            "participant_code": ["P-1", "P-2", "P-3", "P-4"],
+            "order": ["0 125 350", "0 125 350", "350 125 0", "350 125 0"],
+            "status": ["completed", "withdrawn", "active", "completed"],
+            "valid": [True, False, True, False],
         }
     )
     drawing = progress_drawing(sessions, ["0 125 350", "125 0 350", "350 125 0"])
     (completed,), (opened,) = _traces(drawing, "completed"), _traces(drawing, "open")
     (withdrawn,) = _traces(drawing, "withdrawn or aborted")
     assert completed["x"] == ["0 → 125 → 350", "125 → 0 → 350", "350 → 125 → 0"]
+    (not_valid,) = _traces(drawing, "completed, not valid")
     nobody = None
+    assert not_valid["y"] == [nobody, nobody, 1]
     assert completed["y"] == [1, nobody, nobody]
     assert (opened["y"], withdrawn["y"]) == ([nobody, nobody, 1], [1, nobody, nobody])
 

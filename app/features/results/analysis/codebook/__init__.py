@@ -7,6 +7,7 @@ entries, in their order. So no column can be exported without a description.
 from app.features.results.analysis.codebook.book import (
     CODEBOOK,
     TABLES,
+    codebook,
     codebook_frame,
     columns_of,
     data_dictionary,
@@ -18,6 +19,7 @@ __all__ = [
     "TABLES",
     "Column",
     "ColumnType",
+    "codebook",
     "codebook_frame",
     "columns_of",
     "data_dictionary",

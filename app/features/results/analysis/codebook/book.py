@@ -86,14 +86,32 @@ _BY_TABLE = {
 }
 
 
-def columns_of(table: str) -> tuple[Column, ...]:
-    """The columns of a table in order."""
-    return _BY_TABLE[table]
+def columns_of(table: str, *, rules: bool = True) -> tuple[Column, ...]:
+    """The columns of a table in order.
+
+    `rules`: of studies that say when a session counts; what those have more is left out else.
+    """
+    columns = _BY_TABLE[table]
+    return columns if rules else tuple(map(_plain, filter(_without_rules, columns)))
 
 
-def codebook_frame() -> pd.DataFrame:
+def codebook(*, rules: bool = True) -> tuple[Column, ...]:
+    """Every column of an export, with or without what there is of studies with rules."""
+    return CODEBOOK if rules else tuple(map(_plain, filter(_without_rules, CODEBOOK)))
+
+
+def _without_rules(column: Column) -> bool:
+    return not column.of_rules
+
+
+def _plain(column: Column) -> Column:
+    told = column.without_rules
+    return column if told is None else replace(column, meaning=told)
+
+
+def codebook_frame(*, rules: bool = True) -> pd.DataFrame:
     """The codebook as a table: table, column, meaning, unit, type, levels."""
-    frame = pd.DataFrame([asdict(column) for column in CODEBOOK])
+    frame = pd.DataFrame([asdict(column) for column in codebook(rules=rules)])
     frame = frame.rename(columns={"name": "column"})
     return frame[[column.name for column in columns_of("codebook")]]
 

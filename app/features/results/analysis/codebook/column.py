@@ -1,8 +1,9 @@
 """One column of an export, described once, and the columns that many tables share."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
+_PHASE = "Whether the row may be analysed: the phase was finished and not redone or skipped,"
 ColumnType = Literal["text", "integer", "number", "boolean", "time"]
 
 
@@ -10,6 +11,8 @@ ColumnType = Literal["text", "integer", "number", "boolean", "time"]
 class Column:
     """What a column holds.
 
+    `of_rules`: only in exports with sessions of a study version that says when a session counts
+    (`valid_when`). `without_rules`: the meaning in all other exports, if it is another there.
     `type`: text, integer, number (double precision unless the meaning says otherwise), boolean
     (true or false) or time (UTC, ISO 8601). `unit` is empty for a column without one. `levels` is
     the range of a number or the words a text column can hold.
@@ -21,6 +24,8 @@ class Column:
     meaning: str
     unit: str = ""
     levels: str = ""
+    of_rules: bool = False
+    without_rules: str | None = None
 
 
 @dataclass(frozen=True)
@@ -44,6 +49,10 @@ class Describe:
     def boolean(self, name: str, meaning: str) -> Column:
         """A column of true and false."""
         return Column(self.table, name, "boolean", meaning, levels="true, false")
+
+    def valid(self, meaning: str, without_rules: str) -> Column:
+        """Whether a row counts, which means more where a study has rules for it."""
+        return replace(self.boolean("valid", meaning), without_rules=without_rules)
 
     def time(self, name: str, meaning: str) -> Column:
         """A column of moments."""
@@ -106,10 +115,10 @@ def phase_columns(table: str) -> tuple[Column, ...]:
         of.integer(
             "attempt", "Which attempt at the step; redone steps count up.", levels="1 and up"
         ),
-        of.boolean(
-            "valid",
-            "Whether the row may be analysed: the phase was finished and not redone or skipped, "
-            "the session was neither aborted nor withdrawn, and nothing that its headset said of "
-            "it is known to be untrue (doubts.csv).",
+        of.valid(
+            f"{_PHASE}, nothing that its headset said of it is known to be untrue (doubts.csv), "
+            "and the session counts (valid in sessions.csv).",
+            f"{_PHASE}, nothing that its headset said of it is known to be untrue (doubts.csv), "
+            "and the session was neither aborted nor withdrawn.",
         ),
     )

@@ -12,6 +12,12 @@ _S = Describe("scores")
 _C = Describe("corrections")
 
 
+_FORM = (
+    "Whether the row may be analysed: the form was not superseded by a later attempt, the "
+    "phase it asks about was not skipped,"
+)
+
+
 def _form_columns(table: str) -> tuple[Column, ...]:
     of = Describe(table)
     return (
@@ -24,11 +30,9 @@ def _form_columns(table: str) -> tuple[Column, ...]:
         of.integer(
             "attempt", "Which attempt at the step; redone steps count up.", levels="1 and up"
         ),
-        of.boolean(
-            "valid",
-            "Whether the row may be analysed: the form was not superseded by a later attempt, the "
-            "phase it asks about was not skipped, and the session was neither aborted nor "
-            "withdrawn nor, as a whole, in doubt (doubts.csv).",
+        of.valid(
+            f"{_FORM} and the session counts (valid in sessions.csv).",
+            f"{_FORM} and the session was neither aborted nor withdrawn.",
         ),
         of.text("mode", "How it was entered.", "tablet, operator"),
     )

@@ -1,5 +1,7 @@
 """The columns of sessions.csv, phases.csv and events.csv."""
 
+from dataclasses import replace
+
 from app.features.results.analysis.codebook.column import (
     Column,
     Describe,
@@ -13,10 +15,20 @@ _E = Describe("events")
 
 SESSIONS: tuple[Column, ...] = (
     *session_columns("sessions"),
-    _S.boolean(
-        "valid",
+    _S.valid(
+        "False if the session was aborted or withdrawn, was completed without what the study's "
+        "valid_when asks for, or if its headset said what cannot be true of more than one phase "
+        "(doubts.csv). A session that still runs is not judged yet.",
         "False if the session was aborted or withdrawn, or if its headset said what cannot be true "
         "of more than one phase (doubts.csv).",
+    ),
+    replace(
+        _S.text(
+            "reasons_not_valid",
+            "What a completed session lacks of the study's valid_when, separated by semicolons; or "
+            "that it was aborted or withdrawn. Empty if it is valid.",
+        ),
+        of_rules=True,
     ),
     _S.text("status", "Where it stands.", "planned, active, completed, aborted, withdrawn"),
     _S.text("language", "Language of the participant's texts.", "ISO 639-1 code"),

@@ -9,10 +9,12 @@ from app.features.results.analysis.figures.theme import BLUE, ORANGE, hatched, n
 KEY, TITLE = "exclusions", "What counts and what is left out"
 WHAT = (
     "All that is stored of the sessions shown. A phase or form counts if it was finished, not "
-    "redone since, not skipped, and its session neither aborted nor withdrawn. A score is missing "
-    "where one of its items has no answer."
+    "redone since, not skipped, and its session neither aborted nor withdrawn nor completed "
+    "without what the study's rules ask for. A score is missing where one of its items has no "
+    "answer."
 )
 _LOOKS = {True: ("counts", BLUE, ""), False: ("left out", ORANGE, "/")}
+LEFT_OUT = ("aborted", "withdrawn", "completed, not valid")
 _ROW_PX = 34
 
 
@@ -64,15 +66,18 @@ def _figure(rows: pd.DataFrame) -> go.Figure:
 
 
 def _counts(sessions: pd.DataFrame, tasks: pd.DataFrame, scores: pd.DataFrame) -> pd.DataFrame:
+    named = sessions["status"].mask(
+        (sessions["status"] == "completed") & ~sessions["valid"], "completed, not valid"
+    )
     found = [
-        ("sessions", status, status not in ("aborted", "withdrawn"), int(count))
-        for status, count in sessions["status"].value_counts().items()
+        ("sessions", status, status not in LEFT_OUT, int(count))
+        for status, count in named.value_counts().items()
     ]
     broken = ~tasks["valid"] & (tasks["status"] == "done")
     found += [
         ("phases", "count", True, int(tasks["valid"].sum())),
         ("phases", "redone or skipped", False, int((tasks["status"] == "voided").sum())),
-        ("phases", "session broken off", False, int(broken.sum())),
+        ("phases", "session broken off or not valid", False, int(broken.sum())),
         ("phases", "not finished", False, int(_open(tasks))),
     ]
     of_phases = scores.dropna(subset=["limb"])
@@ -80,7 +85,12 @@ def _counts(sessions: pd.DataFrame, tasks: pd.DataFrame, scores: pd.DataFrame) -
     found += [
         ("scores", "count", True, int((of_phases["valid"] & ~missing).sum())),
         ("scores", "an item has no answer", False, int(missing.sum())),
-        ("scores", "superseded, skipped or broken off", False, int((~of_phases["valid"]).sum())),
+        (
+            "scores",
+            "superseded, skipped, broken off or not valid",
+            False,
+            int((~of_phases["valid"]).sum()),
+        ),
     ]
     return pd.DataFrame(found, columns=["what", "reason", "counts", "count"])
 

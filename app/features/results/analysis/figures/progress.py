@@ -9,6 +9,7 @@ from app.features.results.analysis.figures.drawing import Drawing, drawn, partic
 from app.features.results.analysis.figures.theme import (
     BLUE,
     ORANGE,
+    PURPLE,
     VERMILLION,
     hatched,
     new_figure,
@@ -17,8 +18,10 @@ from app.features.results.analysis.figures.theme import (
 FEW = 10
 KEY, TITLE = "progress", "Sessions by order of latencies"
 TIME_KEY, TIME_TITLE = "progress_time", "Completed sessions over time"
+NOT_VALID = "completed, not valid"
 _STATES = {
     "completed": (("completed",), BLUE, ""),
+    NOT_VALID: ((NOT_VALID,), PURPLE, "."),
     "open": (("planned", "active"), ORANGE, "/"),
     "withdrawn or aborted": (("withdrawn", "aborted"), VERMILLION, "x"),
 }
@@ -35,10 +38,13 @@ def progress_drawing(
     if sessions.empty:
         return Drawing(KEY, TITLE, "", 0, empty="No session has joined the study yet.")
     own = pd.Series("all orders", sessions.index) if blinded else sessions["order"]
+    status = _statuses(sessions)
     names = ["all orders"] if blinded else sorted({*orders, *own}, key=_as_numbers)
     figure = new_figure()
     for state, (statuses, colour, pattern) in _STATES.items():
-        counts = own[sessions["status"].isin(statuses)].value_counts()
+        counts = own[status.isin(statuses)].value_counts()
+        if state == NOT_VALID and counts.empty:
+            continue
         figure.add_trace(
             go.Bar(
                 x=[name.replace(" ", " → ") if not blinded else name for name in names],
@@ -56,20 +62,28 @@ def progress_drawing(
         # Left alone, plotly would label halves of sessions.
         figure.update_yaxes(dtick=1)
     caption = f"n = {n} participant{'s' if n != 1 else ''}. Balance counts completed sessions only."
+    if (status == NOT_VALID).any():
+        caption = caption.replace("completed sessions only", "completed sessions that are valid")
     if blinded:
         caption += " The study is blinded, so orders are not told apart."
-    table = own.rename("order").to_frame().assign(status=sessions["status"])
+    table = own.rename("order").to_frame().assign(status=status)
     keys = ["order", "status"]
     rows = table.groupby(keys).size().rename("sessions").reset_index().sort_values(keys)
     return drawn(KEY, TITLE, caption, n, figure, rows)
 
 
+def _statuses(sessions: pd.DataFrame) -> "pd.Series[str]":
+    """Where each session stands; those that were completed and do not count stand apart."""
+    off = (sessions["status"] == "completed") & ~sessions["valid"]
+    return sessions["status"].mask(off, NOT_VALID)
+
+
 def progress_time_drawing(sessions: pd.DataFrame, planned: int) -> Drawing:
     """Completed sessions over the days, and how many the design asks for (`planned`)."""
-    done = sessions[sessions["status"] == "completed"].dropna(subset=["ended_at_utc"])
+    done = sessions[_statuses(sessions) == "completed"].dropna(subset=["ended_at_utc"])
     n = participants(done)
     if done.empty:
-        return Drawing(TIME_KEY, TIME_TITLE, "", 0, empty="No session is completed yet.")
+        return Drawing(TIME_KEY, TIME_TITLE, "", 0, empty="No session is completed and valid yet.")
     days = done["ended_at_utc"].dt.date.value_counts().sort_index()
     rows = days.rename_axis("day_utc").rename("completed").reset_index()
     rows["together"] = rows["completed"].cumsum()

@@ -7,7 +7,7 @@ alpha is the usual 5 %, and the answers say that nobody declared it.
 from collections.abc import Iterator, Sequence
 
 from app.features.results.analysis.figures.drawing import limb_note
-from app.features.results.analysis.material import Material
+from app.features.results.analysis.material import Material, n_not_valid
 from app.features.results.analysis.questions.descriptives import descriptive
 from app.features.results.analysis.questions.limb_tests import limb_results
 from app.features.results.analysis.questions.measures import (
@@ -32,7 +32,7 @@ DECLARED = (
     "The study's declared test stands under Preregistration, with whom its rules leave out. "
     "What is here was not declared, and is exploratory."
 )
-OPEN = "Tests use completed sessions only; what is still open may change and is left out."
+OPEN = "Tests use completed sessions that are valid; what is still open may change and is left out."
 SIMULATED = "These are simulated data: they test the analysis, and say nothing about people."
 TEST = "These are sessions for trying things out; their results mean nothing."
 
@@ -47,6 +47,7 @@ def answers_of(material: Material) -> StatisticsResults:
         simulated=material.kind == "simulated",
         n_sessions=len(sessions),
         n_completed=int((sessions["status"] == "completed").sum()),
+        n_not_valid=n_not_valid(sessions),
         alpha=alpha,
         declared=declared is not None,
         notes=_notes(material),

@@ -1,8 +1,8 @@
 """What is tested: one value for each participant, limb and latency, and who is not in it.
 
-Only completed sessions are tested, and of those only rows that count. A value is the mean of a
-participant's rows in one cell of the design. Whoever lacks a cell is left out of the tests that
-need all of them, by name and with the reason.
+Only completed sessions that are valid are tested, and of those only rows that count. A value is the
+mean of a participant's rows in one cell of the design. Whoever lacks a cell is left out of the
+tests that need all of them, by name and with the reason.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -114,17 +114,26 @@ def measures_of(material: Material) -> Iterator[Measure]:
 
 
 def completed(material: Material) -> Material:
-    """Only what belongs to completed sessions: others may still change."""
-    codes = set(material.sessions[material.sessions["status"] == "completed"]["session_id"])
-    return material.of_sessions(codes)
+    """Only what belongs to completed sessions that are valid: open ones may still change."""
+    sessions = material.sessions
+    tested = (sessions["status"] == "completed") & sessions["valid"]
+    return material.of_sessions(set(sessions[tested]["session_id"]))
 
 
 def left_out(material: Material) -> list[str]:
     """Sessions that are in no test, each with the reason."""
-    sessions = material.sessions[material.sessions["status"] != "completed"]
-    reasons = {"planned": "not started", "active": "still open"}
-    pairs = zip(sessions["participant_code"], sessions["status"], strict=True)
-    return shortened([f"{code}: {reasons.get(status, status)}" for code, status in pairs])
+    sessions = material.sessions
+    out = sessions[(sessions["status"] != "completed") | ~sessions["valid"]]
+    known = {"planned": "not started", "active": "still open"}
+    lines = [
+        f"{code}: not valid ({why})"
+        if status == "completed"
+        else f"{code}: {known.get(status, status)}"
+        for code, status, why in zip(
+            out["participant_code"], out["status"], out["reasons_not_valid"], strict=True
+        )
+    ]
+    return shortened(lines)
 
 
 def shortened(lines: Sequence[str]) -> list[str]:

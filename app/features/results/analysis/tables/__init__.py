@@ -2,14 +2,15 @@
 
 Every function takes a study and a kind (people, simulated, test or all) and gives a DataFrame whose
 columns are those of the codebook, in their order. Nothing is left out: redone phases, superseded
-forms and broken-off sessions are there with `valid` false. Texts are `object`, whole numbers
+forms, broken-off sessions and those that do not count by their study's rules are there with `valid`
+false. Texts are `object`, whole numbers
 `Int64`, numbers `float64`, booleans `bool` (`boolean` where one is missing), times
 `datetime64[us, UTC]`; missing values are NA.
 """
 
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.clocks import run_clocks
-from app.features.results.analysis.tables.context import KINDS, of_kind
+from app.features.results.analysis.tables.context import KINDS, has_rules, of_kind
 from app.features.results.analysis.tables.equipment import (
     calibrations_table,
     clock_mapping_table,
@@ -53,6 +54,7 @@ __all__ = [
     "corrections_table",
     "doubts_table",
     "events_table",
+    "has_rules",
     "joint_angles_table",
     "joint_error_course_table",
     "joint_errors_table",

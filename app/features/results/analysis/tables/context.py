@@ -1,6 +1,6 @@
 """What rows are joined with: whose they are, where in the design, and whether they count."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import astuple
@@ -12,7 +12,7 @@ import pandas as pd
 from sqlalchemy import ColumnElement, Select, and_, select
 from sqlalchemy.orm import Session
 
-from app.features.design.studies import study_by_key
+from app.features.design.studies import protocol_of, study_by_key, versions_of
 from app.features.record.doubts import doubts_of_sessions
 from app.features.record.sessions import plan_of, state_of
 from app.features.results.analysis.codebook import ColumnType, columns_of
@@ -115,6 +115,7 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
             Participant.code,
             StudySession.id,
             StudySession.status,
+            StudySession.shortfalls,
         )
         .join(StudyVersion, StudyVersion.id == StudySession.study_version_id)
         .join(Participant, Participant.id == StudySession.participant_id)
@@ -122,10 +123,28 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         .order_by(StudySession.created_at, StudySession.id)
     )
     names = ("study_version", "kind", "avatar", "participant_code", "session_id", "session_status")
-    frame = read(db, query, names)
+    frame = read(db, query, (*names, "shortfalls"))
+    frame["session_counts"] = _counts(frame) & ~frame["session_id"].isin(
+        doubted_sessions(db, study_key, kind)
+    )
     frame["study_key"] = study.key
     frame["simulated"] = frame["kind"] == "simulated"
     return frame
+
+
+def _counts(sessions: pd.DataFrame) -> "pd.Series[Any]":
+    """Whether each session counts: not broken off, and nothing missing that its study demands."""
+    lacking = [bool(found) for found in sessions["shortfalls"]]
+    return ~(sessions["session_status"].isin(BROKEN_OFF) | pd.Series(lacking, sessions.index))
+
+
+def has_rules(db: Session, study: Study, used: Collection[int] = ()) -> bool:
+    """Whether versions of the study say when a session counts (`valid_when`).
+
+    `used`: the numbers of the versions that are looked at; all where there are none.
+    """
+    versions = [one for one in versions_of(db, study) if not used or one.number in used]
+    return any(protocol_of(version).valid_when is not None for version in versions)
 
 
 @_once
@@ -202,12 +221,8 @@ def phases_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     doubted = doubts_context(db, study_key, kind)
     in_doubt = set(zip(doubted["session_id"], doubted["phase_id"], strict=True))
     own = zip(frame["session_id"], frame["phase_id"], strict=True)
-    frame["valid"] = (
-        (frame["status"] == "done")
-        & ~frame["session_status"].isin(BROKEN_OFF)
-        & ~frame["session_id"].isin(doubted_sessions(db, study_key, kind))
-        & np.array([key not in in_doubt for key in own], dtype=np.bool_)
-    )
+    believed = np.array([key not in in_doubt for key in own], dtype=np.bool_)
+    frame["valid"] = (frame["status"] == "done") & frame["session_counts"] & believed
     return frame
 
 

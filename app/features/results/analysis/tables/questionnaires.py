@@ -11,8 +11,6 @@ from app.features.design.studies import study_by_key
 from app.features.record.questionnaires import newest_corrections
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
-    BROKEN_OFF,
-    doubted_sessions,
     finished,
     of_kind,
     read,
@@ -153,9 +151,8 @@ def _forms(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
     versions = {row: instrument.version for row, instrument in _instruments(db).items()}
     frame["instrument_version"] = [versions[row] for row in frame["instrument_version_id"]]
     superseded = frame["attempt"] != frame["attempt_that_counts"]
-    broken_off = frame["session_status"].isin(BROKEN_OFF)
-    broken_off |= frame["session_id"].isin(doubted_sessions(db, study.key, kind))
-    frame["valid"] = frame["answered"].fillna(value=False).astype(bool) & ~superseded & ~broken_off
+    answered = frame["answered"].fillna(value=False).astype(bool)
+    frame["valid"] = answered & ~superseded & frame["session_counts"]
     frame["form"] = range(len(frame))
     return frame
 

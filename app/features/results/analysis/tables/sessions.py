@@ -1,13 +1,16 @@
 """The tables of sessions and of their events, the audit trail as it stands in the log."""
 
 import json
+from collections.abc import Mapping, Sequence
 from datetime import datetime
+from typing import Any
 
 import pandas as pd
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.design.studies import protocol_of, study_by_key, versions_of
+from app.features.record.ledger import shortfalls_of
 from app.features.record.sessions import content_body, plan_of, state_of
 from app.features.results.analysis.schemas import Kind
 from app.features.results.analysis.tables.context import (
@@ -28,6 +31,8 @@ from app.models import (
     StudyVersion,
 )
 
+IN_DOUBT = "what the headset said cannot be true (doubts.csv)"
+
 
 def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
     """One row per session, oldest first."""
@@ -41,9 +46,26 @@ def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         " ".join(f"{latencies[version, key]:g}" for key in sequence or ())
         for version, sequence in zip(frame["study_version"], frame["sequence"], strict=True)
     ]
-    doubted = frame["session_id"].isin(doubted_sessions(db, study_key, kind))
-    frame["valid"] = ~frame["status"].isin(BROKEN_OFF) & ~doubted
+    frame["valid"] = frame["session_counts"]
+    doubted = doubted_sessions(db, study_key, kind)
+    frame["reasons_not_valid"] = [
+        f"session {status}"
+        if status in BROKEN_OFF
+        else _reasons(found, IN_DOUBT if own in doubted else None)
+        for status, found, own in zip(
+            frame["status"], frame["shortfalls"], frame["session_id"], strict=True
+        )
+    ]
     return finished(frame, "sessions")
+
+
+def _reasons(stored: Sequence[Mapping[str, Any]] | None, more: str | None) -> str | None:
+    return "; ".join(filter(None, (reasons_in_words(stored), more))) or None
+
+
+def reasons_in_words(stored: Sequence[Mapping[str, Any]] | None) -> str | None:
+    """What a session lacks in order to count, in one cell; None where it lacks nothing."""
+    return "; ".join(one.words() for one in shortfalls_of(stored)) or None
 
 
 def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:

@@ -25,9 +25,12 @@ def safe_text(text: str) -> str:
     return f"'{text}" if _RUNS.match(text) else text
 
 
-def csv_pieces(table: str, frame: pd.DataFrame) -> Iterator[bytes]:
-    """A table as CSV: UTF-8, LF, quoted as in RFC 4180, missing values empty; in pieces."""
-    columns = columns_of(table)
+def csv_pieces(table: str, frame: pd.DataFrame, *, rules: bool = True) -> Iterator[bytes]:
+    """A table as CSV: UTF-8, LF, quoted as in RFC 4180, missing values empty; in pieces.
+
+    `rules`: with the columns that only studies with rules of validity have.
+    """
+    columns = columns_of(table, rules=rules)
     yield _lines([[column.name for column in columns]])
     for first in range(0, len(frame), ROWS_AT_ONCE):
         part = frame.iloc[first : first + ROWS_AT_ONCE]

@@ -30,6 +30,7 @@ from app.features.results.analysis.tables import (
     corrections_table,
     doubts_table,
     events_table,
+    has_rules,
     joint_error_course_table,
     joint_errors_table,
     phases_table,
@@ -42,7 +43,7 @@ from app.features.results.exports.writing.cells import csv_pieces
 from app.features.results.exports.writing.readme import FileCount, Origin, readme_text
 from app.features.results.exports.writing.samples import SampleFile
 from app.features.results.imports import import_files
-from app.models import StudyVersion
+from app.models import Study, StudyVersion
 
 TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "sessions": sessions_table,
@@ -100,12 +101,16 @@ class Contents:
         """Tables, codebook, frames and receipt of each session, and the README last."""
         sessions = self._table(sessions_table)
         self.sessions = len(sessions)
+        study = study_by_key(self.db, self.study_key)
+        used = {int(number) for number in sessions["study_version"].dropna()}
+        rules = has_rules(self.db, study, used)
         for name, table in TABLE_FILES.items():
             frame = sessions if name == "sessions" else self._table(table)
-            yield self._member(f"{name}.csv", csv_pieces(name, frame))
+            yield self._member(f"{name}.csv", csv_pieces(name, frame, rules=rules))
         equipment = calibrations_table(self.db)
         yield self._member("calibrations.csv", csv_pieces("calibrations", equipment))
-        yield self._member("codebook.csv", csv_pieces("codebook", codebook_frame()))
+        described = codebook_frame(rules=rules)
+        yield self._member("codebook.csv", csv_pieces("codebook", described))
         rows = sessions[["participant_code", "session_id", "simulated", "avatar"]]
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
             samples = SampleFile(self.db, session_id, bool(simulated), avatar)
@@ -113,9 +118,9 @@ class Contents:
             yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         # Apart from every table, since nothing here ran them; a person's own copy is of sessions.
         if self.kind in ("people", "all") and self.only is None:
-            for name, body in import_files(self.db, study_by_key(self.db, self.study_key)):
+            for name, body in import_files(self.db, study):
                 yield self._member(f"imported/{name}", iter([body]))
-        yield Member(README, iter([self._readme(sessions).encode()]))
+        yield Member(README, iter([self._readme(study, used, sessions, rules=rules).encode()]))
 
     def _table(self, table: Callable[[Session, str, Kind], pd.DataFrame]) -> pd.DataFrame:
         frame = table(self.db, self.study_key, self.kind)
@@ -137,9 +142,7 @@ class Contents:
             yield piece
         self.files.append(FileCount(path, lines, digest.hexdigest()))
 
-    def _readme(self, sessions: pd.DataFrame) -> str:
-        study = study_by_key(self.db, self.study_key)
-        used = {int(number) for number in sessions["study_version"].dropna()}
+    def _readme(self, study: Study, used: set[int], sessions: pd.DataFrame, *, rules: bool) -> str:
         versions = self.db.scalars(
             select(StudyVersion)
             .where(StudyVersion.study_id == study.id)
@@ -150,4 +153,4 @@ class Contents:
         }
         statuses = {str(key): int(n) for key, n in sessions["status"].value_counts().items()}
         origin = Origin(self.study_key, self.kind, self.now, self.audit_head, hashes, statuses)
-        return readme_text(origin, self.files)
+        return readme_text(origin, self.files, rules=rules)

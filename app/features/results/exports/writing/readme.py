@@ -10,6 +10,14 @@ from app.features.people.audit import TrailHead
 MARK = "Reembody export"
 """How an export's README begins, by which we know our own folders again."""
 
+_BROKEN_OFF = (
+    "  Redone phases, superseded forms and broken-off sessions are included: use rows with "
+    "valid = true.\n"
+)
+_NOT_VALID = (
+    "  So are completed sessions that do not count by the study's valid_when; reasons_not_valid\n"
+    "  in sessions.csv says why.\n"
+)
 _READING = """\
 Reading the files
   codebook.csv describes every column: meaning, unit, type and range.
@@ -61,8 +69,12 @@ class FileCount:
     sha256: str
 
 
-def readme_text(origin: Origin, files: Sequence[FileCount]) -> str:
-    """The text: version, study with content hashes, when, kind, counts, files with hashes."""
+def readme_text(origin: Origin, files: Sequence[FileCount], *, rules: bool = True) -> str:
+    """The text: version, study with content hashes, when, kind, counts, files with hashes.
+
+    `rules`: there are sessions of a version that says when a session counts.
+    """
+    reading = _READING.replace(_BROKEN_OFF, _BROKEN_OFF + _NOT_VALID) if rules else _READING
     when = origin.now.astimezone(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
     statuses = ", ".join(f"{count} {status}" for status, count in sorted(origin.statuses.items()))
     head = [
@@ -83,9 +95,7 @@ def readme_text(origin: Origin, files: Sequence[FileCount]) -> str:
         f"  {file.sha256}  {file.lines:>9}  {file.path}"
         for file in sorted(files, key=lambda file: file.path)
     ]
-    return "\n".join(
-        [*head, _READING, "Files (SHA-256, lines with the header, name)", *listing, ""]
-    )
+    return "\n".join([*head, reading, "Files (SHA-256, lines with the header, name)", *listing, ""])
 
 
 def _warning(kind: str) -> list[str]:

@@ -1,0 +1,67 @@
+"""Why a completed session does not count: what it lacks of the rules of its study."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, TypeAdapter
+
+ShortfallCode = Literal[
+    "phase_skipped", "phase_short", "form_skipped", "latency_missing", "latency_off"
+]
+_PHASE_WORDS = {
+    "hand": "hand task",
+    "foot": "foot task",
+    "free_roam": "free movement",
+    "practice_hand": "practice with the hand",
+    "practice_foot": "practice with the foot",
+}
+
+
+class Shortfall(BaseModel):
+    """One thing that a session lacks in order to count.
+
+    `step` is the step's key in the plan and `phase` what the rules call it; both name the phase
+    that a form asks about, if it has one. `value` is what was found and `limit` what was asked for:
+    seconds of active time, or milliseconds between the achieved and the ordered latency. Neither
+    tells the condition.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    code: ShortfallCode
+    step: str
+    block: int | None = None
+    phase: str | None = None
+    instrument: str | None = None
+    value: float | None = None
+    limit: float | None = None
+
+    def words(self) -> str:
+        """The shortfall as a clause in English."""
+        parts = (
+            None if self.block is None else f"block {self.block}",
+            None if self.phase is None else _PHASE_WORDS.get(self.phase, self.phase),
+        )
+        place = ", ".join(part for part in parts if part)
+        return f"{place}: {self._what()}" if place else self._what()
+
+    def _what(self) -> str:
+        match self.code:
+            case "phase_skipped":
+                return "skipped"
+            case "phase_short":
+                return f"{self.value:.1f} s of active time, at least {self.limit:g} s needed"
+            case "form_skipped":
+                return f"questionnaire {self.instrument} not answered"
+            case "latency_missing":
+                return "no achieved latency could be measured"
+            case "latency_off":
+                return f"achieved latency off by {self.value:.0f} ms (limit {self.limit:g} ms)"
+
+
+_STORED = TypeAdapter(tuple[Shortfall, ...])
+
+
+def shortfalls_of(stored: Sequence[Mapping[str, Any]] | None) -> tuple[Shortfall, ...]:
+    """Those that are stored with a session (`StudySession.shortfalls`)."""
+    return _STORED.validate_python(list(stored or ()))

@@ -1,0 +1,133 @@
+"""Whether a completed session counts, by the rules of the study version that it followed.
+
+This is the one place where that is decided. It is decided when the session ends, and again when a
+measured latency comes in later; the outcome is stored on the session (`shortfalls`), and ledger,
+dashboard, statistics, export and cockpit read it there.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from app.features.design.studies import version_content
+from app.features.record.ledger import Shortfall, ShortfallCode, settle_attempt
+from app.features.record.sessions.engine import SessionState
+from app.features.record.sessions.engine.state import PhaseState
+from app.models import PhaseLatency, StudySession
+from app.protocol import PhaseRule, Step, ValidWhen
+
+MS_PER_S = 1000.0
+
+
+@dataclass(frozen=True)
+class PhaseDelay:
+    """What is known of a phase's latency, s; `achieved_s` is None where it could not be told."""
+
+    ordered_s: float
+    achieved_s: float | None
+
+
+def judged(
+    rules: ValidWhen,
+    plan: Sequence[Step],
+    state: SessionState,
+    delays: Mapping[int, PhaseDelay],
+) -> tuple[Shortfall, ...]:
+    """What a session lacks, in the order of its steps; nothing if it counts.
+
+    Args:
+        rules: of its study version.
+        plan: its steps.
+        state: where it stands.
+        delays: by phase id. A phase without one has not been looked at yet: nothing is held against
+            it until it has.
+    """
+    return tuple(found for step in plan for found in _of_step(rules, step, state, delays))
+
+
+def _of_step(
+    rules: ValidWhen, step: Step, state: SessionState, delays: Mapping[int, PhaseDelay]
+) -> Iterator[Shortfall]:
+    done = state.steps[step.index].status == "done"
+    limb = None if step.limb is None else str(step.limb)
+    if step.instrument is not None:
+        if step.instrument in rules.forms and not done:
+            yield Shortfall(
+                code="form_skipped",
+                step=step.key,
+                block=step.block,
+                phase=limb,
+                instrument=step.instrument,
+            )
+        return
+    rule = next((one for one in rules.phases if one.phase == step.phase_key), None)
+    if rule is None:
+        return
+    runs = [one for one in state.ended_phases if one.step == step.index and one.status == "done"]
+    found = (
+        _of_phase(rules, rule, runs[-1], delays.get(runs[-1].phase_id))
+        if done and runs
+        else [Found("phase_skipped")]
+    )
+    for code, value, limit in found:
+        yield Shortfall(
+            code=code,
+            step=step.key,
+            block=step.block,
+            phase=step.phase_key,
+            value=value,
+            limit=limit,
+        )
+
+
+class Found(NamedTuple):
+    """A shortfall without its place."""
+
+    code: ShortfallCode
+    value: float | None = None
+    limit: float | None = None
+
+
+def _of_phase(
+    rules: ValidWhen, rule: PhaseRule, run: PhaseState, delay: PhaseDelay | None
+) -> Iterator[Found]:
+    """What a phase that was carried through lacks."""
+    if rule.min_active_s is not None and run.active_s < rule.min_active_s:
+        yield Found("phase_short", run.active_s, rule.min_active_s)
+    latency = rules.achieved_latency
+    if delay is None or latency is None:
+        return
+    if delay.achieved_s is None:
+        if latency.reported:
+            yield Found("latency_missing")
+    elif latency.tolerance_ms is not None:
+        off_ms = MS_PER_S * abs(delay.achieved_s - delay.ordered_s)
+        if off_ms > latency.tolerance_ms:
+            yield Found("latency_off", off_ms, latency.tolerance_ms)
+
+
+def settle_validity(
+    db: Session, session: StudySession, plan: Sequence[Step], state: SessionState
+) -> None:
+    """Decide whether a completed session counts, and whether it keeps its slot.
+
+    Nothing is decided of one that still runs or was broken off, nor where the study has no rules.
+    """
+    rules = version_content(db, session.study_version_id).protocol.valid_when
+    if rules is None or state.status != "completed" or state.erased:
+        return
+    found = judged(rules, plan, state, _delays(db, session.id))
+    session.shortfalls = [one.model_dump() for one in found]
+    settle_attempt(db, session, counts=not found)
+
+
+def _delays(db: Session, session_id: str) -> dict[int, PhaseDelay]:
+    rows = db.execute(
+        select(PhaseLatency.phase_id, PhaseLatency.ordered_s, PhaseLatency.achieved_s).where(
+            PhaseLatency.session_id == session_id
+        )
+    )
+    return {phase_id: PhaseDelay(ordered_s, achieved_s) for phase_id, ordered_s, achieved_s in rows}

@@ -1,0 +1,173 @@
+"""When a completed session counts: what of it must be complete, declared by the study.
+
+A study without `valid_when` counts every session that was neither aborted nor withdrawn. With it, a
+completed session must meet all rules; one that does not keeps its data, is marked as not valid in
+every table and figure, and frees its slot of the ledger for somebody else.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Annotated, Self, TypeGuard
+
+from pydantic import Field, StringConstraints, model_validator
+
+from app.protocol.common import Key, Strict, refusal
+from app.protocol.source import Path, Plain
+from app.science.instruments import DefinitionProblem
+
+_MAX_TOLERANCE_MS = 10_000.0
+_AT: Path = ("valid_when",)
+
+PhaseKey = Annotated[
+    str,
+    StringConstraints(min_length=1, max_length=40),
+    Field(description="hand or foot, free_roam, practice_hand or practice_foot: one of the study"),
+]
+
+
+class PhaseRule(Strict):
+    """A timed phase that must have been carried through, in every block where it is in a block.
+
+    `min_active_s`: how much active time it needs at least; pauses and walks back do not count.
+    """
+
+    phase: PhaseKey
+    min_active_s: Annotated[float | None, Field(gt=0, le=86_400, description="seconds")] = None
+
+
+class LatencyRule(Strict):
+    """What must be known of the latency that the avatar really had, in the phases that are listed.
+
+    `reported`: it could be measured. `tolerance_ms`: where it was measured, it differs from the
+    ordered latency by no more than that. A body that is moved by physics adds its own lag.
+    """
+
+    reported: bool
+    tolerance_ms: Annotated[
+        float | None, Field(gt=0, le=_MAX_TOLERANCE_MS, description="milliseconds, above 0")
+    ] = None
+
+
+class ValidWhen(Strict):
+    """What a completed session needs in order to count.
+
+    `phases`: the timed phases; `forms`: the instruments whose every administration must have been
+    answered; `achieved_latency`: of the phases above.
+    """
+
+    phases: Annotated[tuple[PhaseRule, ...], Field(max_length=20)] = ()
+    forms: Annotated[tuple[Key, ...], Field(max_length=50)] = ()
+    achieved_latency: LatencyRule | None = None
+
+    @model_validator(mode="after")
+    def _asks_for_something(self) -> Self:
+        if not self.phases and not self.forms:
+            raise refusal(
+                "The rules ask for nothing, so every completed session would meet them.",
+                value=None,
+                valid="at least one phase or form",
+                remedy="Name a phase or a form, or leave valid_when out.",
+            )
+        for field, keys in (("phases", [one.phase for one in self.phases]), ("forms", self.forms)):
+            for at, key in enumerate(keys):
+                if key in keys[:at]:
+                    raise refusal(
+                        f"{key!r} is named twice.",
+                        value=key,
+                        valid="every phase and form once",
+                        remedy="Name it once.",
+                        at=(field, at),
+                    )
+        if self.achieved_latency is not None and not self.phases:
+            raise refusal(
+                "The achieved latency is that of the phases, and none is listed.",
+                value=None,
+                valid="at least one phase",
+                remedy="List the phases, or leave achieved_latency out.",
+                at=("achieved_latency",),
+            )
+        return self
+
+
+def validity_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
+    """Rules on phases and forms that the study does not have, or on more time than a phase has."""
+    rules = _dict(tree.get("valid_when"))
+    durations = _durations(tree)
+    for at, rule in enumerate(_list(rules.get("phases"))):
+        path: Path = (*_AT, "phases", at)
+        key, least = _dict(rule).get("phase"), _dict(rule).get("min_active_s")
+        if not isinstance(key, str):
+            continue
+        if key not in durations:
+            yield _unknown((*path, "phase"), "phase", key, list(durations))
+            continue
+        longest = durations[key]
+        if _is_number(least) and longest is not None and least > longest:
+            yield DefinitionProblem(
+                (*path, "min_active_s"),
+                f"The phase {key!r} has {longest:g} s of active time, so no session would count.",
+                least,
+                f"above 0, at most {longest:g}",
+                f"Ask for at most {longest:g} s.",
+            )
+    forms = _forms(tree)
+    for at, key in enumerate(_list(rules.get("forms"))):
+        if isinstance(key, str) and key not in forms:
+            yield _unknown((*_AT, "forms", at), "form", key, forms)
+
+
+def _unknown(path: Path, what: str, key: str, known: list[str]) -> DefinitionProblem:
+    return DefinitionProblem(
+        path,
+        f"The study has no {what} {key!r}.",
+        key,
+        known,
+        f"Use one of: {', '.join(known) or 'none is in the procedure'}.",
+    )
+
+
+def _durations(tree: Mapping[str, Plain]) -> dict[str, float | None]:
+    """The keys of all timed phases of the procedure, each with the least active time it is given.
+
+    A practice that can end early has no such time.
+    """
+    procedure = _dict(tree.get("procedure"))
+    phases: list[tuple[str, Plain, bool]] = []
+    for step in map(_dict, _list(procedure.get("before"))):
+        if step.get("step") == "free_roam":
+            phases.append(("free_roam", step.get("duration_s"), False))
+        elif step.get("step") == "practice":
+            early = step.get("repeat_until_completions") is not None
+            phases.append((f"practice_{step.get('limb')}", step.get("duration_s"), early))
+    block = map(_dict, _list(_dict(procedure.get("block")).get("phases")))
+    phases += [(str(phase.get("limb")), phase.get("duration_s"), False) for phase in block]
+    found: dict[str, float | None] = {}
+    for key, duration, early in phases:
+        given = float(duration) if _is_number(duration) and not early else None
+        known = found.get(key, given)
+        found[key] = None if given is None or known is None else min(given, known)
+    return found
+
+
+def _forms(tree: Mapping[str, Plain]) -> list[str]:
+    """Every instrument that the study asks, in the order of the procedure."""
+    procedure = _dict(tree.get("procedure"))
+    block = _dict(procedure.get("block"))
+    asked = [
+        *(_dict(step).get("instrument") for step in _list(procedure.get("before"))),
+        *(_dict(phase).get("questionnaire") for phase in _list(block.get("phases"))),
+        *(_dict(step).get("instrument") for step in _list(block.get("after"))),
+        *(_dict(step).get("instrument") for step in _list(procedure.get("after"))),
+    ]
+    return list(dict.fromkeys(one for one in asked if isinstance(one, str)))
+
+
+def _is_number(value: Plain) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _dict(value: Plain) -> dict[str, Plain]:
+    return value if isinstance(value, dict) else {}
+
+
+def _list(value: Plain) -> list[Plain]:
+    return value if isinstance(value, list) else []

@@ -1,0 +1,205 @@
+"""Which completed sessions count, and which give their slot back."""
+
+from dataclasses import replace
+
+from sqlalchemy import delete
+from sqlalchemy.orm import Session
+
+from app.features.record.ledger import Shortfall, close_attempt
+from app.features.record.sessions import judge_again
+from app.features.record.sessions.engine import commands as c
+from app.features.record.sessions.engine import state_to_json
+from app.features.record.sessions.engine.state import SessionState, SessionStatus, StepStatus
+from app.features.record.sessions.validity import PhaseDelay, judged
+from app.models import Phase, PhaseLatency, StudySession
+from app.protocol import ValidWhen
+from tests.features.lab import STUDY, Json, Lab, ok
+from tests.features.latency_builders import measured
+from tests.features.record.sessions.engine_run import PLAN, Run, index_of
+from tests.features.session_filler import NOW
+from tests.protocol.helpers import BEFORE_RULES, study
+
+RULES = study().valid_when or ValidWhen(forms=("karas2020",))
+TASKS = [step for step in PLAN if step.kind == "task"]
+
+
+def done() -> SessionState:
+    """A session whose every task was carried through and every form answered."""
+    run = Run()
+    for step in TASKS:
+        run.begin(step.key).finish()
+    steps = tuple(replace(one, status=StepStatus.DONE) for one in run.state.steps)
+    return replace(run.state, status=SessionStatus.COMPLETED, current=None, steps=steps)
+
+
+def delays(state: SessionState, achieved_s: float | None = 0.2) -> dict[int, PhaseDelay]:
+    """Every phase measured alike; 0.1 s were ordered."""
+    return {one.phase_id: PhaseDelay(0.1, achieved_s) for one in state.ended_phases}
+
+
+def skip_all(lab: Lab, view: Json) -> Json:
+    """Every step is skipped, and so the session ends."""
+    view = lab.command(view, "start")
+    while view["status"] == "active":
+        view = lab.command(view, "skip", reason="nobody was there")
+    return view
+
+
+def ledger(lab: Lab) -> list[Json]:
+    """The slots of people's ledger."""
+    slots: list[Json] = ok(lab.operator.get(f"/api/studies/{STUDY}/ledger?kind=people"))["slots"]
+    return slots
+
+
+def complete(db: Session, view: Json) -> StudySession:
+    """The session of this view, with everything done; the first phase has a row."""
+    session = db.get_one(StudySession, view["id"])
+    state = done()
+    session.status, session.snapshot = "completed", state_to_json(state)
+    close_attempt(db, session, "completed", NOW)
+    phase = state.ended_phases[0]
+    step = PLAN[phase.step]
+    db.add(
+        Phase(
+            session_id=session.id,
+            phase_id=phase.phase_id,
+            step_index=step.index,
+            step_key=step.key,
+            attempt=1,
+            kind="task",
+            limb="hand",
+            block=1,
+            condition=step.condition,
+            latency_ms=100.0,
+            status="done",
+            prepared_at=NOW,
+        )
+    )
+    db.flush()
+    return session
+
+
+def measure(db: Session, session: StudySession, achieved_s: float | None) -> None:
+    """The first phase's latency is measured (again), and validity decided anew."""
+    phase = db.get_one(Phase, (session.id, 1))
+    db.execute(delete(PhaseLatency).where(PhaseLatency.session_id == session.id))
+    db.add(measured(phase, achieved_s))
+    db.flush()
+    judge_again(db, session)
+
+
+def test_a_session_in_which_everything_was_done_counts() -> None:
+    """Nothing is held against it, also while no latency was looked at."""
+    state = done()
+    assert judged(RULES, PLAN, state, delays(state)) == ()
+    assert judged(RULES, PLAN, state, {}) == ()
+
+
+def test_what_is_missing_is_told_in_the_order_of_the_steps() -> None:
+    """A skipped task, a short one, an unanswered form, latencies unknown and off."""
+    state = done()
+    short, last = (TASKS[index].index for index in (1, 5))
+    form = index_of("block2.hand.karas2020")
+    statuses = {TASKS[0].index: StepStatus.SKIPPED, form: StepStatus.SKIPPED}
+    state = replace(
+        state,
+        steps=tuple(
+            replace(one, status=statuses.get(index, one.status))
+            for index, one in enumerate(state.steps)
+        ),
+        ended_phases=tuple(
+            replace(one, active_s=12.5) if one.step == short else one for one in state.ended_phases
+        ),
+    )
+    known = delays(state)
+    known[state.ended_phases[-1].phase_id] = PhaseDelay(0.1, None)
+    found = judged(RULES, PLAN, state, known)
+    assert [(one.code, one.step) for one in found] == [
+        ("phase_skipped", TASKS[0].key),
+        ("phase_short", PLAN[short].key),
+        ("form_skipped", "block2.hand.karas2020"),
+        ("latency_missing", PLAN[last].key),
+    ]
+    assert [one.words() for one in found] == [
+        "block 1, hand task: skipped",
+        "block 1, foot task: 12.5 s of active time, at least 54 s needed",
+        "block 2, hand task: questionnaire karas2020 not answered",
+        "block 3, foot task: no achieved latency could be measured",
+    ]
+
+
+def test_a_latency_may_be_off_by_the_tolerance_and_no_more() -> None:
+    """100 ms off is allowed by a tolerance of 101 ms and refused by one of 99 ms."""
+    state = done()
+    for tolerance_ms, count in ((101.0, 0), (99.0, 6)):
+        rules = ValidWhen.model_validate_json(
+            '{"phases": [{"phase": "hand"}, {"phase": "foot"}], '
+            f'"achieved_latency": {{"reported": false, "tolerance_ms": {tolerance_ms}}}}}'
+        )
+        found = judged(rules, PLAN, state, delays(state))
+        assert [one.code for one in found] == ["latency_off"] * count
+        assert judged(rules, PLAN, state, delays(state, None)) == ()
+
+
+def test_a_redone_task_counts_by_its_last_run() -> None:
+    """The latency of the voided run is not looked at."""
+    run = Run().begin(TASKS[0].key).finish()
+    run.do(c.Redo(step=TASKS[0].index, content=c.ContentRef("content", "hash")))
+    run.begin(TASKS[0].key).finish()
+    found = judged(RULES, PLAN, run.state, {1: PhaseDelay(0.1, None)})
+    assert TASKS[0].key not in [one.step for one in found]
+
+
+def test_a_session_whose_every_task_was_skipped_gives_its_slot_back(fresh_lab: Lab) -> None:
+    """It is completed and does not count, view and ledger say why, and the next one takes over."""
+    lab = fresh_lab
+    view = skip_all(lab, lab.join())
+    assert view["status"] == "completed"
+    codes = [one["code"] for one in view["shortfalls"]]
+    assert codes == ["phase_skipped", "form_skipped"] * 6
+    slot = ledger(lab)[0]
+    assert (slot["state"], slot["attempts"][0]["outcome"]) == ("free", "invalid")
+    assert slot["attempts"][0]["shortfalls"] == view["shortfalls"]
+    assert Shortfall.model_validate(view["shortfalls"][0]).words() == "block 1, hand task: skipped"
+    assert lab.join()["slot"]["index"] == 0
+
+
+def test_a_study_without_rules_keeps_the_slot(fresh_lab: Lab) -> None:
+    """Completed is completed, as before there were rules."""
+    lab = fresh_lab
+    ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": BEFORE_RULES}))
+    view = skip_all(lab, lab.join())
+    assert (view["status"], view["shortfalls"]) == ("completed", None)
+    slot = ledger(lab)[0]
+    assert (slot["state"], slot["attempts"][0]["outcome"]) == ("completed", "completed")
+
+
+def test_a_latency_that_comes_later_decides_again(fresh_lab: Lab) -> None:
+    """Nothing looked at yet keeps the slot, unknown frees it, known takes it back."""
+    lab = fresh_lab
+    view = lab.join()
+    with lab.database.writing() as db:
+        session = complete(db, view)
+        judge_again(db, session)
+        assert session.shortfalls == []
+    assert ledger(lab)[0]["state"] == "completed"
+    for achieved_s, outcome in ((None, "invalid"), (0.1, "completed")):
+        with lab.database.writing() as db:
+            measure(db, db.get_one(StudySession, view["id"]), achieved_s)
+        assert ledger(lab)[0]["attempts"][0]["outcome"] == outcome
+    assert lab.view(view["id"])["shortfalls"] == []
+
+
+def test_a_slot_that_somebody_else_has_by_then_stays_theirs(fresh_lab: Lab) -> None:
+    """A session that counts after all is valid, and holds no slot."""
+    lab = fresh_lab
+    view = lab.join()
+    with lab.database.writing() as db:
+        measure(db, complete(db, view), None)
+    other = lab.join()
+    assert other["slot"]["index"] == view["slot"]["index"]
+    with lab.database.writing() as db:
+        measure(db, db.get_one(StudySession, view["id"]), 0.1)
+    slot = ledger(lab)[0]
+    assert [one["outcome"] for one in slot["attempts"]] == ["invalid", "open"]
+    assert lab.view(view["id"])["shortfalls"] == []

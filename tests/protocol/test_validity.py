@@ -1,0 +1,84 @@
+"""The rules that say when a completed session counts."""
+
+import json
+from pathlib import Path
+
+import pytest
+import yaml
+
+from tests.protocol.helpers import BEFORE_RULES, CONFIGS, STUDY, edited, loaded, problems, study
+
+HAND = "{phase: hand, min_active_s: 54}"
+
+
+def test_the_shipped_study_asks_for_its_tasks_and_its_questionnaire() -> None:
+    """Both tasks with nine tenths of their minute, every karas2020, and a measured latency."""
+    rules = study().valid_when
+    assert rules is not None
+    assert [(one.phase, one.min_active_s) for one in rules.phases] == [("hand", 54), ("foot", 54)]
+    assert rules.forms == ("karas2020",)
+    assert rules.achieved_latency is not None
+    assert (rules.achieved_latency.reported, rules.achieved_latency.tolerance_ms) == (True, None)
+
+
+@pytest.mark.parametrize(
+    "file", sorted((CONFIGS / "templates").glob("*.yaml")), ids=lambda f: f.stem
+)
+def test_a_template_asks_for_every_task_and_every_form_of_a_block(file: Path) -> None:
+    """A new study begins with rules: all its tasks, and all questionnaires of its blocks."""
+    protocol = loaded(file.read_text(encoding="utf-8")).protocol
+    rules, block = protocol.valid_when, protocol.procedure.block
+    assert rules is not None
+    assert {one.phase for one in rules.phases} == {str(one.limb) for one in block.phases}
+    asked = {one.questionnaire for one in block.phases} | {one.instrument for one in block.after}
+    assert asked <= set(rules.forms)
+
+
+def test_an_older_study_is_what_it_was() -> None:
+    """Without the key nothing of it is in the content, and the setting nobody reads still loads."""
+    older = loaded(BEFORE_RULES)
+    assert older.protocol.valid_when is None
+    content = json.loads(older.canonical_json)
+    assert "valid_when" not in content
+    assert content["latency"] == {"undelayed_parts": ["Hips"], "bypass_at_zero": True}
+    assert "bypass_at_zero" not in json.loads(loaded().canonical_json)["latency"]
+
+
+def test_unknown_phases_and_forms_are_refused_with_those_there_are() -> None:
+    """The problem has the path, the value and the valid keys."""
+    [phase] = problems(edited((HAND, "{phase: hands}")))
+    assert (phase.path, phase.value) == ("valid_when.phases[0].phase", "hands")
+    assert phase.valid == ["free_roam", "hand", "foot"]
+    [form] = problems(edited(("forms: [karas2020]", "forms: [karas2020, veq]")))
+    assert (form.path, form.value) == ("valid_when.forms[1]", "veq")
+    assert form.valid == ["demographics", "karas2020"]
+
+
+def test_rules_that_nobody_can_meet_are_refused() -> None:
+    """More active time than a phase has."""
+    [problem] = problems(edited((HAND, "{phase: hand, min_active_s: 61}")))
+    assert (problem.path, problem.value) == ("valid_when.phases[0].min_active_s", 61)
+    assert problem.valid == "above 0, at most 60"
+
+
+@pytest.mark.parametrize(
+    ("rules", "path"),
+    [
+        ({}, "valid_when"),
+        ({"phases": [{"phase": "hand"}, {"phase": "hand"}]}, "valid_when.phases[1]"),
+        ({"forms": ["karas2020", "karas2020"]}, "valid_when.forms[1]"),
+        (
+            {"forms": ["karas2020"], "achieved_latency": {"reported": True}},
+            "valid_when.achieved_latency",
+        ),
+    ],
+)
+def test_rules_that_say_nothing_or_say_it_twice_are_refused(
+    rules: dict[str, object], path: str
+) -> None:
+    """Nothing asked for, a key named twice, a latency of no phase."""
+    tree = yaml.safe_load(STUDY)
+    tree["valid_when"] = rules
+    [problem] = problems(yaml.safe_dump(tree, allow_unicode=True))
+    assert problem.path == path
+    assert problem.remedy
