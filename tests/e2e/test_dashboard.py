@@ -36,7 +36,7 @@ def test_figures_are_chosen_by_the_address_and_saved(
     page = page_factory((1280, 800))
     Experimenter(page, live_server.url).log_in()
     page.goto(f"{live_server.url}/?kind=simulated&participant=SIM-0001#/studies/{STUDY}/dashboard")
-    expect(page.get_by_text("from 1 completed session")).to_be_visible(timeout=PATIENCE_MS)
+    expect(page.get_by_text("from 1 valid session")).to_be_visible(timeout=PATIENCE_MS)
     agency = page.get_by_role("figure").filter(has_text="Agency by added latency")
     agency.scroll_into_view_if_needed()
     expect(agency.locator(".js-plotly-plot")).to_be_visible(timeout=PATIENCE_MS)

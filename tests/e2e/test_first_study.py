@@ -94,7 +94,7 @@ def test_a_whole_session_from_login_to_csv(
     assert wearer.error is None
     screenshot(experimenter.page, "session-completed")
     experimenter.open_tab(STUDY, "dashboard")
-    expect(experimenter.page.get_by_text("from 1 completed session")).to_be_visible(
+    expect(experimenter.page.get_by_text("from 1 valid session")).to_be_visible(
         timeout=PATIENCE_MS
     )
     figure = experimenter.page.locator(".js-plotly-plot").first

@@ -71,4 +71,5 @@ export const session: SessionView = {
   alarms: [],
   notes: [],
   scores: [],
+  shortfalls: null,
 };

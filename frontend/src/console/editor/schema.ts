@@ -29,6 +29,7 @@ interface Raw {
   readonly maximum?: number;
   readonly pattern?: string;
   readonly description?: string;
+  readonly deprecated?: boolean;
   readonly "x-text"?: boolean;
 }
 
@@ -115,11 +116,14 @@ function numberSpec(node: Raw): NumberSpec {
 function object(root: Raw, node: Raw): Spec {
   if (node.properties !== undefined) {
     const required = new Set(node.required ?? []);
-    const fields = Object.entries(node.properties).map(([name, inner]) => ({
-      name,
-      spec: specOf(root, inner),
-      required: required.has(name),
-    }));
+    const fields = Object.entries(node.properties)
+      // What only older files have is kept in them and not offered.
+      .filter(([, inner]) => inner.deprecated !== true)
+      .map(([name, inner]) => ({
+        name,
+        spec: specOf(root, inner),
+        required: required.has(name),
+      }));
     return { kind: "object", fields };
   }
   const free = Object.values(node.patternProperties ?? {})[0] ?? node.additionalProperties;

@@ -32,6 +32,7 @@ import { safetyDe, safetyEn } from "./safetyTexts";
 import { storageDe, storageEn } from "./storageTexts";
 import { studyDe, studyEn } from "./studyTexts";
 import { tourDe, tourEn } from "./tourTexts";
+import { validityDe, validityEn } from "./validityTexts";
 import { verificationDe, verificationEn } from "./verificationTexts";
 import { versionsDe, versionsEn } from "./versionTexts";
 import { walkingModelDe, walkingModelEn } from "./walkingModelTexts";
@@ -51,6 +52,7 @@ const allEn = {
   ...instrumentsEn,
   ...rightsEn,
   ...safetyEn,
+  ...validityEn,
   ...consentEn,
   ...expertEn,
   ...equipmentEn,
@@ -84,6 +86,7 @@ const allDe = {
   ...instrumentsDe,
   ...rightsDe,
   ...safetyDe,
+  ...validityDe,
   ...consentDe,
   ...expertDe,
   ...equipmentDe,

@@ -4,6 +4,7 @@ import { consentDe, consentEn } from "./consentTexts";
 import { equipmentDe, equipmentEn } from "./equipmentTexts";
 import { expertDe, expertEn } from "./expertTexts";
 import { safetyDe, safetyEn } from "./safetyTexts";
+import { validityDe, validityEn } from "./validityTexts";
 
 type Table = Readonly<Record<string, string>>;
 const TABLES: Readonly<Record<string, readonly [Table, Table]>> = {
@@ -12,6 +13,7 @@ const TABLES: Readonly<Record<string, readonly [Table, Table]>> = {
   equipment: [equipmentEn, equipmentDe],
   experts: [expertEn, expertDe],
   safety: [safetyEn, safetyDe],
+  validity: [validityEn, validityDe],
 };
 const gaps = (text: string) => [...text.matchAll(/{{(\w+)}}/g)].map(([, name]) => name).sort();
 

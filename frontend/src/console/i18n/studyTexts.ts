@@ -169,7 +169,7 @@ export const studyEn = {
   "outcome.withdrawn": "Withdrawn",
   "outcome.open": "Running",
   "ledger.lead.people":
-    "Every order of the latencies, filled in turn. A session that is withdrawn gives its slot back.",
+    "Every order of the latencies, filled in turn. A session that is withdrawn, or is completed and does not count, gives its slot back.",
   "ledger.lead.simulated":
     "Simulated sessions fill a ledger of their own and never count for people.",
   "ledger.lead.test": "Test sessions fill a ledger of their own and never count.",
@@ -184,8 +184,8 @@ export const studyEn = {
   "ledger.position": "Slots",
   "ledger.empty.title": "The ledger is not drawn yet",
   "ledger.empty.body": "It is made when the first session of this kind joins.",
-  "dashboard.sessions_one": "from {{count}} completed session",
-  "dashboard.sessions_other": "from {{count}} completed sessions",
+  "dashboard.sessions_one": "from {{count}} valid session",
+  "dashboard.sessions_other": "from {{count}} valid sessions",
   "dashboard.drawing": "newer data are being drawn",
   "dashboard.empty.title": "Nothing to draw yet",
   "dashboard.empty.body": "Figures appear as soon as a session of this kind is completed.",
@@ -250,7 +250,7 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "outcome.withdrawn": "Zurückgezogen",
   "outcome.open": "Läuft",
   "ledger.lead.people":
-    "Jede Reihenfolge der Latenzen, der Reihe nach gefüllt. Eine zurückgezogene Sitzung gibt ihren Platz zurück.",
+    "Jede Reihenfolge der Latenzen, der Reihe nach gefüllt. Eine Sitzung, die zurückgezogen wird oder abgeschlossen ist und nicht zählt, gibt ihren Platz zurück.",
   "ledger.lead.simulated":
     "Simulierte Sitzungen füllen einen eigenen Plan und zählen nie für Personen.",
   "ledger.lead.test": "Testsitzungen füllen einen eigenen Plan und zählen nie.",
@@ -265,8 +265,8 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "ledger.position": "Plätze",
   "ledger.empty.title": "Der Plan ist noch nicht ausgelost",
   "ledger.empty.body": "Er entsteht, wenn die erste Sitzung dieser Art beitritt.",
-  "dashboard.sessions_one": "aus {{count}} abgeschlossenen Sitzung",
-  "dashboard.sessions_other": "aus {{count}} abgeschlossenen Sitzungen",
+  "dashboard.sessions_one": "aus {{count}} gültigen Sitzung",
+  "dashboard.sessions_other": "aus {{count}} gültigen Sitzungen",
   "dashboard.drawing": "neuere Daten werden gezeichnet",
   "dashboard.empty.title": "Noch nichts zu zeichnen",
   "dashboard.empty.body":

@@ -2843,6 +2843,9 @@ export interface components {
         /**
          * AttemptView
          * @description A session that holds or held a slot.
+         *
+         *     `reason`: why it was aborted or withdrawn. `shortfalls`: why it was completed and does not count
+         *     (`invalid`); without any it counts, and its slot had been given to somebody else by then.
          */
         readonly AttemptView: {
             /** Closed At */
@@ -2856,13 +2859,15 @@ export interface components {
              * Outcome
              * @enum {string}
              */
-            readonly outcome: "open" | "completed" | "withdrawn" | "aborted";
+            readonly outcome: "open" | "completed" | "withdrawn" | "aborted" | "invalid";
             /** Participant Code */
             readonly participant_code: string;
             /** Reason */
             readonly reason: string | null;
             /** Session Id */
             readonly session_id: string;
+            /** Shortfalls */
+            readonly shortfalls: readonly components["schemas"]["Shortfall"][];
         };
         /**
          * AuditCheckView
@@ -3999,6 +4004,8 @@ export interface components {
             readonly kind: string;
             /** N Completed */
             readonly n_completed: number;
+            /** N Not Valid */
+            readonly n_not_valid: number;
             /** N Sessions */
             readonly n_sessions: number;
             /** Simulated */
@@ -4413,9 +4420,10 @@ export interface components {
          * FigureFilter
          * @description Which sessions and rows are drawn; everything unless named.
          *
-         *     `rows`: "valid" leaves out what does not count (broken-off sessions, superseded and skipped
-         *     steps), "all" draws it too. `since` and `until`: days, both included, on which a session was
-         *     created, in UTC. `order`: added latencies in ms in the order of the blocks, as in "0 125 350".
+         *     `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
+         *     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
+         *     days, both included, on which a session was created, in UTC. `order`: added latencies in ms in
+         *     the order of the blocks, as in "0 125 350".
          */
         readonly FigureFilter: {
             /** Limb */
@@ -7061,6 +7069,9 @@ export interface components {
         /**
          * SessionSummary
          * @description A row of a list of sessions.
+         *
+         *     `shortfalls`: what a completed session lacks by its study's rules; it counts if there are none.
+         *     Null where the study has no rules, or the session is not completed.
          */
         readonly SessionSummary: {
             /**
@@ -7081,6 +7092,8 @@ export interface components {
             readonly participant_code: string;
             /** Sequence */
             readonly sequence: readonly number[] | null;
+            /** Shortfalls */
+            readonly shortfalls: readonly components["schemas"]["Shortfall"][] | null;
             /** Simulated */
             readonly simulated: boolean;
             /** Started At */
@@ -7141,6 +7154,8 @@ export interface components {
             readonly scores: readonly components["schemas"]["StoredScores"][];
             /** Sequence */
             readonly sequence: readonly number[] | null;
+            /** Shortfalls */
+            readonly shortfalls: readonly components["schemas"]["Shortfall"][] | null;
             /** Simulated */
             readonly simulated: boolean;
             readonly slot: components["schemas"]["SlotInfo"];
@@ -7175,6 +7190,34 @@ export interface components {
             readonly multiply: number;
             /** Why */
             readonly why: string;
+        };
+        /**
+         * Shortfall
+         * @description One thing that a session lacks in order to count.
+         *
+         *     `step` is the step's key in the plan and `phase` what the rules call it; both name the phase
+         *     that a form asks about, if it has one. `value` is what was found and `limit` what was asked for:
+         *     seconds of active time, or milliseconds between the achieved and the ordered latency. Neither
+         *     tells the condition.
+         */
+        readonly Shortfall: {
+            /** Block */
+            readonly block?: number | null;
+            /**
+             * Code
+             * @enum {string}
+             */
+            readonly code: "phase_skipped" | "phase_short" | "form_skipped" | "latency_missing" | "latency_off";
+            /** Instrument */
+            readonly instrument?: string | null;
+            /** Limit */
+            readonly limit?: number | null;
+            /** Phase */
+            readonly phase?: string | null;
+            /** Step */
+            readonly step: string;
+            /** Value */
+            readonly value?: number | null;
         };
         /**
          * SignedInView
@@ -7320,6 +7363,8 @@ export interface components {
             readonly measures: readonly components["schemas"]["MeasureView"][];
             /** N Completed */
             readonly n_completed: number;
+            /** N Not Valid */
+            readonly n_not_valid: number;
             /** N Sessions */
             readonly n_sessions: number;
             /** Notes */

@@ -119,6 +119,7 @@ export interface StudyProtocol {
 }
 
 export type Attempt = Schemas["AttemptView"];
+export type Shortfall = Schemas["Shortfall"];
 export type Slot = Schemas["SlotRow"];
 export type SlotState = Slot["state"];
 export type Ledger = Schemas["LedgerView"];

@@ -3,11 +3,13 @@ import { Button, Loader, Menu } from "@mantine/core";
 import type { SessionView, Step } from "@shared/api/types";
 import { latency } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
+import { Notice } from "@shared/ui/Notice";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { isForm, isTimed, stepIcon, stepName } from "../../steps";
 import { Key } from "../../ui/Key";
+import { Shortfalls } from "../../ui/Shortfalls";
 import {
   COMMON_REASONS,
   currentStep,
@@ -55,6 +57,12 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
       )}
       <p className={classes.guide}>{t(guidance(session))}</p>
       {lacksHeadset(session) && <p className={classes.guide}>{t("step.noHeadset")}</p>}
+      {session.shortfalls !== null && session.shortfalls.length > 0 && (
+        <Notice tone="warn" title={t("validity.title")}>
+          <p>{t("validity.body")}</p>
+          <Shortfalls found={session.shortfalls} />
+        </Notice>
+      )}
       {step !== null && isTimed(step) && <PhaseClock session={session} store={live.store} />}
       {session.current?.status === "paused" && <PauseReason live={live} />}
       {step?.kind === "height" && session.allowed.includes("complete_step") ? (

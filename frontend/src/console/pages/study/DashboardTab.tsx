@@ -43,7 +43,11 @@ export function DashboardTab({ study }: { readonly study: StudyDetail }): JSX.El
         />
         {query.data !== undefined && (
           <span className={page.push}>
-            {t("dashboard.sessions", { count: query.data.n_completed })}
+            {t("dashboard.sessions", {
+              count: query.data.n_completed - query.data.n_not_valid,
+            })}
+            {query.data.n_not_valid > 0 &&
+              ` · ${t("validity.excluded", { count: query.data.n_not_valid })}`}
             {(!query.data.current || waiting) && ` · ${t("dashboard.drawing")}`}
           </span>
         )}

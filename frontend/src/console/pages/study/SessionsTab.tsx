@@ -104,6 +104,9 @@ function Row({ session }: { readonly session: SessionSummary }): JSX.Element {
       </Table.Td>
       <Table.Td>
         <StatusBadge status={session.status} />
+        {(session.shortfalls?.length ?? 0) > 0 && (
+          <span className={classes.sub}>{t("validity.notValid")}</span>
+        )}
       </Table.Td>
       <Table.Td>
         <KindBadge kind={session.kind} />

@@ -5,6 +5,7 @@ import { dateTime } from "@shared/format";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../../i18n";
+import { Shortfalls } from "../../ui/Shortfalls";
 import { SlotMark } from "../../ui/SlotMark";
 import classes from "./LedgerTab.module.css";
 
@@ -79,6 +80,14 @@ function AttemptText({ attempt }: { readonly attempt: Attempt }): JSX.Element {
         {t(`outcome.${attempt.outcome}`)} · {dateTime(attempt.opened_at, language)}
       </span>
       {attempt.reason !== null && <span className={classes.sub}>{attempt.reason}</span>}
+      {attempt.shortfalls.length > 0 && (
+        <div className={classes.sub}>
+          <Shortfalls found={attempt.shortfalls} />
+        </div>
+      )}
+      {attempt.outcome === "invalid" && attempt.shortfalls.length === 0 && (
+        <span className={classes.sub}>{t("validity.slotGiven")}</span>
+      )}
     </li>
   );
 }

@@ -25,7 +25,11 @@ export function StatisticsTab({ study }: { readonly study: StudyDetail }): JSX.E
         <KindFilter kind={kind} onChange={setKind} />
         {query.data !== undefined && (
           <span className={page.push}>
-            {t("dashboard.sessions", { count: query.data.n_completed })}
+            {t("dashboard.sessions", {
+              count: query.data.n_completed - query.data.n_not_valid,
+            })}
+            {query.data.n_not_valid > 0 &&
+              ` · ${t("validity.excluded", { count: query.data.n_not_valid })}`}
             {!query.data.current && ` · ${t("statistics.computing")}`}
           </span>
         )}
