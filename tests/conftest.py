@@ -12,9 +12,16 @@ from hypothesis import HealthCheck, settings
 
 from tests.support import postgres, shared_run
 from tests.support.forked_workers import use_fork_server
-from tests.support.nursery import CHEAP_PASSWORDS, make_passwords_cheap, nursery
+from tests.support.nursery import (
+    CHEAP_PASSWORDS,
+    STUDIES,
+    make_passwords_cheap,
+    nursery,
+    ship_studies_from,
+)
 from tests.support.server import LiveServer
 from tests.support.shared_data import SHARED_DATA_VARIABLE, shared_data_folder
+from tests.support.shipped_studies import delayed_copies
 from tests.support.sqlite import fresh_sqlite
 
 # How long an example takes says something about the machine, nothing about the code.
@@ -48,6 +55,14 @@ def _cheap_passwords() -> None:
     """
     make_passwords_cheap()
     os.environ[CHEAP_PASSWORDS] = "1"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _delayed_copies() -> None:
+    """Studies that need no headset that simulates; see `tests.support.shipped_studies`."""
+    folder = delayed_copies()
+    ship_studies_from(folder)
+    os.environ[STUDIES] = str(folder)
 
 
 @pytest.fixture(scope="session", autouse=True)

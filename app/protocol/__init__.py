@@ -33,7 +33,7 @@ from app.protocol.safety import StopRule
 from app.protocol.source import Path, Plain, Source, path_text, read_source
 from app.protocol.study import StudyProtocol
 from app.protocol.tasks import Tasks
-from app.protocol.validity import PhaseRule, ValidWhen
+from app.protocol.validity import LatencyRule, ValidWhen
 
 __all__ = [
     "BY_HAND_S",
@@ -46,11 +46,11 @@ __all__ = [
     "ConfigProblem",
     "ConsentStep",
     "ExclusionRule",
+    "LatencyRule",
     "LedgerRow",
     "LoadedInstrument",
     "LoadedStudy",
     "Path",
-    "PhaseRule",
     "Plain",
     "PlanError",
     "Preregistration",

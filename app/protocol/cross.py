@@ -19,6 +19,7 @@ from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
 from app.protocol.study import SCREEN_TEXTS
 from app.protocol.validity import validity_problems
+from app.protocol.wording import mark_problems
 from app.science.instruments import DefinitionProblem, Instrument, text_problems
 
 _AVATAR_KEY = "avatar_configuration"
@@ -54,12 +55,14 @@ def cross_problems(
 
 
 def _texts(tree: Plain, schema: Schema, languages: list[str]) -> Iterator[DefinitionProblem]:
+    avatar = tree.get("avatar") if isinstance(tree, dict) else None
     for path, text in marked_places(schema, tree, TEXT_MARK):
         if isinstance(text, dict):
             wordings = {key: words for key, words in text.items() if isinstance(words, str)}
             spoken = [one for one in languages if one not in text or one in wordings]
             yield from text_problems(path, wordings, spoken)
             yield from picture_problems(path, wordings)
+            yield from mark_problems(path, wordings, avatar)
 
 
 def _screens(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:

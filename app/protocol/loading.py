@@ -21,6 +21,7 @@ from app.protocol.explanations import UNKNOWN_KEY, explain, locate, remove
 from app.protocol.schema import Schema
 from app.protocol.source import Plain, Source, read_source
 from app.protocol.study import StudyProtocol
+from app.protocol.wording import with_own_words
 from app.science.instruments import Instrument
 
 _Value = TypeVar("_Value")
@@ -28,7 +29,10 @@ _Value = TypeVar("_Value")
 
 @dataclass(frozen=True)
 class LoadedStudy:
-    """A study with the SHA-256 of its content; `canonical_json` is what the hash was taken over."""
+    """A study with the SHA-256 of its content; `canonical_json` is what the hash was taken over.
+
+    The texts of `protocol` are those for its avatar; the content holds the lines for others, too.
+    """
 
     protocol: StudyProtocol
     content_hash: str
@@ -65,7 +69,7 @@ def load_study(
     found = [locate(one, source) for one in between]
     protocol = _validated(_STUDY, source, found)
     canonical = canonical_json(_STUDY.adapter.dump_python(protocol, mode="json"))
-    return LoadedStudy(protocol, sha256_of(canonical), canonical)
+    return LoadedStudy(with_own_words(protocol), sha256_of(canonical), canonical)
 
 
 @lru_cache(maxsize=16)
@@ -92,7 +96,7 @@ def study_schema() -> Schema:
 
 def parse_study_json(canonical_json: str) -> StudyProtocol:
     """The study that was stored as canonical JSON. Raises ConfigError if it is not one."""
-    return _parsed(_STUDY, canonical_json)
+    return with_own_words(_parsed(_STUDY, canonical_json))
 
 
 def instrument_as_json(instrument: Instrument) -> dict[str, Plain]:

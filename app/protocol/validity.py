@@ -27,11 +27,31 @@ PhaseKey = Annotated[
 class PhaseRule(Strict):
     """A timed phase that must have been carried through, in every block where it is in a block.
 
-    `min_active_s`: how much active time it needs at least; pauses and walks back do not count.
+    How much active time it needs at least is given in seconds (`min_active_s`) or as a share of the
+    phase's own time (`min_active_share`); pauses and walks back do not count.
     """
 
     phase: PhaseKey
     min_active_s: Annotated[float | None, Field(gt=0, le=86_400, description="seconds")] = None
+    min_active_share: Annotated[
+        float | None, Field(gt=0, le=1, description="share of the phase's time, above 0 to 1")
+    ] = None
+
+    @model_validator(mode="after")
+    def _says_it_once(self) -> Self:
+        if self.min_active_s is not None and self.min_active_share is not None:
+            raise refusal(
+                "The least active time is given twice.",
+                value=self.min_active_share,
+                valid="min_active_s or min_active_share",
+                remedy="Keep one of them.",
+                at=("min_active_share",),
+            )
+        return self
+
+    def least_s(self, duration_s: float) -> float:
+        """The least active time of a phase that lasts so long, seconds; 0 where there is none."""
+        return self.min_active_s or (self.min_active_share or 0.0) * duration_s
 
 
 class LatencyRule(Strict):
@@ -138,8 +158,11 @@ def _durations(tree: Mapping[str, Plain]) -> dict[str, float | None]:
         elif step.get("step") == "practice":
             early = step.get("repeat_until_completions") is not None
             phases.append((f"practice_{step.get('limb')}", step.get("duration_s"), early))
-    block = map(_dict, _list(_dict(procedure.get("block")).get("phases")))
+    block = [_dict(phase) for phase in _list(_dict(procedure.get("block")).get("phases"))]
     phases += [(str(phase.get("limb")), phase.get("duration_s"), False) for phase in block]
+    if len({str(phase.get("limb")) for phase in block}) < len(block):
+        # A limb is there twice, which is told elsewhere: nobody knows which one is missing.
+        phases += [("hand", None, False), ("foot", None, False)]
     found: dict[str, float | None] = {}
     for key, duration, early in phases:
         given = float(duration) if _is_number(duration) and not early else None

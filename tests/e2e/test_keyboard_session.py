@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from app.resources import study_configs_dir
 from tests.e2e.people import PATIENCE_MS
 from tests.e2e.scripted_tablet import ScriptedTablet
 from tests.e2e.wearer import Wearer
 from tests.features.lab import ok
+from tests.protocol.helpers import STUDY as FILE
 from tests.support.browser import PageWatch
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
@@ -48,7 +48,7 @@ PROCEDURE = """procedure:
 
 def short_study() -> str:
     """The shipped study with two conditions and short phases."""
-    text = (study_configs_dir() / "reembodiment-latency.yaml").read_text(encoding="utf-8")
+    text = FILE
     start, end = text.index("procedure:\n"), text.index("  after:\n")
     text = text[:start] + PROCEDURE + text[end:]
     text = re.sub(r"  - key: latency_125\n.*?(?=  - key)", "", text, flags=re.DOTALL)

@@ -16,7 +16,19 @@ from app.protocol import (
 from app.science.instruments import Instrument
 
 CONFIGS = Path(__file__).parents[2] / "study_configs"
-STUDY = (CONFIGS / "reembodiment-latency.yaml").read_text(encoding="utf-8")
+SHIPPED = (CONFIGS / "reembodiment-latency.yaml").read_text(encoding="utf-8")
+"""The latency study as it comes with the product."""
+
+
+def as_delayed_copy(text: str) -> str:
+    """A study with a delayed copy for a body, which needs no headset that simulates."""
+    moved = "avatar: physics\navatar_configuration: {key: standard, version: 1}\n"
+    assert moved in text
+    return text.replace(moved, "avatar: delayed_copy\n", 1)
+
+
+STUDY = as_delayed_copy(SHIPPED)
+"""The same with a delayed copy: what most tests are about has nothing to do with physics."""
 
 
 @cache

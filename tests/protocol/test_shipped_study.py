@@ -3,9 +3,9 @@
 import pytest
 
 from app.science.tasks import Side, SurfaceKind
-from tests.protocol.helpers import instruments, study
+from tests.protocol.helpers import SHIPPED, instruments, loaded
 
-STUDY = study()
+STUDY = loaded(SHIPPED).protocol
 
 
 def test_conditions_and_orders_are_those_of_the_thesis() -> None:

@@ -8,14 +8,14 @@ import yaml
 
 from tests.protocol.helpers import BEFORE_RULES, CONFIGS, STUDY, edited, loaded, problems, study
 
-HAND = "{phase: hand, min_active_s: 54}"
+HAND = "{phase: hand, min_active_share: 0.9}"
 
 
 def test_the_shipped_study_asks_for_its_tasks_and_its_questionnaire() -> None:
     """Both tasks with nine tenths of their minute, every karas2020, and a measured latency."""
     rules = study().valid_when
     assert rules is not None
-    assert [(one.phase, one.min_active_s) for one in rules.phases] == [("hand", 54), ("foot", 54)]
+    assert [(one.phase, one.least_s(60.0)) for one in rules.phases] == [("hand", 54), ("foot", 54)]
     assert rules.forms == ("karas2020",)
     assert rules.achieved_latency is not None
     assert (rules.achieved_latency.reported, rules.achieved_latency.tolerance_ms) == (True, None)
@@ -65,6 +65,10 @@ def test_rules_that_nobody_can_meet_are_refused() -> None:
     ("rules", "path"),
     [
         ({}, "valid_when"),
+        (
+            {"phases": [{"phase": "hand", "min_active_s": 9, "min_active_share": 0.5}]},
+            "valid_when.phases[0].min_active_share",
+        ),
         ({"phases": [{"phase": "hand"}, {"phase": "hand"}]}, "valid_when.phases[1]"),
         ({"forms": ["karas2020", "karas2020"]}, "valid_when.forms[1]"),
         (

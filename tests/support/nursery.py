@@ -34,6 +34,8 @@ PARENT_DEATH_SIGNAL = 1
 """PR_SET_PDEATHSIG of linux/prctl.h."""
 CHEAP_PASSWORDS = "TESTS_HAVE_CHEAP_PASSWORDS"
 """Set where servers need not take a sixth of a second for each password."""
+STUDIES = "TESTS_SHIP_STUDIES_FROM"
+"""Names the folder whose studies a new database gets, instead of the product's own."""
 EAGER = (
     "app.cli.commands",
     "app.cli.serve.run",
@@ -208,6 +210,8 @@ def main() -> None:
     """Import, then answer; a child leaves by running the command."""
     for name in EAGER:
         __import__(name)
+    if STUDIES in os.environ:
+        ship_studies_from(Path(os.environ[STUDIES]))
     _read_shipped_files()
     if os.environ.get(CHEAP_PASSWORDS):
         make_passwords_cheap()
@@ -231,12 +235,21 @@ def make_passwords_cheap() -> None:
     passwords._HASHER = PasswordHasher(time_cost=1, memory_cost=64, parallelism=1)
 
 
+def ship_studies_from(folder: Path) -> None:
+    """New databases of this process get the studies of `folder` from now on."""
+    from app.features.design.studies import service
+
+    instruments = service.shipped_files().instruments
+    files = service.ShippedFiles(tuple(sorted(folder.glob("*.yaml"))), instruments)
+    service.shipped_files = lambda: files
+
+
 def _read_shipped_files() -> None:
     """Every new database gets them; what was read is kept by its text."""
-    from app.features.design.studies import shipped_files
+    from app.features.design.studies import service
     from app.protocol.loading import load_instrument, study_source
 
-    shipped = shipped_files()
+    shipped = service.shipped_files()
     for path in shipped.instruments:
         load_instrument(path.read_text(encoding="utf-8"))
     for path in shipped.studies:

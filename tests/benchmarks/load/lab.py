@@ -6,8 +6,8 @@ from typing import Any
 
 import httpx2
 
-from app.resources import study_configs_dir
 from tests.benchmarks.load.generator import Seat
+from tests.protocol.helpers import STUDY as FILE
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 STUDY = "load"
@@ -49,7 +49,7 @@ def call_phases(server: LiveServer, lab: Lab) -> None:
 
 def study_text() -> str:
     """The shipped study with another beginning; who is cut off goes on by the journal."""
-    text = (study_configs_dir() / "reembodiment-latency.yaml").read_text(encoding="utf-8")
+    text = FILE
     start, end = text.index("procedure:\n"), text.index("  block:\n")
     text = text[:start] + PROCEDURE + text[end:]
     text = text.replace("on_disconnect: pause", "on_disconnect: continue", 1)

@@ -10,6 +10,7 @@ import httpx2
 import yaml
 
 from app.resources import study_configs_dir
+from tests.protocol.helpers import STUDY as FILE
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 FORMS = "forms"
@@ -35,7 +36,7 @@ class Desk:
     def add_forms_study(self, forms: int) -> None:
         """A study that is nothing but the same form, so many times."""
         step = f"    - {{step: form, instrument: {INSTRUMENT}}}\n"
-        text = (study_configs_dir() / "reembodiment-latency.yaml").read_text(encoding="utf-8")
+        text = FILE
         start, end = text.index("procedure:\n"), text.index("  block:\n")
         text = f"{text[:start]}procedure:\n  before:\n{step * forms}{text[end:]}"
         text = text.replace("key: reembodiment-latency", f"key: {FORMS}", 1)

@@ -17,7 +17,7 @@ from app.features.record.ledger import Shortfall, ShortfallCode, settle_attempt
 from app.features.record.sessions.engine import SessionState
 from app.features.record.sessions.engine.state import PhaseState
 from app.models import PhaseLatency, StudySession
-from app.protocol import PhaseRule, Step, ValidWhen
+from app.protocol import LatencyRule, Step, ValidWhen
 
 MS_PER_S = 1000.0
 
@@ -68,7 +68,12 @@ def _of_step(
         return
     runs = [one for one in state.ended_phases if one.step == step.index and one.status == "done"]
     found = (
-        _of_phase(rules, rule, runs[-1], delays.get(runs[-1].phase_id))
+        _of_phase(
+            rules.achieved_latency,
+            rule.least_s(step.duration_s or 0.0),
+            runs[-1],
+            delays.get(runs[-1].phase_id),
+        )
         if done and runs
         else [Found("phase_skipped")]
     )
@@ -92,12 +97,11 @@ class Found(NamedTuple):
 
 
 def _of_phase(
-    rules: ValidWhen, rule: PhaseRule, run: PhaseState, delay: PhaseDelay | None
+    latency: LatencyRule | None, least_s: float, run: PhaseState, delay: PhaseDelay | None
 ) -> Iterator[Found]:
     """What a phase that was carried through lacks."""
-    if rule.min_active_s is not None and run.active_s < rule.min_active_s:
-        yield Found("phase_short", run.active_s, rule.min_active_s)
-    latency = rules.achieved_latency
+    if run.active_s < least_s:
+        yield Found("phase_short", run.active_s, least_s)
     if delay is None or latency is None:
         return
     if delay.achieved_s is None:

@@ -1,0 +1,89 @@
+"""Lines of texts that hold for one kind of avatar only.
+
+A body that is moved by physics is held back by the boxes; a delayed copy passes through them. A
+line of a text that begins with `[avatar: physics]` or `[avatar: delayed_copy]` is there only in
+studies with that avatar. Marks are taken out, and lines of the other kind dropped, wherever a study
+is read (`app.protocol.loading`), so nobody downstream can show a participant the wrong one.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+
+from app.protocol.source import Path, Plain
+from app.protocol.study import StudyProtocol
+from app.science.instruments import DefinitionProblem
+
+KINDS = ("delayed_copy", "physics")
+_MARK = re.compile(r"\[avatar:[ \t]*([^\]\n]*?)[ \t]*\][ \t]*")
+
+
+def with_own_words(protocol: StudyProtocol) -> StudyProtocol:
+    """The study with those lines of its texts that hold for its avatar."""
+    texts = {
+        key: {language: words_for(protocol.avatar, words) for language, words in text.items()}
+        for key, text in protocol.texts.items()
+    }
+    return protocol if texts == protocol.texts else protocol.model_copy(update={"texts": texts})
+
+
+def words_for(avatar: str, text: str) -> str:
+    """The lines of a text for one kind of avatar, without their marks."""
+    if "[avatar:" not in text:
+        return text
+    kept: list[str] = []
+    for line in text.split("\n"):
+        mark = _MARK.match(line)
+        if mark is not None and mark[1] != avatar:
+            # The empty line that followed it would open a gap.
+            if kept and not kept[-1].strip():
+                kept.pop()
+            continue
+        kept.append(line if mark is None else line[mark.end() :])
+    return "\n".join(kept).strip("\n")
+
+
+def mark_problems(
+    path: Path, wordings: Mapping[str, str], avatar: Plain
+) -> Iterator[DefinitionProblem]:
+    """Marks of no kind of avatar, in the middle of a line, or where no text is shown by avatar."""
+    for language, words in wordings.items():
+        at = (*path, language)
+        marks = [mark for line in words.split("\n") for mark in _MARK.finditer(line)]
+        found = [one for mark in marks for one in _of_mark(at, mark, in_text=path[0] == "texts")]
+        yield from found
+        if (
+            not found
+            and isinstance(avatar, str)
+            and words.strip()
+            and not words_for(avatar, words).strip()
+        ):
+            yield DefinitionProblem(
+                at,
+                f"Nothing is left of this text with the avatar {avatar}.",
+                avatar,
+                _marks(KINDS),
+                f"Add a line that begins with [avatar: {avatar}], or one without a mark.",
+            )
+
+
+def _of_mark(at: Path, mark: re.Match[str], *, in_text: bool) -> Iterator[DefinitionProblem]:
+    if mark[1] not in KINDS:
+        yield DefinitionProblem(
+            at,
+            f"There is no avatar {mark[1]!r} that a line could be for.",
+            mark[1],
+            list(KINDS),
+            f"Begin the line with {' or '.join(_marks(KINDS))}.",
+        )
+    elif mark.start() > 0 or not in_text:
+        yield DefinitionProblem(
+            at,
+            "A mark for one kind of avatar stands where it is not read.",
+            mark[0].strip(),
+            "the beginning of a line under texts",
+            "Put it at the beginning of a line of a text, or take it out.",
+        )
+
+
+def _marks(kinds: Sequence[str]) -> list[str]:
+    return [f"[avatar: {kind}]" for kind in kinds]

@@ -1,0 +1,24 @@
+"""Servers of tests ship the studies with a delayed copy for a body.
+
+The product's studies are moved by physics, and a headset that cannot simulate is refused. Most
+tests are about something else, and their headsets are a few lines long. A test of physics stores
+`tests.protocol.helpers.SHIPPED`, or rehearses with `physics=True`.
+"""
+
+from pathlib import Path
+
+from tests.protocol.helpers import CONFIGS, as_delayed_copy
+from tests.support.shared_run import once, run_folder
+
+
+def delayed_copies() -> Path:
+    """The folder with them, made once in a run."""
+    folder = run_folder() / "shipped-studies"
+    with once("shipped-studies") as mark:
+        if mark:
+            folder.mkdir()
+            for file in CONFIGS.glob("*.yaml"):
+                text = as_delayed_copy(file.read_text(encoding="utf-8"))
+                (folder / file.name).write_text(text, encoding="utf-8")
+            mark.touch()
+    return folder
