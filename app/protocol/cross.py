@@ -45,6 +45,7 @@ def cross_problems(
     yield from _screens(tree)
     yield from _references(tree, instruments, languages)
     yield from _titles(tree, languages)
+    yield from _places(tree)
     yield from _rows(tree)
     yield from _sequences(tree)
     yield from safety_problems(tree, instruments)
@@ -152,6 +153,23 @@ def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[Definition
                     sorted(DEFAULT_LANGUAGES),
                     f"Give this step a {field} in every language.",
                 )
+
+
+def _places(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:
+    """A task needs its boxes; a limb that no phase uses needs none."""
+    tasks = tree.get("tasks")
+    if not isinstance(tasks, dict):
+        return
+    used = {limb for _, step in _steps(tree) if isinstance(limb := step.get("limb"), str)}
+    for limb in ("hand", "foot"):
+        if limb in used and tasks.get(limb) is None:
+            yield DefinitionProblem(
+                ("tasks", limb),
+                f"The procedure has a phase of the {limb}, and its boxes are missing.",
+                None,
+                sorted(used),
+                f"Describe the boxes under tasks.{limb}, or take the phase out.",
+            )
 
 
 def _rows(tree: dict[str, Plain]) -> Iterator[DefinitionProblem]:

@@ -150,10 +150,23 @@ class FootTask(Strict):
 
 
 class Tasks(Strict):
-    """Both task places."""
+    """The places of the tasks: of each limb that the procedure uses, and maybe of the other."""
 
-    hand: HandTask
-    foot: FootTask
+    # Left out of the content where there is none, so that the hash of other studies stays.
+    hand: Annotated[HandTask | None, Field(exclude_if=lambda value: value is None)] = None
+    foot: Annotated[FootTask | None, Field(exclude_if=lambda value: value is None)] = None
+
+    def layouts(self) -> dict[Limb, TaskLayout]:
+        """The surfaces of every task there is, the hand's first."""
+        given = {Limb.HAND: self.hand, Limb.FOOT: self.foot}
+        return {limb: task.layout() for limb, task in given.items() if task is not None}
+
+    def layout(self, limb: str) -> TaskLayout:
+        """The surfaces of the task of `limb`; KeyError if the study has none."""
+        task = self.hand if limb == Limb.HAND else self.foot
+        if task is None:
+            raise KeyError(f"the study has no task of the {limb}")
+        return task.layout()
 
 
 def _try(task: HandTask | FootTask) -> None:

@@ -49,7 +49,8 @@ def mark_problems(
     for language, words in wordings.items():
         at = (*path, language)
         marks = [mark for line in words.split("\n") for mark in _MARK.finditer(line)]
-        found = [one for mark in marks for one in _of_mark(at, mark, in_text=path[0] == "texts")]
+        in_text = path[0] == "texts"
+        found = [one for mark in marks for one in _of_mark(at, mark, in_text=in_text)]
         yield from found
         if (
             not found

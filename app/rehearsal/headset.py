@@ -21,7 +21,7 @@ from app.rehearsal.goals import goal_of
 from app.rehearsal.task_run import BoxRun
 from app.rehearsal.timed_run import FreeRun, TimedRun
 from app.science.skeleton import JOINT_NAMES, Pose
-from app.science.tasks import Laterality, TaskLayout, TaskRules
+from app.science.tasks import Laterality, Limb, TaskLayout, TaskRules
 from app.wire import (
     ACTIVE,
     VALUES_PER_FRAME,
@@ -106,7 +106,7 @@ class Headset:
         self.completions = 0
         self.contacts = 0
         self._person, self._clock = person, clock
-        self._layouts = {"hand": tasks.hand.layout(), "foot": tasks.foot.layout()}
+        self._layouts = tasks.layouts()
         self._physics = physics
         self._avatar: RemoteAvatar | None = None if physics else DelayedCopy(person.skeleton)
         self._run: TimedRun | None = None
@@ -193,12 +193,12 @@ class Headset:
         await self._flush()
         self._phase_id = order.phase_id
         self._follow_later(order.latency_ms / 1000.0)
-        self._show_boxes(None if order.limb is None else self._layouts[order.limb])
+        self._show_boxes(None if order.limb is None else self._layouts[Limb(order.limb)])
         if order.limb is None:
             self._run = FreeRun(order, self.t_s)
         else:
             hand = Laterality(self._person.handedness)
-            rules = TaskRules(self._layouts[order.limb], hand)
+            rules = TaskRules(self._layouts[Limb(order.limb)], hand)
             self._run = BoxRun(order, rules, JOINT_NAMES, self.t_s)
 
     async def _leave_phase(self) -> None:

@@ -3,7 +3,7 @@
 import pytest
 
 from app.science.tasks import Side, SurfaceKind
-from tests.protocol.helpers import SHIPPED, instruments, loaded
+from tests.protocol.helpers import SHIPPED, instruments, loaded, study
 
 STUDY = loaded(SHIPPED).protocol
 
@@ -19,7 +19,7 @@ def test_conditions_and_orders_are_those_of_the_thesis() -> None:
 
 def test_hand_boxes_stand_in_a_row_with_four_walls_each() -> None:
     """Four boxes with a panel and four sides, one target, the order turning round."""
-    layout = STUDY.tasks.hand.layout()
+    layout = STUDY.tasks.layout("hand")
     assert layout.n_boxes == 4
     assert layout.reverse_after_task
     sides = [one.side for one in layout.surfaces if one.kind is SurfaceKind.SIDE and one.box == 1]
@@ -32,6 +32,7 @@ def test_hand_boxes_stand_in_a_row_with_four_walls_each() -> None:
 def test_foot_boxes_are_a_tenth_longer_than_their_base_length() -> None:
     """Karas 2020, 7.2: lengthened by about 10 %; either foot counts and the order stays."""
     foot = STUDY.tasks.foot
+    assert foot is not None
     assert foot.length_m == pytest.approx(0.396, abs=1e-12)
     layout = foot.layout()
     panel = layout.by_key["foot/1/panel"]
@@ -44,7 +45,7 @@ def test_foot_boxes_are_a_tenth_longer_than_their_base_length() -> None:
 def test_a_single_foot_can_be_made_to_count() -> None:
     """Which foot counts is configuration."""
     left = study(("counting_foot: either", "counting_foot: left"))
-    assert left.tasks.foot.layout().counting_foot == "left"
+    assert left.tasks.layout("foot").counting_foot == "left"
 
 
 def test_participants_are_not_told_the_condition() -> None:

@@ -20,7 +20,7 @@ RIGHT = Laterality.RIGHT
 def started(limb: str) -> TaskState:
     """A task of the shipped study whose clock runs."""
     tasks = study().tasks
-    layout = tasks.hand.layout() if limb == "hand" else tasks.foot.layout()
+    layout = tasks.layout(limb)
     state, _ = advance(TaskRules(layout, RIGHT).initial(), Command(CommandKind.START, 0.0))
     return state
 

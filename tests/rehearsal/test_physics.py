@@ -49,7 +49,7 @@ class BuiltHere:
         """As the server would have built it."""
         tasks = study().tasks
         configuration = default_configuration()
-        scene = scene_of((tasks.hand.layout(), tasks.foot.layout()))
+        scene = scene_of(tuple(tasks.layouts().values()))
         built = avatar_model(configuration, stature_m, scene=scene)
         return PhysicsBody(built.mjcf, configuration)
 

@@ -202,7 +202,7 @@ def _commands(performed: Performed, phase_id: int) -> list[Command]:
 
 def _layout(db: Session, session: StudySession, limb: str | None) -> TaskLayout:
     tasks = protocol_of(db.get_one(StudyVersion, session.study_version_id)).tasks
-    return tasks.hand.layout() if limb == "hand" else tasks.foot.layout()
+    return tasks.layout(limb)
 
 
 def _hand(db: Session, session: StudySession) -> Laterality:

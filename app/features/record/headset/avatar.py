@@ -153,7 +153,7 @@ def _built(
             stature_m,
             segments_m=segments_m,
             figure=figure,
-            scene=scene_of((tasks.hand.layout(), tasks.foot.layout())),
+            scene=scene_of(tuple(tasks.layouts().values())),
             longest_delay_s=longest_delay_s,
         )
     except BodyError as error:

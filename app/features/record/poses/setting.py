@@ -96,7 +96,6 @@ def _offsets_m(stature_m: float) -> tuple[Vector, ...]:
 def _surfaces(protocol: StudyProtocol, limb: Limb) -> tuple[SurfaceView, ...]:
     if limb is None:
         return ()
-    task = protocol.tasks.hand if limb == "hand" else protocol.tasks.foot
     return tuple(
         SurfaceView(
             key=one.key,
@@ -105,5 +104,5 @@ def _surfaces(protocol: StudyProtocol, limb: Limb) -> tuple[SurfaceView, ...]:
             center_m=one.center_m,
             half_size_m=one.half_size_m,
         )
-        for one in task.layout().surfaces
+        for one in protocol.tasks.layout(limb).surfaces
     )

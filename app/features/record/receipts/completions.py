@@ -99,7 +99,7 @@ def _derive(db: Session, session: StudySession, phase: Phase) -> list[Found]:
 
 def _rules(db: Session, session: StudySession, phase: Phase) -> TaskRules:
     tasks = protocol_of_session(db, session).tasks
-    layout = tasks.hand.layout() if phase.limb == "hand" else tasks.foot.layout()
+    layout = tasks.layout(phase.limb or "hand")
     return TaskRules(layout, Laterality(participant_info(db, session).handedness or "right"))
 
 

@@ -159,7 +159,7 @@ def _surfaces(db: Session, asked: Replayable) -> list[ReplaySurface]:
     if limb is None:
         return []
     tasks = protocol_of_session(db, asked.session).tasks
-    layout = (tasks.hand if limb == "hand" else tasks.foot).layout()
+    layout = tasks.layout(limb)
     return [
         ReplaySurface(
             key=one.key,

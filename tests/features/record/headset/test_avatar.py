@@ -51,7 +51,7 @@ def test_the_model_is_the_configuration_at_the_stature_in_the_studys_boxes(
     assert told["configuration"]["locked_groups"] == ["left_fingers"]
     model = mujoco.MjModel.from_xml_string(told["mjcf"])
     tasks = shipped_study().tasks
-    surfaces = [one.key for task in (tasks.hand, tasks.foot) for one in task.layout().surfaces]
+    surfaces = [one.key for layout in tasks.layouts().values() for one in layout.surfaces]
     assert {model.geom(name).name for name in surfaces} == set(surfaces)
     (event,) = (one for one in fresh_lab.events(session["id"]) if one["type"] == "avatar_built")
     assert event["data"]["configuration_hash"] == told["configuration_hash"]
