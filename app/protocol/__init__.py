@@ -9,9 +9,12 @@ from app.protocol.durations import (
     OPENING_S,
     READING_WORDS_PER_S,
     TimedStep,
+    VisitTime,
     form_s,
+    planned_s,
     timeline,
     total_s,
+    visit_time,
 )
 from app.protocol.errors import ConfigError, ConfigProblem, PlanError
 from app.protocol.explanations import explain
@@ -64,6 +67,7 @@ __all__ = [
     "Text",
     "TimedStep",
     "ValidWhen",
+    "VisitTime",
     "canonical_json",
     "compile_plan",
     "differences",
@@ -76,10 +80,12 @@ __all__ = [
     "parse_instrument_json",
     "parse_study_json",
     "path_text",
+    "planned_s",
     "read_source",
     "sequences",
     "sha256_of",
     "study_schema",
     "timeline",
     "total_s",
+    "visit_time",
 ]

@@ -9,7 +9,8 @@ dressed. An estimate is always marked as one.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from app.protocol.plan import Step
+from app.protocol.orders import sequences
+from app.protocol.plan import Step, compile_plan
 from app.protocol.study import StudyProtocol
 from app.science.instruments import Instrument
 
@@ -59,6 +60,30 @@ def timeline(
 def total_s(steps: Sequence[TimedStep]) -> float:
     """Length of the whole visit, seconds."""
     return sum(step.length_s for step in steps)
+
+
+@dataclass(frozen=True)
+class VisitTime:
+    """How long a visit is, minutes, to a tenth.
+
+    `planned`: what the study sets. `total`: with our estimate of forms, texts and what is done by
+    hand; pauses, and putting the equipment on, come on top.
+    """
+
+    planned: float
+    total: float
+
+
+def visit_time(protocol: StudyProtocol, instruments: Mapping[str, Instrument]) -> VisitTime:
+    """The time of one visit, in the first order and language: the one figure shown everywhere."""
+    plan = compile_plan(protocol, sequences(protocol)[0])
+    steps = timeline(protocol, plan, instruments, language=protocol.languages[0])
+    return VisitTime(round(planned_s(steps) / 60, 1), round(total_s(steps) / 60, 1))
+
+
+def planned_s(steps: Sequence[TimedStep]) -> float:
+    """What of a visit the study sets, seconds."""
+    return sum(step.length_s for step in steps if not step.estimated)
 
 
 def form_s(instrument: Instrument) -> float:

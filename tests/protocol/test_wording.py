@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.protocol import compile_plan, parse_study_json, sequences, timeline, total_s
+from app.protocol import parse_study_json, visit_time
 from tests.protocol.helpers import (
     CONFIGS,
     SHIPPED,
@@ -75,8 +75,7 @@ def test_a_title_has_no_variants() -> None:
 def test_a_consent_names_the_time_that_the_visit_is_computed_to_take(file: Path) -> None:
     """The same figure as in overview and editor, to the nearest five minutes."""
     protocol = loaded(file.read_text(encoding="utf-8")).protocol
-    plan = compile_plan(protocol, sequences(protocol)[0])
+    minutes = visit_time(protocol, instruments()).total
     for language, words in (("en", r"about (\d+) minutes"), ("de", r"etwa (\d+) Minuten")):
-        minutes = total_s(timeline(protocol, plan, instruments(), language=language)) / 60
         [told] = re.findall(words, protocol.texts["consent"][language])
         assert abs(int(told) - minutes) <= 2.5

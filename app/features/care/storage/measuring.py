@@ -16,7 +16,7 @@ from app.database import Database
 from app.features.care.storage.families import FAMILY_OF
 from app.features.care.storage.schemas import PartView, Place, SessionRoom
 from app.features.care.storage.tables import TableSizes, bytes_by_session, table_sizes
-from app.models import Participant, Study, StudySession
+from app.models import Participant, Study, StudySession, TelemetryChunk
 from app.platform.context import AppContext, Part
 from app.platform.folders import backups_of
 from app.settings import Settings
@@ -27,10 +27,14 @@ OPTIONAL: tuple[Place, ...] = ("unused", "log", "database", "backups", "scratch"
 
 @dataclass(frozen=True)
 class MeasuredSession:
-    """A session with its size, and what the forecast asks of it."""
+    """A session with its size.
+
+    `is_typical`: the next may take as much, since it was completed, lacks nothing that its study
+    asks for, and has movement, which is nearly all of a session's size.
+    """
 
     room: SessionRoom
-    is_completed: bool
+    is_typical: bool
 
 
 @dataclass(frozen=True)
@@ -74,6 +78,7 @@ class StorageDesk(Part):
         with self.database.reading() as db:
             sizes = table_sizes(db)
             shares = bytes_by_session(db, sizes.bytes)
+            moving = set(db.scalars(select(TelemetryChunk.session_id).distinct()))
             rows = db.execute(
                 select(StudySession, Study.key, Participant.code)
                 .join(Study, Study.id == StudySession.study_id)
@@ -89,7 +94,9 @@ class StorageDesk(Part):
                         created_at=session.created_at,
                         bytes=round(shares.get(session.id, 0)),
                     ),
-                    session.status == "completed",
+                    session.status == "completed"
+                    and not session.shortfalls
+                    and session.id in moving,
                 )
                 for session, key, code in rows
             )

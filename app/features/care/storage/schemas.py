@@ -37,9 +37,9 @@ class DiskView(BaseModel):
 class StudyRoom(BaseModel):
     """What a study takes.
 
-    `mean_bytes`: of its `measured` completed sessions of the kind `measured_kind`: people's where
-    there are any, since others may be shorter. `room_for`: how many more of these fit before the
-    disk warns; None where nothing was measured, or the database is elsewhere.
+    `mean_bytes`: of its `measured` completed sessions with movement, of the kind `measured_kind`:
+    people's where there are any, since others may be shorter. `room_for`: how many more of these
+    fit before the disk warns; None where nothing was measured, or the database is elsewhere.
     """
 
     key: str

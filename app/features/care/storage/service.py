@@ -23,7 +23,7 @@ from app.platform.half_made import half_made
 LARGEST = 12
 """How many sessions are listed."""
 MEASURED_BY: tuple[SessionKind, ...] = ("people", "test", "simulated")
-"""Whose completed sessions tell how large the next will be: the first kind that has any."""
+"""Whose sessions tell how large the next will be: the first kind that has typical ones."""
 
 
 def storage_view(db: Session, context: AppContext, caller: Caller, *, anew: bool) -> StorageView:
@@ -82,7 +82,7 @@ def _study(
     db: Session, study: Study, sessions: Sequence[MeasuredSession], disk: DiskView
 ) -> StudyRoom:
     rooms = [one.room for one in sessions]
-    kind, measured = _typical([one.room for one in sessions if one.is_completed])
+    kind, measured = _typical([one.room for one in sessions if one.is_typical])
     mean = sum(room.bytes for room in measured) / len(measured) if measured else 0.0
     titles = protocol_of(newest_version(db, study)).title
     left = max(0, disk.free_bytes - disk.warn_below_bytes)
@@ -98,10 +98,10 @@ def _study(
     )
 
 
-def _typical(completed: Sequence[SessionRoom]) -> tuple[SessionKind | None, list[SessionRoom]]:
-    """The completed sessions that tell how large the next will be."""
+def _typical(typical: Sequence[SessionRoom]) -> tuple[SessionKind | None, list[SessionRoom]]:
+    """The sessions that tell how large the next will be."""
     for kind in MEASURED_BY:
-        found = [room for room in completed if room.kind == kind]
+        found = [room for room in typical if room.kind == kind]
         if found:
             return kind, found
     return None, []

@@ -35,10 +35,12 @@ from app.protocol import (
     ledger_block,
     load_study,
     path_text,
+    planned_s,
     read_source,
     sequences,
     timeline,
     total_s,
+    visit_time,
 )
 from app.protocol.editing import Change, edit_text
 from app.resources import study_configs_dir
@@ -91,7 +93,7 @@ def check(db: Session, text: str) -> CheckResult:
     protocol = loaded.protocol
     orders = sequences(protocol)
     plan = compile_plan(protocol, orders[0])
-    steps = timeline(protocol, plan, instruments, language=protocol.languages[0])
+    visit = visit_time(protocol, instruments)
     return CheckResult(
         ok=True,
         key=protocol.key,
@@ -107,8 +109,8 @@ def check(db: Session, text: str) -> CheckResult:
             blocks=len(protocol.conditions),
             administrations=sum(step.instrument is not None for step in plan),
             instruments=list(protocol.instrument_keys),
-            planned_minutes=_minutes(_planned_s(steps)),
-            minutes=_minutes(total_s(steps)),
+            planned_minutes=visit.planned,
+            minutes=visit.total,
         ),
     )
 
@@ -139,7 +141,7 @@ def dry_run(db: Session, request: TimelineRequest) -> TimelineView:
         sequence=list(row.sequence),
         latencies_ms=[protocol.condition(key).latency_ms for key in row.sequence],
         steps=[_step(protocol, step, language) for step in steps],
-        planned_s=_planned_s(steps),
+        planned_s=planned_s(steps),
         total_s=total_s(steps),
         language=language,
         languages=list(protocol.languages),
@@ -200,11 +202,3 @@ def _tree(text: str) -> tuple[dict[str, Plain] | None, dict[str, int]]:
         return None, {}
     marks = {**source.values, **source.keys}
     return source.tree, {path_text(path): mark.line for path, mark in marks.items()}
-
-
-def _planned_s(steps: Sequence[TimedStep]) -> float:
-    return sum(step.length_s for step in steps if not step.estimated)
-
-
-def _minutes(time_s: float) -> float:
-    return round(time_s / 60, 1)

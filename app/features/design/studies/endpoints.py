@@ -31,10 +31,12 @@ from app.features.design.studies.service import (
     version_by_number,
     versions_of,
 )
+from app.features.design.studies.versions import used_instrument
 from app.features.people.audit import record
 from app.models import Study, StudyVersion
 from app.platform.access import Caller, add_member, is_blind, is_theirs
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
+from app.protocol import visit_time
 
 router = APIRouter(tags=["studies"])
 router.include_router(drafts)
@@ -179,9 +181,14 @@ def _view(db: Session, study: Study, caller: Caller) -> StudyView:
     versions = versions_of(db, study)
     newest = versions[-1]
     hidden = caller.role == "operator" and is_blind(db, caller, protocol_of(newest), None)
+    protocol = protocol_of(newest)
+    used = {key: used_instrument(db, newest.id, key).instrument for key in newest.instruments}
+    visit = visit_time(protocol, used)
     return StudyView(
         **_summary(db, study, newest).model_dump(),
-        languages=list(protocol_of(newest).languages),
+        languages=list(protocol.languages),
+        planned_minutes=visit.planned,
+        minutes=visit.total,
         versions=[
             VersionView(
                 number=version.number,

@@ -45,9 +45,15 @@ class StudySummary(BaseModel):
 
 
 class StudyView(StudySummary):
-    """A study with its newest version in full; an operator of a blinded one gets no protocol."""
+    """A study with its newest version in full; an operator of a blinded one gets no protocol.
+
+    `planned_minutes` is what the protocol sets for each visit; `minutes` adds our rough estimate of
+    forms and texts.
+    """
 
     languages: list[str]
+    planned_minutes: float
+    minutes: float
     versions: list[VersionView]
     protocol: dict[str, Any] | None
     yaml: str | None

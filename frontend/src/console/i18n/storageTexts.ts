@@ -62,8 +62,8 @@ export const storageEn = {
   "storage.study.size": "Size",
   "storage.study.mean": "One session",
   "storage.study.room": "Room for",
-  "storage.study.mean.of_one": "mean of {{count}} completed: {{kind}}",
-  "storage.study.mean.of_other": "mean of {{count}} completed: {{kind}}",
+  "storage.study.mean.of_one": "mean of {{count}} with movement: {{kind}}",
+  "storage.study.mean.of_other": "mean of {{count}} with movement: {{kind}}",
   "storage.study.unmeasured": "not measured yet",
   "storage.study.room.of": "about {{number}} more",
   "storage.studies.note":
@@ -147,8 +147,8 @@ export const storageDe: Readonly<Record<keyof typeof storageEn, string>> = {
   "storage.study.size": "Größe",
   "storage.study.mean": "Eine Sitzung",
   "storage.study.room": "Platz für",
-  "storage.study.mean.of_one": "Mittel aus {{count}} abgeschlossenen: {{kind}}",
-  "storage.study.mean.of_other": "Mittel aus {{count}} abgeschlossenen: {{kind}}",
+  "storage.study.mean.of_one": "Mittel aus {{count}} mit Bewegung: {{kind}}",
+  "storage.study.mean.of_other": "Mittel aus {{count}} mit Bewegung: {{kind}}",
   "storage.study.unmeasured": "noch nicht gemessen",
   "storage.study.room.of": "etwa {{number}} weitere",
   "storage.studies.note":

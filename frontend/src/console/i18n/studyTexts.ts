@@ -157,7 +157,8 @@ export const studyEn = {
   "procedure.active": "Active time",
   "procedure.freeze": "Freeze",
   "procedure.legend": "Each task: preparation, active time (filled), freeze.",
-  "procedure.total": "Time set by the protocol: {{time}}, without forms and breaks.",
+  "procedure.total":
+    "A visit takes about {{minutes}} min, with our estimate of forms and texts; {{planned}} min of it are set by the protocol. Breaks come on top.",
   "slot.free": "Free",
   "slot.open": "Running",
   "slot.completed": "Completed",
@@ -238,7 +239,8 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "procedure.active": "Aktive Zeit",
   "procedure.freeze": "Stillstand",
   "procedure.legend": "Jede Aufgabe: Vorbereitung, aktive Zeit (gefüllt), Stillstand.",
-  "procedure.total": "Durch das Protokoll festgelegte Zeit: {{time}}, ohne Formulare und Pausen.",
+  "procedure.total":
+    "Ein Besuch dauert etwa {{minutes}} min, Formulare und Texte geschätzt; {{planned}} min davon legt das Protokoll fest. Pausen kommen hinzu.",
   "slot.free": "Frei",
   "slot.open": "Läuft",
   "slot.completed": "Abgeschlossen",

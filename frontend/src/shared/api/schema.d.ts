@@ -7646,9 +7646,9 @@ export interface components {
          * StudyRoom
          * @description What a study takes.
          *
-         *     `mean_bytes`: of its `measured` completed sessions of the kind `measured_kind`: people's where
-         *     there are any, since others may be shorter. `room_for`: how many more of these fit before the
-         *     disk warns; None where nothing was measured, or the database is elsewhere.
+         *     `mean_bytes`: of its `measured` completed sessions with movement, of the kind `measured_kind`:
+         *     people's where there are any, since others may be shorter. `room_for`: how many more of these
+         *     fit before the disk warns; None where nothing was measured, or the database is elsewhere.
          */
         readonly StudyRoom: {
             /** Bytes */
@@ -7700,6 +7700,9 @@ export interface components {
         /**
          * StudyView
          * @description A study with its newest version in full; an operator of a blinded one gets no protocol.
+         *
+         *     `planned_minutes` is what the protocol sets for each visit; `minutes` adds our rough estimate of
+         *     forms and texts.
          */
         readonly StudyView: {
             /** Archived At */
@@ -7719,6 +7722,10 @@ export interface components {
             readonly key: string;
             /** Languages */
             readonly languages: readonly string[];
+            /** Minutes */
+            readonly minutes: number;
+            /** Planned Minutes */
+            readonly planned_minutes: number;
             /** Protocol */
             readonly protocol: {
                 readonly [key: string]: unknown;

@@ -36,6 +36,16 @@ def test_a_check_tells_what_a_study_asks_for(lab: Lab, yaml: str) -> None:
     assert summary["minutes"] > summary["planned_minutes"]
 
 
+def test_a_visit_takes_as_long_wherever_one_asks(lab: Lab, yaml: str) -> None:
+    """The study's overview, the editor and the dry run give one figure."""
+    study = ok(lab.operator.get(f"/api/studies/{STUDY}"))
+    summary = ok(lab.operator.post("/api/studies/check", json={"yaml": yaml}))["summary"]
+    run = ok(lab.operator.post("/api/studies/timeline", json={"yaml": yaml}))
+    figures = {"minutes": run["total_s"] / 60, "planned_minutes": run["planned_s"] / 60}
+    for name, minutes in figures.items():
+        assert study[name] == summary[name] == pytest.approx(minutes, abs=0.05)
+
+
 def test_a_broken_file_still_has_its_values(lab: Lab, yaml: str) -> None:
     """A form can show what is there while there are problems, and where each value stands."""
     broken = edit(yaml, ("latency_ms: 125", "latency_ms: -125"))

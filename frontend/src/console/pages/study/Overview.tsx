@@ -46,7 +46,7 @@ function Whole({ study, protocol }: WholeProps): JSX.Element {
           <Title order={2} mb="md">
             {t("overview.procedure")}
           </Title>
-          <Procedure protocol={protocol} />
+          <Procedure study={study} protocol={protocol} />
         </Paper>
         <Paper>
           <Title order={2} mb="md">

@@ -1,15 +1,20 @@
 /** The procedure of one visit from left to right; timed parts carry their seconds, phases to scale. */
-import type { SetupStep, StepKind, StudyProtocol, TaskPhase } from "@shared/api/types";
-import { duration } from "@shared/format";
+import type { SetupStep, StepKind, StudyDetail, StudyProtocol, TaskPhase } from "@shared/api/types";
+import { duration, number } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
-import { type Seconds, seconds } from "@shared/units";
+import { seconds } from "@shared/units";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
 import { stepIcon, stepName, stepNameKey } from "../../steps";
 import classes from "./Procedure.module.css";
 
-export function Procedure({ protocol }: { readonly protocol: StudyProtocol }): JSX.Element {
-  const { t } = useTexts();
+interface ProcedureProps {
+  readonly study: StudyDetail;
+  readonly protocol: StudyProtocol;
+}
+
+export function Procedure({ study, protocol }: ProcedureProps): JSX.Element {
+  const { t, language } = useTexts();
   const { before, block, after } = protocol.procedure;
   return (
     <>
@@ -34,7 +39,10 @@ export function Procedure({ protocol }: { readonly protocol: StudyProtocol }): J
       <div className={classes.legend}>
         <span>{t("procedure.legend")}</span>
         <span className={classes.total}>
-          {t("procedure.total", { time: duration(ownTime(protocol)) })}
+          {t("procedure.total", {
+            minutes: number(study.minutes, language, 0),
+            planned: number(study.planned_minutes, language, 0),
+          })}
         </span>
       </div>
     </>
@@ -119,14 +127,4 @@ function Phase({ phase }: { readonly phase: TaskPhase }): JSX.Element {
       {phase.questionnaire !== null && <SmallStep icon="form" name="step.questionnaire" />}
     </>
   );
-}
-
-/** The time of one visit that the protocol fixes: free roam and phases, not forms or breaks. */
-export function ownTime({ procedure, conditions }: StudyProtocol): Seconds {
-  const around = [...procedure.before, ...procedure.after].map((step) => step.duration_s ?? 0);
-  const phases = procedure.block.phases.map(
-    (phase) => phase.preparation_s + phase.duration_s + phase.freeze_s,
-  );
-  const sum = (times: readonly number[]): number => times.reduce((total, time) => total + time, 0);
-  return seconds(sum(around) + conditions.length * sum(phases));
 }

@@ -1,9 +1,8 @@
-import type { Ledger, Slot, StudyProtocol } from "@shared/api/types";
+import type { Ledger, Slot } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
 import { offsetOfLine, place } from "../Problems";
 import { arrange, nextFree } from "./LedgerTab";
 import { orderCount } from "./Overview";
-import { ownTime } from "./Procedure";
 
 const ORDERS = [
   [0, 125],
@@ -51,36 +50,6 @@ describe("the ledger as a grid", () => {
   it("knows the slot that is given out next", () => {
     expect(nextFree(ledger.slots)).toBe(2);
     expect(nextFree(ledger.slots.slice(0, 2))).toBeNull();
-  });
-});
-
-describe("the time of a visit", () => {
-  it("adds free roam once and every phase once for each condition", () => {
-    const phase = { preparation_s: 5, duration_s: 60, freeze_s: 5, questionnaire: "q" };
-    const protocol: StudyProtocol = {
-      title: {},
-      description: {},
-      conditions: [0, 125, 350].map((latency_ms) => ({
-        key: `${latency_ms}`,
-        latency_ms,
-        label: {},
-      })),
-      orders: { design: "all_permutations", replicates: 2, seed: 1, when_full: "grow" },
-      procedure: {
-        before: [{ step: "consent" }, { step: "free_roam", duration_s: 120, latency_ms: 0 }],
-        block: {
-          limb_order: "fixed",
-          phases: [
-            { limb: "hand", ...phase },
-            { limb: "foot", ...phase },
-          ],
-        },
-        after: [{ step: "debrief" }],
-      },
-      on_disconnect: "pause",
-      blinding: { operator: false },
-    };
-    expect(ownTime(protocol)).toBe(120 + 3 * 2 * 70);
   });
 });
 
