@@ -129,7 +129,7 @@ def rehearse(
     ] = None,
     physics: Annotated[
         bool,
-        typer.Option("--physics", help="With an avatar that follows by forces."),
+        typer.Option("--physics", help="By forces, also where the study has a delayed copy."),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
 ) -> None:
