@@ -17,9 +17,12 @@ from tests.features.lab import STUDY, Json, Lab, ok
 from tests.features.latency_builders import measured
 from tests.features.record.sessions.engine_run import PLAN, Run, index_of
 from tests.features.session_filler import NOW
-from tests.protocol.helpers import BEFORE_RULES, study
+from tests.protocol.helpers import BEFORE_RULES, edited, study
 
-RULES = study().valid_when or ValidWhen(forms=("karas2020",))
+FORMS = "  forms: [karas2020]\n"
+WITH_LATENCY = (FORMS, f"{FORMS}  achieved_latency: {{reported: true}}\n")
+"""The shipped rules, and a latency that could be measured in every task."""
+RULES = study(WITH_LATENCY).valid_when or ValidWhen(forms=("karas2020",))
 TASKS = [step for step in PLAN if step.kind == "task"]
 
 
@@ -49,6 +52,13 @@ def ledger(lab: Lab) -> list[Json]:
     """The slots of people's ledger."""
     slots: list[Json] = ok(lab.operator.get(f"/api/studies/{STUDY}/ledger?kind=people"))["slots"]
     return slots
+
+
+def with_latency(lab: Lab) -> Lab:
+    """The same with a study that asks for a measured latency, too."""
+    yaml = edited(WITH_LATENCY)
+    ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": yaml}))
+    return lab
 
 
 def complete(db: Session, view: Json) -> StudySession:
@@ -176,7 +186,7 @@ def test_a_study_without_rules_keeps_the_slot(fresh_lab: Lab) -> None:
 
 def test_a_latency_that_comes_later_decides_again(fresh_lab: Lab) -> None:
     """Nothing looked at yet keeps the slot, unknown frees it, known takes it back."""
-    lab = fresh_lab
+    lab = with_latency(fresh_lab)
     view = lab.join()
     with lab.database.writing() as db:
         session = complete(db, view)
@@ -192,7 +202,7 @@ def test_a_latency_that_comes_later_decides_again(fresh_lab: Lab) -> None:
 
 def test_a_slot_that_somebody_else_has_by_then_stays_theirs(fresh_lab: Lab) -> None:
     """A session that counts after all is valid, and holds no slot."""
-    lab = fresh_lab
+    lab = with_latency(fresh_lab)
     view = lab.join()
     with lab.database.writing() as db:
         measure(db, complete(db, view), None)
