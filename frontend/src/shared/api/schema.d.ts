@@ -4130,6 +4130,28 @@ export interface components {
             readonly warn_below_bytes: number;
         };
         /**
+         * Doubt
+         * @description Something in a session's record that cannot be true.
+         *
+         *     `phase_id` is None where it is about the session and not about one phase. `kind` is one of
+         *     `KINDS`. `claimed` was said and `possible` is the furthest it can have been, both in `unit`;
+         *     None where no figure says it.
+         */
+        readonly Doubt: {
+            /** Claimed */
+            readonly claimed?: number | null;
+            /** Kind */
+            readonly kind: string;
+            /** Phase Id */
+            readonly phase_id: number | null;
+            /** Possible */
+            readonly possible?: number | null;
+            /** Unit */
+            readonly unit?: string | null;
+            /** Words */
+            readonly words: string;
+        };
+        /**
          * DraftFile
          * @description A draft to compare with the newest version.
          */
@@ -7014,8 +7036,9 @@ export interface components {
          * @description What a session's record holds and what it lacks.
          *
          *     `complete` is true where `problems` is empty: nothing that was made is missing or damaged, the
-         *     event log's hash chain holds, and the stored completions follow from the stored contacts. A
-         *     session that still runs may lack what its headset has yet to send.
+         *     event log's hash chain holds, the stored completions follow from the stored contacts, and there
+         *     are no `doubts`: nothing in it is known to be untrue. A session that still runs may lack what
+         *     its headset has yet to send.
          */
         readonly SessionReceipt: {
             /** Achieved Latency */
@@ -7027,6 +7050,8 @@ export interface components {
             readonly complete: boolean;
             /** Completions */
             readonly completions: readonly components["schemas"]["CompletionReceipt"][];
+            /** Doubts */
+            readonly doubts: readonly components["schemas"]["Doubt"][];
             /** Problems */
             readonly problems: readonly string[];
             /** Product Version */
@@ -7539,10 +7564,13 @@ export interface components {
          *
          *     `sent`: how many frames (or reports) the client made, as far as it could still tell. `gaps`:
          *     the seqs that are missing, as (first, end). `damaged`: stored frames that can no longer be read;
-         *     they count as missing. `flagged`: frames with values that no summary uses. `sha256` covers every
+         *     they count as missing. `flagged`: frames with values that no summary uses. `backwards`: readable
+         *     frames that are not later than the one before, or whose time is no number. `sha256` covers every
          *     bit of every readable frame in the order of seqs, so two copies of a record can be compared.
          */
         readonly StreamReceipt: {
+            /** Backwards */
+            readonly backwards: number;
             /** Damaged */
             readonly damaged: number;
             /** Epoch */
