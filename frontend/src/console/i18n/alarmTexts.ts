@@ -48,7 +48,7 @@ export const alarmsEn = {
   "alarm.clock_uncertain.do": "The network is slow. Durations are not affected.",
   "alarm.storage": "Nothing can be stored",
   "alarm.storage.do":
-    "The server's disk is full or its database is locked. Headsets and tablets keep what they have. To free space, delete exports (Downloads), end sessions, erase data or remove old backups.",
+    "Headsets and tablets keep what they have. Disk full? Delete exports, end sessions or erase data.",
   "alarm.low_disk": "Little space on the server's disk",
   "alarm.low_disk.do": "Make space before the next session. Everything is still stored.",
   "alarm.writer_failed": "The server has a fault",
@@ -146,7 +146,7 @@ export const alarmsDe: Readonly<Record<keyof typeof alarmsEn, string>> = {
   "alarm.clock_uncertain.do": "Das Netz ist langsam. Dauern sind nicht betroffen.",
   "alarm.storage": "Nichts kann gespeichert werden",
   "alarm.storage.do":
-    "Die Platte des Servers ist voll oder seine Datenbank gesperrt. Headsets und Tablets behalten, was sie haben. Platz schaffen: Exporte löschen (Downloads), Sitzungen beenden, Daten löschen, alte Sicherungen entfernen.",
+    "Headsets und Tablets behalten, was sie haben. Platte voll? Exporte löschen, Sitzungen beenden oder Daten löschen.",
   "alarm.low_disk": "Wenig Platz auf der Platte des Servers",
   "alarm.low_disk.do": "Vor der nächsten Sitzung Platz schaffen. Noch wird alles gespeichert.",
   "alarm.writer_failed": "Störung im Server",
