@@ -14,11 +14,13 @@ ReembodyError                     something was refused; carries value, valid an
 │   └── Withdrawn         410     the participant has withdrawn: nothing more is taken of them
 ├── TooLarge              413     more bytes than this interface takes
 ├── TooManyAttempts       429     slow down; says for how long
+├── Busy                  503     as much of this work is under way as the server takes at once
 └── NotDurable            503     the record cannot be written now, so nothing was promised
 
 Each error says what happened (`message`), the offending `value`, what is `valid`, and what to do
-next (`remedy`). Science and configuration raise their own plain errors; services translate them
-into these. One handler (`app.api.errors`) turns them into the same JSON for every route.
+next (`remedy`); `retry_after_s` is sent as the header Retry-After. Science and configuration raise
+their own plain errors; services translate them into these. One handler (`app.api.errors`) turns
+them into the same JSON for every route.
 """
 
 from collections.abc import Mapping, Sequence
@@ -39,6 +41,7 @@ class ReembodyError(Exception):
         valid: object = None,
         remedy: str = "",
         details: Sequence[Mapping[str, object]] = (),
+        retry_after_s: float | None = None,
     ) -> None:
         super().__init__(message)
         self.message = message
@@ -46,6 +49,7 @@ class ReembodyError(Exception):
         self.valid = valid
         self.remedy = remedy
         self.details = tuple(dict(detail) for detail in details)
+        self.retry_after_s = retry_after_s
 
     def as_json(self) -> dict[str, object]:
         """The error as every client sees it."""
@@ -144,6 +148,13 @@ class TooManyAttempts(ReembodyError):
 
     code = "too_many_attempts"
     status = 429
+
+
+class Busy(ReembodyError):
+    """As much of this work is under way as the server takes at once; nothing was queued."""
+
+    code = "busy"
+    status = 503
 
 
 class NotDurable(ReembodyError):

@@ -22,28 +22,26 @@ from app.features.design.studies import add_shipped
 from app.features.movement.avatar import add_shipped_avatar
 from app.features.movement.captures import Workbench
 from app.features.movement.walking import Bench, FittingDesk
-from app.features.people.accounts import ensure_admin
+from app.features.people.accounts import RefusedSignIns, ensure_admin
 from app.features.record.telemetry import Folder, Summariser, TelemetryWriter, stop_running_clocks
 from app.features.record.tryout import TryoutDesk
 from app.features.results.analysis import Drawings
 from app.features.results.exports import ExportDesk
 from app.features.results.replay import ReplayDesk
 from app.lan import Network
+from app.platform.admission import Admission
 from app.platform.background import Background
 from app.platform.context import AppContext, PartMaker
 from app.platform.folders import database_file, home_of, protect
 from app.platform.half_made import remove_left
 from app.platform.hub import Hub
-from app.platform.rate_limit import RateLimiter
+from app.platform.rate_limit import usual_limits
 from app.platform.space_reserve import SpaceReserve
 from app.platform.storage_health import StorageHealth
 from app.resources import static_dir
 from app.settings import Settings, read_settings
 
 log = logging.getLogger(__name__)
-LOGIN_ATTEMPTS = 10
-PAIRING_ATTEMPTS = 20
-WINDOW_S = 60.0
 PARTS: tuple[PartMaker, ...] = (
     StorageRecovery,
     Summariser,
@@ -57,6 +55,7 @@ PARTS: tuple[PartMaker, ...] = (
     ExportDesk.of,
     StorageDesk.of,
     TryoutDesk.of,
+    RefusedSignIns.of,
 )
 """What features keep alive between requests; started in this order, stopped in reverse."""
 
@@ -88,15 +87,16 @@ def create_app(
         hub.publish_storage,
         reserve=SpaceReserve(embedded),
     )
+    database = open_database(settings.resolved_database_url, storage)
     context = AppContext(
         settings=settings,
-        database=open_database(settings.resolved_database_url, storage),
+        database=database,
         clock=clock,
         hub=hub,
         storage=storage,
         background=Background(clock, hub.publish_storage),
-        login_limiter=RateLimiter(LOGIN_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
-        pairing_limiter=RateLimiter(PAIRING_ATTEMPTS, WINDOW_S, clock.monotonic_ns),
+        limits=usual_limits(clock.monotonic_ns),
+        admission=Admission(database, clock),
         network=network or Network(),
     )
     for make in PARTS:
@@ -135,6 +135,8 @@ def create_app(
     install_pages(app, static_dir())
     app.add_middleware(
         Guards,
+        admission=context.admission,
+        strangers=context.limits.strangers,
         max_body_bytes=settings.max_body_bytes,
         larger_bodies={
             ("POST", path): settings.max_capture_bytes

@@ -1,12 +1,17 @@
 """One handler: every refusal reaches every client in the same shape."""
 
+import json
 import logging
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
+from pydantic import TypeAdapter
 from sqlalchemy.exc import DatabaseError, DataError, IntegrityError, OperationalError
 from starlette.exceptions import HTTPException
 
@@ -18,14 +23,25 @@ from app.errors import (
     NotFound,
     ReembodyError,
 )
+from app.platform.text import printable
 from app.platform.trouble import BUSY, explain
 
 log = logging.getLogger(__name__)
+MOST_DETAILS = 50
+LONGEST_VALUE = 100
+LONGEST_TEXT = 2000
+MOST_ITEMS = 500
+MOST_CHARACTERS = 60_000
+DEEPEST = 8
 
 
 def error_response(error: ReembodyError) -> JSONResponse:
-    """The JSON of an error with its status."""
-    return JSONResponse({"error": _jsonable(error.as_json())}, status_code=error.status)
+    """The JSON of an error with its status: a few kilobytes, however much was sent."""
+    headers = None
+    if error.retry_after_s is not None:
+        headers = {"retry-after": str(max(1, math.ceil(error.retry_after_s)))}
+    told = _Bounded().jsonable(error.as_json())
+    return JSONResponse({"error": told}, status_code=error.status, headers=headers)
 
 
 def install_error_handler(app: FastAPI) -> None:
@@ -36,20 +52,23 @@ def install_error_handler(app: FastAPI) -> None:
         return error_response(error)
 
     @app.exception_handler(RequestValidationError)
-    def validation(_: Request, error: RequestValidationError) -> JSONResponse:
-        details = [
-            {
-                "path": ".".join(str(part) for part in problem["loc"][1:]),
-                "message": problem["msg"],
-                "value": problem.get("input"),
-            }
-            for problem in error.errors()
-        ]
+    def validation(request: Request, error: RequestValidationError) -> JSONResponse:
+        secret, problems = _takes_secrets(request.scope.get("route")), error.errors()
+        more = len(problems) - MOST_DETAILS
         return error_response(
             InvalidInput(
                 "the request does not fit",
-                remedy="Mend the fields named below; nothing was stored.",
-                details=details,
+                remedy="Mend the fields named below; nothing was stored."
+                + (f" {more} more problems are not listed." if more > 0 else ""),
+                details=[
+                    {
+                        "path": ".".join(str(part)[:LONGEST_VALUE] for part in problem["loc"][1:]),
+                        "message": problem["msg"],
+                        # A container would be the whole input; of a missing field it is all others.
+                        "value": None if secret else _scalar(problem.get("input")),
+                    }
+                    for problem in problems[:MOST_DETAILS]
+                ],
             )
         )
 
@@ -129,14 +148,67 @@ def _went_wrong() -> JSONResponse:
     )
 
 
-def _jsonable(value: Any) -> Any:
-    """Values as JSON can carry them: NaN and bytes become text."""
-    if isinstance(value, Mapping):
-        return {str(key): _jsonable(one) for key, one in value.items()}
-    if isinstance(value, str | int | bool) or value is None:
-        return value
-    if isinstance(value, float):
-        return value if value == value and abs(value) != float("inf") else str(value)
-    if isinstance(value, Sequence) and not isinstance(value, bytes | bytearray):
-        return [_jsonable(one) for one in value]
-    return str(value)[:500]
+def _takes_secrets(route: object) -> bool:
+    """Whether a route's body has a field marked as a secret (`writeOnly`).
+
+    Then no value is repeated, not even of other fields: a password may stand in any of them.
+    """
+    field = getattr(route, "body_field", None)
+    model = getattr(getattr(field, "field_info", None), "annotation", None)
+    return model is not None and _has_secrets(model)
+
+
+@lru_cache(maxsize=256)
+def _has_secrets(model: Any) -> bool:
+    schema = TypeAdapter(model).json_schema(mode="validation")
+    return '"writeOnly": true' in json.dumps(schema)
+
+
+def _scalar(value: object) -> object:
+    if isinstance(value, str):
+        return value if len(value) <= LONGEST_VALUE else f"{value[:LONGEST_VALUE]}..."
+    return value if isinstance(value, bool | int | float) else None
+
+
+@dataclass
+class _Bounded:
+    """Values as JSON can carry them, and no more characters of them than a reader wants.
+
+    NaN and bytes become text, lone surrogates are written out, long lists and texts are cut.
+    """
+
+    left: int = MOST_CHARACTERS
+
+    def jsonable(self, value: Any, depth: int = 0) -> Any:
+        """The value, cut where it is too long or too deep."""
+        if value is None or isinstance(value, bool):
+            return value
+        if isinstance(value, int) and abs(value) < 2**63:
+            return value
+        if isinstance(value, float) and math.isfinite(value):
+            return value
+        if isinstance(value, Mapping | list | tuple | set | frozenset) and depth >= DEEPEST:
+            return "..."
+        if isinstance(value, Mapping):
+            return {
+                self._text(str(key)): self.jsonable(one, depth + 1)
+                for key, one in list(value.items())[:MOST_ITEMS]
+            }
+        if isinstance(value, Sequence | set | frozenset) and not isinstance(
+            value, str | bytes | bytearray
+        ):
+            kept = list(value)[:MOST_ITEMS]
+            # The end of a cut list is not marked: readers expect entries of one kind.
+            return [self.jsonable(one, depth + 1) for one in kept if self.left > 0]
+        return self._text(value if isinstance(value, str) else _written(value))
+
+    def _text(self, text: str) -> str:
+        most = max(0, min(LONGEST_TEXT, self.left))
+        cut = text if len(text) <= most else f"{text[:most]}..."
+        self.left -= len(cut)
+        return printable(cut)
+
+
+def _written(value: object) -> str:
+    # Python refuses to write integers of more than 4300 digits.
+    return "a very large number" if isinstance(value, int) else str(value)

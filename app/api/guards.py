@@ -1,4 +1,8 @@
-"""What stands before every route: the name asked for, size limit, same-origin check, headers.
+"""What stands before every route: who may send how much, the name asked for, the origin, headers.
+
+Nothing of a body is read for a stranger beyond a few kilobytes, and strangers share a budget per
+address; whoever shows a valid token has neither limit (`app.platform.admission`). Text that no
+database can hold is refused here, once for every route (`app.platform.text`).
 
 Cookies are SameSite=Strict already; the origin check is the second lock for requests that change
 something, and the first for WebSockets, which no cookie rule of the browser covers.
@@ -9,18 +13,40 @@ server for that page's own. It cannot do so under a name that only a local netwo
 under an address.
 """
 
+import asyncio
 from collections.abc import Callable, Iterable, Mapping
 from ipaddress import ip_address
 from types import MappingProxyType
 from urllib.parse import urlsplit
 
+from anyio.to_thread import run_sync
 from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import ClientDisconnect, HTTPConnection
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.api.errors import error_response
-from app.errors import NotAllowed, ReembodyError, TooLarge
+from app.errors import (
+    InvalidInput,
+    NotAllowed,
+    NotSignedIn,
+    ReembodyError,
+    TooLarge,
+    TooManyAttempts,
+)
+from app.lan import STRANGER
+from app.platform.admission import Admission, tokens_of
+from app.platform.rate_limit import Budget, network_of
+from app.platform.text import require_text_in_head, require_text_in_json
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+STRANGERS_BODY_BYTES = 16 * 1024
+"""A login, a pairing or an invitation takes a few hundred bytes."""
+SOCKET_COST = 10.0
+"""A stranger's socket is closed at once, but may have brought a message with its handshake."""
+HELD_S, MOST_HELD = 0.25, 512
+TOO_LARGE_COST = 10.0
+LARGE_BODY_BYTES = 64 * 1024
+"""Above this, looking for characters that cannot be stored is worth a thread."""
 # No Strict-Transport-Security: a browser applies it to every port of a host and, once it has seen
 # it, lets nobody past a certificate that it does not trust. A device would then lose the help page,
 # which must be plain http, and a headset by USB cable its http://localhost.
@@ -45,45 +71,83 @@ class Guards:
         self,
         app: ASGIApp,
         *,
+        admission: Admission,
+        strangers: Budget,
         max_body_bytes: int,
         host_names: Callable[[], Iterable[str]],
         larger_bodies: Mapping[tuple[str, str], int] = MappingProxyType({}),
     ) -> None:
-        """`larger_bodies` by method and path: routes that let people in before reading a body."""
+        """`larger_bodies` by method and path: routes that read their bodies themselves, in pieces,
+        after they have let somebody in.
+        """
         self._app = app
+        self._admission, self._strangers = admission, strangers
         self._max_body_bytes = max_body_bytes
         self._larger_bodies = larger_bodies
         self._host_names = host_names
+        self._held = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Check, then pass on."""
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
+        send = _headed(scope, send)
         try:
-            self._check(scope, Headers(scope=scope))
-        except ReembodyError as error:
-            if scope["type"] == "websocket":
-                await send({"type": "websocket.close", "code": 4403, "reason": error.message})
-            else:
-                await error_response(error)(scope, receive, _headed(scope, send))
+            known = await self._known(scope)
+            headers = Headers(scope=scope)
+            self._check(scope, headers)
+            if scope["type"] == "http":
+                receive = await self._read(scope, headers, receive, known=known)
+        except ClientDisconnect:
             return
-        if scope["type"] == "websocket":
-            await self._app(scope, receive, send)
-        else:
-            await self._app(scope, _Limited(receive, self._limit(scope)), _headed(scope, send))
+        except ReembodyError as error:
+            if isinstance(error, TooManyAttempts):
+                await self._hold(scope)
+            await _refuse(scope, receive, send, error)
+            return
+        await self._app(scope, receive, send)
+
+    async def _hold(self, scope: Scope) -> None:
+        """Let a stranger who asks too much wait for a moment, where that costs next to nothing.
+
+        Whoever asks again as soon as they are answered asks a few times a second then, and not as
+        often as this machine can refuse. A large body would have to be kept meanwhile.
+        """
+        declared = Headers(scope=scope).get("content-length", "0")
+        small = declared.isdigit() and int(declared[:20]) <= STRANGERS_BODY_BYTES
+        if not small or self._held >= MOST_HELD:
+            return
+        self._held += 1
+        try:
+            await asyncio.sleep(HELD_S)
+        finally:
+            self._held -= 1
+
+    async def _known(self, scope: Scope) -> bool:
+        """Whether a valid token was shown; a stranger's request is counted, or one too many.
+
+        What looks like a token counts only once the database has seen it: else anybody could pass
+        for a device.
+        """
+        connection = HTTPConnection(scope)
+        tokens = tokens_of(connection)
+        if tokens and await self._admission.knows(tokens):
+            return True
+        scope[STRANGER] = True
+        self._strangers.spend(_network(scope), SOCKET_COST if scope["type"] == "websocket" else 1.0)
+        return False
 
     def _check(self, scope: Scope, headers: Headers) -> None:
+        require_text_in_head(
+            scope.get("raw_path") or b"", scope.get("query_string", b""), scope["headers"]
+        )
         require_known_host(headers.get("host", ""), self._host_names())
-        declared = headers.get("content-length", "0")
-        limit = self._limit(scope)
-        if declared.isdigit() and int(declared) > limit:
-            raise _too_large(int(declared), limit)
         if scope["type"] == "http" and scope["method"] in SAFE_METHODS:
             return
         site, origin = headers.get("sec-fetch-site"), headers.get("origin")
         foreign_site = site not in (None, "same-origin", "none")
-        foreign_origin = origin is not None and urlsplit(origin).netloc != headers.get("host")
+        foreign_origin = origin is not None and _netloc(origin) != headers.get("host")
         if foreign_site or foreign_origin:
             raise NotAllowed(
                 "this request comes from another site",
@@ -91,9 +155,72 @@ class Guards:
                 remedy="Open the page on the address of this server.",
             )
 
-    def _limit(self, scope: Scope) -> int:
-        route = (scope.get("method", ""), scope["path"])
-        return self._larger_bodies.get(route, self._max_body_bytes)
+    async def _read(
+        self, scope: Scope, headers: Headers, receive: Receive, *, known: bool
+    ) -> Receive:
+        """What the application reads the body from; raises TooLarge as soon as it is too much."""
+        declared = headers.get("content-length", "")
+        if declared in ("", "0") and "transfer-encoding" not in headers:
+            return receive
+        route = (scope["method"], scope["path"])
+        limit = self._larger_bodies.get(route, self._max_body_bytes)
+        if not known:
+            limit = min(limit, STRANGERS_BODY_BYTES)
+        try:
+            if declared.isdigit() and int(declared[:20]) > limit:
+                raise _too_large(int(declared[:20]), limit)
+            if route in self._larger_bodies:
+                return _Limited(receive, limit)
+            body = await _whole(receive, limit)
+        except TooLarge as error:
+            if not known:
+                # It was read in part, and the connection is held for a moment.
+                self._strangers.charge(_network(scope), TOO_LARGE_COST)
+            if not known and tokens_of(HTTPConnection(scope)):
+                # Somebody whose login has ended needs to hear that, not that they sent too much.
+                raise NotSignedIn(
+                    "the login or pairing has ended", remedy="Log in again."
+                ) from error
+            raise
+        if len(body) > LARGE_BODY_BYTES:
+            await run_sync(require_text_in_json, body)
+        else:
+            require_text_in_json(body)
+        return _Replayed(body, receive)
+
+
+def _network(scope: Scope) -> str:
+    client = scope.get("client")
+    return network_of(client[0] if client else None)
+
+
+async def _whole(receive: Receive, limit: int) -> bytes:
+    """The body; raises TooLarge while it comes, ClientDisconnect where its sender goes away."""
+    pieces, size, more = [], 0, True
+    while more:
+        message = await receive()
+        if message["type"] == "http.disconnect":
+            raise ClientDisconnect
+        piece = message.get("body", b"")
+        pieces.append(piece)
+        size, more = size + len(piece), message.get("more_body", False)
+        if size > limit:
+            raise _too_large(size, limit)
+    return b"".join(pieces)
+
+
+class _Replayed:
+    """Hands on a body that was read before, then whatever comes after it."""
+
+    def __init__(self, body: bytes, receive: Receive) -> None:
+        self._body: bytes | None = body
+        self._receive = receive
+
+    async def __call__(self) -> Message:
+        if self._body is None:
+            return await self._receive()
+        body, self._body = self._body, None
+        return {"type": "http.request", "body": body, "more_body": False}
 
 
 class _Limited:
@@ -111,16 +238,36 @@ class _Limited:
         return message
 
 
+async def _refuse(scope: Scope, receive: Receive, send: Send, error: ReembodyError) -> None:
+    response = error_response(error)
+    if scope["type"] == "http":
+        await response(scope, receive, send)
+    elif isinstance(error, TooManyAttempts) and "websocket.http.response" in scope.get(
+        "extensions", {}
+    ):
+        # Before the handshake is answered: a socket that was opened first would cost more.
+        await response(scope, receive, send)
+    else:
+        await send({"type": "websocket.close", "code": 4403, "reason": error.message[:100]})
+
+
 def _too_large(size: int, limit: int) -> TooLarge:
     return TooLarge(
-        "the request is too large",
+        f"this is too large: {_readable(size)}, and at most {_readable(limit)} are taken",
         value=size,
         valid=f"at most {limit} bytes",
-        remedy="Send less at once.",
+        remedy="Choose a smaller file, or send less at once.",
     )
 
 
+def _readable(size: int) -> str:
+    return f"{size / 2**20:,.1f} MiB" if size >= 2**20 else f"{size / 2**10:,.0f} KiB"
+
+
 def _headed(scope: Scope, send: Send) -> Send:
+    if scope["type"] == "websocket":
+        return send
+
     async def send_with_headers(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)
@@ -138,7 +285,10 @@ def require_known_host(host: str, known: Iterable[str]) -> None:
 
     `host` is the Host header; `known` are the names that the lab gave to the server.
     """
-    name = (urlsplit(f"//{host}").hostname or "").rstrip(".")
+    try:
+        name = (urlsplit(f"//{host}").hostname or "").rstrip(".")
+    except ValueError as error:
+        raise InvalidInput("the header Host is no host name", value=host[:100]) from error
     if "." not in name or name.endswith(LOCAL_ENDINGS) or _is_address(name):
         return
     if name not in {one.lower() for one in known}:
@@ -148,6 +298,13 @@ def require_known_host(host: str, known: Iterable[str]) -> None:
             valid="an address, a name of the local network, or one of REEMBODY_HOST_NAMES",
             remedy='Set REEMBODY_HOST_NAMES=["name.example.org"] where the lab gave it that name.',
         )
+
+
+def _netloc(origin: str) -> str | None:
+    try:
+        return urlsplit(origin).netloc
+    except ValueError:
+        return None
 
 
 def _is_address(name: str) -> bool:

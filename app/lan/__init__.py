@@ -8,6 +8,6 @@ device installs once. This package knows no study, no database and no route of t
 This face tells where the server is reached; `app.lan.serving` opens the doors.
 """
 
-from app.lan.network import Network, Reach, ShownCertificate, qr_svg, qr_terminal
+from app.lan.network import STRANGER, Mode, Network, Reach, ShownCertificate, qr_svg, qr_terminal
 
-__all__ = ["Network", "Reach", "ShownCertificate", "qr_svg", "qr_terminal"]
+__all__ = ["STRANGER", "Mode", "Network", "Reach", "ShownCertificate", "qr_svg", "qr_terminal"]

@@ -15,6 +15,8 @@ import segno
 Mode = Literal["loopback", "lan", "without_tls"]
 LOOPBACK_HOSTS = ("localhost", "127.0.0.1", "::1")
 DEFAULT_PORT = 8321
+STRANGER = "reembody.stranger"
+"""Marks the scope of a request without login or pairing, for whoever serves the connection."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,10 @@ class Reach:
     def for_devices(self, asked_at: str) -> str:
         """The address to give to a device, when a page was asked for at the URL `asked_at`.
 
-        Whoever asks from this machine sees `localhost`, which is another machine for the tablet.
+        Every page, command and QR code that names an address for a tablet, a headset or another
+        person's computer asks here. Whoever asks from this machine sees `localhost`, which is
+        another machine for the tablet: then it is the best address of the network, and None where
+        only this machine can reach the server.
         """
         if self.urls and urlsplit(asked_at).hostname in LOOPBACK_HOSTS:
             return self.urls[0]

@@ -12,9 +12,10 @@ from typing import TypeVar
 from app.clock import Clock
 from app.database import Database
 from app.lan import Network
+from app.platform.admission import Admission
 from app.platform.background import Background
 from app.platform.hub import Hub
-from app.platform.rate_limit import RateLimiter
+from app.platform.rate_limit import Limits
 from app.platform.storage_health import StorageHealth
 from app.settings import Settings
 
@@ -44,8 +45,8 @@ class AppContext:
     hub: Hub
     storage: StorageHealth
     background: Background
-    login_limiter: RateLimiter
-    pairing_limiter: RateLimiter
+    limits: Limits
+    admission: Admission
     network: Network = field(default_factory=Network)
     _parts: dict[type[Part], Part] = field(default_factory=dict)
 

@@ -14,12 +14,11 @@ from starlette.requests import HTTPConnection
 from app.errors import KeptConflict, NotAllowed, NotSignedIn
 from app.models import Device
 from app.platform.access import Caller, caller_of, require_object
+from app.platform.admission import LOGIN_COOKIE, TABLET_COOKIE, bearer_token
 from app.platform.context import AppContext
 from app.platform.policy import HEADSET, TABLET, allowed
 from app.platform.tokens import account_of_token, device_of_token, read_cookie
 
-LOGIN_COOKIE = "reembody_login"
-TABLET_COOKIE = "reembody_tablet"
 API_PREFIX = "/api"
 Result = TypeVar("Result")
 
@@ -78,12 +77,6 @@ async def write(context: AppContext, work: Callable[[Session], Result]) -> Resul
 
 Reading = Annotated[Session, Depends(_reading, scope="function")]
 Writing = Annotated[Session, Depends(_writing, scope="function")]
-
-
-def bearer_token(request: HTTPConnection) -> str | None:
-    """The token of an `Authorization: Bearer` header, if there is one."""
-    scheme, _, token = request.headers.get("authorization", "").partition(" ")
-    return token.strip() if scheme.lower() == "bearer" and token else None
 
 
 def get_caller(request: Request, context: Context) -> Caller:

@@ -1,11 +1,34 @@
-"""Slow guessing down: a sliding window per caller, in memory, forgotten at a restart."""
+"""Slowing callers down: attempts in a sliding window, and budgets that refill.
+
+Everything is kept in memory, is forgotten at a restart, and has a fixed size: a million names or
+addresses push each other out, the one that was quiet for longest first. Guesses stay bounded even
+then, because passwords are checked a few at a time whoever asks (`app.features.people.accounts`).
+"""
 
 import threading
-from collections import deque
+from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from ipaddress import IPv6Address, ip_address, ip_network
 
 from app.errors import TooManyAttempts
+
+MOST_KEYS = 20_000
+IPV6_PREFIX = 64
+"""One household or lab has at least this many IPv6 addresses, so they count as one."""
+
+
+def network_of(address: str | None) -> str:
+    """Whom a client's address counts for: itself, or the /64 of an IPv6 address."""
+    try:
+        parsed = ip_address((address or "").partition("%")[0])
+    except ValueError:
+        return address or ""
+    if not isinstance(parsed, IPv6Address):
+        return str(parsed)
+    if parsed.ipv4_mapped is not None:
+        return str(parsed.ipv4_mapped)
+    return str(ip_network((parsed, IPV6_PREFIX), strict=False))
 
 
 @dataclass
@@ -15,22 +38,27 @@ class RateLimiter:
     limit: int
     window_s: float
     monotonic_ns: Callable[[], int]
-    _attempts: dict[str, deque[float]] = field(default_factory=dict)
+    most_keys: int = MOST_KEYS
+    # The key that was tried last stands last. Lists: a deque takes 600 bytes for its first element.
+    _attempts: OrderedDict[str, list[float]] = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def __len__(self) -> int:
+        return len(self._attempts)
 
     def attempt(self, key: str) -> None:
         """Count an attempt; raises TooManyAttempts when the window is full."""
         now_s = self.monotonic_ns() / 1e9
         with self._lock:
-            self._forget(now_s)
-            recent = self._attempts.setdefault(key, deque())
+            recent = self._recent(key, now_s)
             if len(recent) >= self.limit:
-                wait_s = self.window_s - (now_s - recent[0])
+                wait_s = max(1.0, self.window_s - (now_s - recent[0]))
                 raise TooManyAttempts(
                     "too many attempts",
                     value=len(recent),
                     valid=f"{self.limit} per {self.window_s:.0f} s",
-                    remedy=f"Wait {max(1, round(wait_s))} s and try again.",
+                    remedy=f"Wait {round(wait_s)} s and try again.",
+                    retry_after_s=wait_s,
                 )
             recent.append(now_s)
 
@@ -39,9 +67,95 @@ class RateLimiter:
         with self._lock:
             self._attempts.pop(key, None)
 
-    def _forget(self, now_s: float) -> None:
-        for key, recent in list(self._attempts.items()):
-            while recent and now_s - recent[0] >= self.window_s:
-                recent.popleft()
-            if not recent:
-                del self._attempts[key]
+    def take_back(self, key: str) -> None:
+        """Uncount the newest attempt: it was no guess, or was never looked at."""
+        with self._lock:
+            recent = self._attempts.get(key)
+            if recent:
+                recent.pop()
+
+    def _recent(self, key: str, now_s: float) -> list[float]:
+        recent = [at for at in self._attempts.get(key, ()) if now_s - at < self.window_s]
+        self._attempts[key] = recent
+        self._attempts.move_to_end(key)
+        while len(self._attempts) > 1:
+            oldest = next(iter(self._attempts))
+            last_s = max(self._attempts[oldest], default=float("-inf"))
+            if len(self._attempts) <= self.most_keys and now_s - last_s < self.window_s:
+                break
+            del self._attempts[oldest]
+        return recent
+
+
+@dataclass
+class Budget:
+    """What each key may spend: `capacity` at once, refilled by `per_s` a second."""
+
+    capacity: float
+    per_s: float
+    monotonic_ns: Callable[[], int]
+    most_keys: int = MOST_KEYS
+    # What was left, and when (s); a key that is missing has all of it.
+    _left: OrderedDict[str, tuple[float, float]] = field(default_factory=OrderedDict)
+    _lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def __len__(self) -> int:
+        return len(self._left)
+
+    def spend(self, key: str, cost: float = 1.0) -> None:
+        """Take `cost` from a key's budget; raises TooManyAttempts where less than that is left."""
+        left = self._take(key, cost)
+        if left < 0:
+            wait_s = max(1.0, -left / self.per_s)
+            raise TooManyAttempts(
+                "too many requests from this address without a login or pairing",
+                valid=f"{self.capacity:g} at once, then {self.per_s:g} per second",
+                remedy=f"Wait {round(wait_s)} s and try again. Paired devices and logins go on.",
+                retry_after_s=wait_s,
+            )
+
+    def charge(self, key: str, cost: float) -> None:
+        """Take `cost`, or what is left, for something that turned out dearer than it looked."""
+        self._take(key, cost, all_of_it=True)
+
+    def _take(self, key: str, cost: float, *, all_of_it: bool = False) -> float:
+        """What is left after taking `cost`; below 0 there was not enough, and nothing was taken."""
+        now_s = self.monotonic_ns() / 1e9
+        with self._lock:
+            left, at_s = self._left.get(key, (self.capacity, now_s))
+            left = min(self.capacity, left + (now_s - at_s) * self.per_s)
+            after = left - cost
+            kept = max(0.0, after) if all_of_it or after >= 0 else left
+            self._left[key] = (kept, now_s)
+            self._left.move_to_end(key)
+            if len(self._left) > self.most_keys:
+                self._left.popitem(last=False)
+        return after
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What one name or address may try, the lab's own included.
+
+    `names`: sign-ins for one name from one address. `sign_ins`: failed ones from one address,
+    whatever the names. `codes`: pairing codes and invitations from one address. `strangers`: every
+    request without a valid login or pairing, pages included. Whoever holds one is never counted.
+    """
+
+    names: RateLimiter
+    sign_ins: RateLimiter
+    codes: RateLimiter
+    strangers: Budget
+
+
+def usual_limits(monotonic_ns: Callable[[], int]) -> Limits:
+    """Far above what a lab behind one address needs, far below what slows a session down.
+
+    A tablet's first page takes about 15 requests, the console's 40.
+    """
+    return Limits(
+        names=RateLimiter(10, 60.0, monotonic_ns),
+        sign_ins=RateLimiter(30, 60.0, monotonic_ns),
+        codes=RateLimiter(20, 60.0, monotonic_ns),
+        strangers=Budget(1000.0, 20.0, monotonic_ns),
+    )

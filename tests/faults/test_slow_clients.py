@@ -176,8 +176,13 @@ def test_an_endless_head_is_refused(lan: LanServer) -> None:
 def test_a_large_body_in_pieces_is_not_mistaken_for_a_head(lan: LanServer) -> None:
     """A body that comes in many segments, and a request after it on the same connection."""
     body = b'{"username": "' + b"a" * (3 * MOST_HEAD_BYTES) + b'"}'
+    with lan.client() as client:
+        credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+        client.post("/api/login", json=credentials).raise_for_status()
+        cookie = f"reembody_login={client.cookies['reembody_login']}"
     connection = HTTPConnection("127.0.0.1", lan.port, timeout=20)
     connection.putrequest("POST", "/api/login")
+    connection.putheader("Cookie", cookie)
     connection.putheader("Content-Type", "application/json")
     connection.putheader("Content-Length", str(len(body)))
     connection.endheaders()

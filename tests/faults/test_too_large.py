@@ -57,6 +57,31 @@ def test_too_large_a_body_is_refused(lan: LanServer) -> None:
     note(22, "bodies", "refused above (bytes)", limit)
 
 
+def test_a_stranger_who_sends_on_is_let_go(lan: LanServer) -> None:
+    """After 413 nothing more of a stranger's body is read, and the connection ends soon."""
+    with socket.create_connection(("127.0.0.1", lan.port), timeout=30) as connection:
+        connection.sendall(
+            b"POST /api/login HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+            b"Content-Length: 268435456\r\n\r\n"
+        )
+        answer = connection.recv(4096)
+        sent = _sent_until_closed(connection)
+    assert answer.startswith(b"HTTP/1.1 413")
+    # What the system's own buffers take is not the server's.
+    assert sent < 2**26
+
+
+def _sent_until_closed(connection: socket.socket) -> int:
+    sent = 0
+    try:
+        for block in _blocks(256):
+            connection.sendall(block)
+            sent += len(block)
+    except OSError:
+        pass
+    return sent
+
+
 def test_too_large_a_capture_is_refused(lan: LanServer) -> None:
     """413 above its own, larger limit; whoever may not send any is refused at the door."""
     most = Settings().max_capture_bytes

@@ -40,6 +40,7 @@ from app.lan.serving import (
 from app.main import create_app
 from app.platform.background import Background
 from app.platform.folders import database_file
+from app.platform.rate_limit import network_of, usual_limits
 from app.platform.trouble import in_plain_words
 from app.settings import Settings, read_settings
 
@@ -166,7 +167,10 @@ class _Bound:
         if self.lan:
             doors.append(Door(self.lan, config, watch.tls))
         if self.help:
-            site = HelpSite(watch.network, watch.authority)
+            budget = usual_limits(Clock().monotonic_ns).strangers
+            site = HelpSite(
+                watch.network, watch.authority, lambda address: budget.spend(network_of(address))
+            )
             doors.append(Door(self.help, _config(site, settings)))
         return doors
 

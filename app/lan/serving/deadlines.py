@@ -18,6 +18,8 @@ from uvicorn.config import Config
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 from uvicorn.server import ServerState
 
+from app.lan.network import STRANGER
+
 HEAD_WITHIN_S = 10.0
 BODY_WITHIN_S = 30.0
 PORTION_BYTES = 2 * 1024 * 1024
@@ -25,6 +27,9 @@ PORTION_BYTES = 2 * 1024 * 1024
 MOST_HEAD_BYTES = 64 * 1024
 MOST_UNFINISHED = 256
 CLOSED_WITHIN_S = 2.0
+READS_ANSWER_WITHIN_S = 0.5
+"""A stranger whose body was answered before its end: nothing more of it is read. Whoever the lab
+knows may send the rest, since a browser shows the answer only then."""
 
 
 class Unfinished:
@@ -113,6 +118,17 @@ class ReceivingProtocol(HttpToolsProtocol):
             self._portion = 0
             self._settle()
             self._await(BODY_WITHIN_S, self._body_is_late)
+
+    def on_response_complete(self) -> None:
+        """Go on with the next request, unless a stranger was refused in mid-sentence."""
+        if self._in_body and STRANGER in self.scope and not self.transport.is_closing():
+            self._settle()
+            # Closed at once, the answer might be lost on the way to those who still send.
+            self.flow.pause_reading()
+            self.cycle.body = bytearray()
+            self.loop.call_later(READS_ANSWER_WITHIN_S, self.transport.abort)
+            return
+        super().on_response_complete()
 
     def on_message_complete(self) -> None:
         """All of it is there."""

@@ -1,6 +1,7 @@
 """Accounts and logins: who works here, and the tokens by which they are known."""
 
 from app.features.people.accounts.people import give_studies
+from app.features.people.accounts.refusals import RefusedSignIns
 from app.features.people.accounts.service import (
     create_account,
     ensure_admin,
@@ -8,4 +9,11 @@ from app.features.people.accounts.service import (
     revoke_token,
 )
 
-__all__ = ["create_account", "ensure_admin", "give_studies", "issue_token", "revoke_token"]
+__all__ = [
+    "RefusedSignIns",
+    "create_account",
+    "ensure_admin",
+    "give_studies",
+    "issue_token",
+    "revoke_token",
+]

@@ -3,9 +3,10 @@
 from fastapi import APIRouter, Request, Response
 from sqlalchemy.orm import Session
 
-from app.errors import NotAllowed, NotSignedIn
+from app.errors import Busy, NotAllowed, NotSignedIn, TooManyAttempts
 from app.features.people.accounts.passwords import hash_password, require_good
 from app.features.people.accounts.people import account_by_id, end_logins
+from app.features.people.accounts.refusals import RefusedSignIns
 from app.features.people.accounts.schemas import (
     AccountView,
     Credentials,
@@ -13,21 +14,26 @@ from app.features.people.accounts.schemas import (
     SignedInView,
     WhoView,
 )
-from app.features.people.accounts.service import check_password, issue_token, revoke_token
+from app.features.people.accounts.service import (
+    account_named,
+    is_alive,
+    issue_token,
+    require_password,
+    revoke_token,
+)
 from app.features.people.audit import record
 from app.models import Account
 from app.platform.access import Caller, caller_of
+from app.platform.admission import LOGIN_COOKIE, bearer_token
 from app.platform.context import AppContext
 from app.platform.dependencies import (
     FREES_SPACE,
-    LOGIN_COOKIE,
     Context,
     SignedIn,
-    Writing,
-    bearer_token,
     known_caller,
 )
 from app.platform.hub import after_commit
+from app.platform.rate_limit import network_of
 from app.platform.tokens import delete_cookie, hash_token, read_cookie, set_cookie
 
 router = APIRouter(tags=["accounts"])
@@ -38,23 +44,28 @@ def post_login(
     credentials: Credentials, request: Request, response: Response, context: Context
 ) -> SignedInView:
     """Open a login. The token travels in a cookie that no script can read."""
-    caller = f"{request.client.host if request.client else ''}:{credentials.username}"
-    context.login_limiter.attempt(caller)
-    now = context.clock.utc_now()
-    # Checking takes a while on purpose, so nobody else's writing waits for it.
+    address = request.client.host if request.client else ""
+    network, name = network_of(address), credentials.username
     try:
+        context.limits.sign_ins.attempt(network)
+        context.limits.names.attempt(f"{network} {name}")
         with context.database.reading() as db:
-            account = check_password(
-                db, username=credentials.username, password=credentials.password
-            )
-    except NotSignedIn:
-        with context.database.writing() as db:
-            record(db, actor="nobody", action="login.refused", details=_from(request), now=now)
+            account = account_named(db, name)
+        # Takes a while on purpose, so nobody else's reading or writing waits for it.
+        account = require_password(account, credentials.password)
+    except (NotSignedIn, TooManyAttempts, Busy) as error:
+        if isinstance(error, Busy):
+            context.limits.sign_ins.take_back(network)
+            context.limits.names.take_back(f"{network} {name}")
+        checked = isinstance(error, NotSignedIn)
+        context.part(RefusedSignIns).note(network, name, checked=checked)
         raise
     with context.database.writing() as db:
         opened = open_login(db, context, request, response, account)
-        record(db, actor=opened.actor, action="login.opened", details=_from(request), now=now)
-    context.login_limiter.succeed(caller)
+        now = context.clock.utc_now()
+        record(db, actor=opened.actor, action="login.opened", details={"address": address}, now=now)
+    context.limits.names.succeed(f"{network} {name}")
+    context.limits.sign_ins.take_back(network)
     return SignedInView(account=_view(opened))
 
 
@@ -72,13 +83,19 @@ def open_login(
 
 
 @router.post("/logout", status_code=204)
-def post_logout(request: Request, response: Response, db: Writing, context: Context) -> None:
+def post_logout(request: Request, response: Response, context: Context) -> None:
     """End this login; pages that are open with it are shut out at once."""
-    for token in (bearer_token(request), read_cookie(request, LOGIN_COOKIE)):
-        if token:
-            revoke_token(db, token, context.clock.utc_now())
     delete_cookie(request, response, LOGIN_COOKIE)
-    after_commit(db, context.hub.publish_access)
+    tokens = [bearer_token(request), read_cookie(request, LOGIN_COOKIE)]
+    with context.database.reading() as db:
+        alive = [token for token in tokens if token and is_alive(db, token)]
+    # Nobody without a login gets a turn at writing.
+    if not alive:
+        return
+    with context.database.writing() as db:
+        for token in alive:
+            revoke_token(db, token, context.clock.utc_now())
+        after_commit(db, context.hub.publish_access)
 
 
 @router.get("/me")
@@ -93,15 +110,17 @@ def get_me(request: Request, context: Context) -> WhoView:
 @router.put("/me/password", status_code=204)
 def put_password(change: NewPassword, request: Request, context: Context, caller: SignedIn) -> None:
     """Change one's own password; logins elsewhere end."""
-    context.login_limiter.attempt(f"password:{caller.account_id}")
+    attempts = f"password:{caller.account_id}"
+    context.limits.names.attempt(attempts)
     require_good(change.new, caller.username)
     with context.database.reading() as db:
-        try:
-            check_password(db, username=caller.username, password=change.current)
-        except NotSignedIn as error:
-            raise NotAllowed(
-                "the current password is not right", remedy="Type the password you log in with."
-            ) from error
+        known = account_by_id(db, caller.account_id)
+    try:
+        require_password(known, change.current)
+    except NotSignedIn as error:
+        raise NotAllowed(
+            "the current password is not right", remedy="Type the password you log in with."
+        ) from error
     hashed, now = hash_password(change.new), context.clock.utc_now()
     token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE) or ""
     with context.database.writing() as db:
@@ -110,15 +129,10 @@ def put_password(change: NewPassword, request: Request, context: Context, caller
         end_logins(db, account, now, but=hash_token(token))
         record(db, actor=caller.actor, action="account.password", now=now)
         after_commit(db, context.hub.publish_access)
-    context.login_limiter.succeed(f"password:{caller.account_id}")
+    context.limits.names.succeed(attempts)
 
 
 def _view(caller: Caller) -> AccountView:
     return AccountView.model_validate(
         {"id": caller.account_id, "username": caller.username, "role": caller.role}
     )
-
-
-def _from(request: Request) -> dict[str, str]:
-    """Where a login came from; the name that was typed is not kept, it may be a password."""
-    return {"address": request.client.host if request.client else ""}

@@ -13,9 +13,8 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Gone, NotFound
-from app.features.people.accounts.passwords import require_good
 from app.features.people.accounts.people import give_studies, study_ids
-from app.features.people.accounts.service import create_account
+from app.features.people.accounts.service import add_account
 from app.models import Account, Invitation, Study
 from app.platform.tokens import hash_token
 
@@ -89,11 +88,13 @@ def open_invitation(db: Session, token: str, now: datetime) -> Invitation:
     return row
 
 
-def accept(db: Session, *, token: str, username: str, password: str, now: datetime) -> Account:
-    """Make the account that the invitation promises; its role is not the guest's to choose."""
+def accept(db: Session, *, token: str, username: str, hashed: str, now: datetime) -> Account:
+    """Make the account that the invitation promises; its role is not the guest's to choose.
+
+    `hashed`: the password, which was found good and hashed before this transaction.
+    """
     row = open_invitation(db, token, now)
-    require_good(password, username)
-    account = create_account(db, username=username, password=password, role=row.role, now=now)
+    account = add_account(db, username=username, hashed=hashed, role=row.role, now=now)
     if not row.all_studies:
         # A study may be gone by now; nobody is invited to what is not there.
         keys = db.scalars(select(Study.key).where(Study.id.in_(row.studies))).all()

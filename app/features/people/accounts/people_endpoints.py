@@ -15,6 +15,7 @@ from app.features.people.accounts.invitations import (
     revoke_invitation,
     status_of,
 )
+from app.features.people.accounts.passwords import hash_password, require_good
 from app.features.people.accounts.people import (
     Person,
     account_by_id,
@@ -42,6 +43,7 @@ from app.features.people.audit import record
 from app.models import Account, Invitation, Study
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.platform.hub import after_commit
+from app.platform.rate_limit import network_of
 
 router = APIRouter(tags=["accounts"])
 
@@ -138,12 +140,11 @@ def delete_invitation(invitation_id: str, db: Writing, context: Context, caller:
 
 
 @router.post("/invitations/look")
-def post_look(
-    asked: InvitationToken, request: Request, db: Reading, context: Context
-) -> InvitationLook:
+def post_look(asked: InvitationToken, request: Request, context: Context) -> InvitationLook:
     """What an invitation is for."""
-    context.pairing_limiter.attempt(_guest(request))
-    row = open_invitation(db, asked.token, context.clock.utc_now())
+    context.limits.codes.attempt(_guest(request))
+    with context.database.reading() as db:
+        row = open_invitation(db, asked.token, context.clock.utc_now())
     return InvitationLook.model_validate(
         {"role": row.role, "note": row.note, "expires_at": row.expires_at}
     )
@@ -151,20 +152,23 @@ def post_look(
 
 @router.post("/invitations/accept", status_code=201)
 def post_accept(
-    acceptance: Acceptance, request: Request, response: Response, db: Writing, context: Context
+    acceptance: Acceptance, request: Request, response: Response, context: Context
 ) -> SignedInView:
     """Make the account and log in."""
-    context.pairing_limiter.attempt(_guest(request))
+    context.limits.codes.attempt(_guest(request))
     now = context.clock.utc_now()
-    account = accept(
-        db,
-        token=acceptance.token,
-        username=acceptance.username,
-        password=acceptance.password,
-        now=now,
-    )
-    caller = open_login(db, context, request, response, account)
-    record(db, actor=caller.actor, action="account.made", details={"role": caller.role}, now=now)
+    with context.database.reading() as db:
+        open_invitation(db, acceptance.token, now)
+    require_good(acceptance.password, acceptance.username)
+    hashed = hash_password(acceptance.password)
+    with context.database.writing() as db:
+        account = accept(
+            db, token=acceptance.token, username=acceptance.username, hashed=hashed, now=now
+        )
+        caller = open_login(db, context, request, response, account)
+        record(
+            db, actor=caller.actor, action="account.made", details={"role": caller.role}, now=now
+        )
     view = {"id": account.id, "username": account.username, "role": account.role}
     return SignedInView(account=AccountView.model_validate(view))
 
@@ -202,4 +206,4 @@ def _invitation(db: Session, row: Invitation, now: datetime) -> dict[str, object
 
 
 def _guest(request: Request) -> str:
-    return f"invitation:{request.client.host if request.client else ''}"
+    return f"invitation {network_of(request.client.host if request.client else None)}"

@@ -1,7 +1,7 @@
 """People of the lab over HTTP."""
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -9,8 +9,10 @@ from app.features.people.accounts.passwords import MAX_LENGTH
 
 Role = Literal["admin", "experimenter", "operator", "analyst"]
 StudyKeys = Annotated[list[Annotated[str, Field(max_length=80)]], Field(max_length=500)]
-Token = Annotated[str, Field(min_length=20, max_length=100)]
-Password = Annotated[str, Field(min_length=1, max_length=MAX_LENGTH)]
+SECRET: dict[str, Any] = {"writeOnly": True}
+"""Marks a field that no answer repeats, not even one about what is wrong (`app.api.errors`)."""
+Token = Annotated[str, Field(min_length=20, max_length=100, json_schema_extra=SECRET)]
+Password = Annotated[str, Field(min_length=1, max_length=MAX_LENGTH, json_schema_extra=SECRET)]
 
 
 class Credentials(BaseModel):

@@ -32,6 +32,11 @@ def create_account(
     db: Session, *, username: str, password: str, role: str, now: datetime
 ) -> Account:
     """Add an account that sees all studies; InvalidInput if the name is taken or unusable."""
+    return add_account(db, username=username, hashed=hash_password(password), role=role, now=now)
+
+
+def add_account(db: Session, *, username: str, hashed: str, role: str, now: datetime) -> Account:
+    """The same with a password that was hashed before: hashing takes too long for a transaction."""
     if not _USERNAME.fullmatch(username):
         raise InvalidInput(
             f"{username!r} cannot be a user name",
@@ -48,7 +53,7 @@ def create_account(
         username=username,
         role=role,
         all_studies=True,
-        password_hash=hash_password(password),
+        password_hash=hashed,
         created_at=now,
     )
     db.add(account)
@@ -65,14 +70,18 @@ def ensure_admin(db: Session, *, password: str | None, now: datetime) -> str | N
     return None if password else chosen
 
 
-def check_password(db: Session, *, username: str, password: str) -> Account:
-    """Whose name and password these are; the same NotSignedIn whatever was wrong.
-
-    Takes a while on purpose, so it is not to be called inside a writing transaction.
-    """
-    account = db.scalar(
+def account_named(db: Session, username: str) -> Account | None:
+    """The account that can be logged in to by this name."""
+    return db.scalar(
         select(Account).where(Account.username == username, Account.disabled_at.is_(None))
     )
+
+
+def require_password(account: Account | None, password: str) -> Account:
+    """The account, if the password is its own; the same NotSignedIn whatever was wrong.
+
+    Takes a while on purpose, so it is not to be called inside a transaction. Raises Busy.
+    """
     if not is_password(account.password_hash if account else None, password) or account is None:
         raise NotSignedIn(
             "user name and password do not match",
@@ -105,3 +114,9 @@ def revoke_token(db: Session, token: str, now: datetime) -> None:
     row = db.get(LoginToken, hash_token(token))
     if row is not None and row.revoked_at is None:
         row.revoked_at = now
+
+
+def is_alive(db: Session, token: str) -> bool:
+    """Whether this is a login that was not ended yet."""
+    row = db.get(LoginToken, hash_token(token))
+    return row is not None and row.revoked_at is None

@@ -7,10 +7,12 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.features.people.audit import record
-from app.features.record.devices.service import new_code, pair, revoke
+from app.features.record.devices.service import new_code, pair, revoke, usable_code
 from app.lan import qr_svg
 from app.platform.access import session_by_id
-from app.platform.dependencies import TABLET_COOKIE, Context, SignedIn, Writing
+from app.platform.admission import TABLET_COOKIE
+from app.platform.dependencies import Context, SignedIn, Writing
+from app.platform.rate_limit import network_of
 from app.platform.tokens import set_cookie
 
 DeviceKind = Literal["tablet", "headset"]
@@ -27,14 +29,15 @@ class NewPairing(BaseModel):
 class PairingView(BaseModel):
     """A code that works once, until `expires_at`; `url` and `qr_svg` open the page with it.
 
-    A headset's client is given the address of the server and types the code; it has no page to
-    scan, so its `qr_svg` is null. `help_url` is the page on which a device that comes for the first
+    Both are null where no other device can reach the server. A headset's client is given the
+    address of the server and types the code; it has no page to scan, so its `qr_svg` is null.
+    `help_url` is the page on which a device that comes for the first
     time gets the lab's certificate; null where there is nothing to install.
     """
 
     device: DeviceKind
     code: str
-    url: str
+    url: str | None
     qr_svg: str | None
     help_url: str | None
     help_qr_svg: str | None
@@ -46,7 +49,7 @@ class PairRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    code: str = Field(min_length=4, max_length=20)
+    code: str = Field(min_length=4, max_length=20, json_schema_extra={"writeOnly": True})
     name: str = Field(default="", max_length=80)
 
 
@@ -78,12 +81,13 @@ def post_pairing(
     )
     reach = context.network.reach
     base = reach.for_devices(str(request.base_url))
-    url = f"{base}/tablet?code={made.code}" if wish.device == "tablet" else base
+    tablet = wish.device == "tablet" and base is not None
+    url = f"{base}/tablet?code={made.code}" if tablet else base
     return PairingView(
         device=wish.device,
         code=made.code,
         url=url,
-        qr_svg=qr_svg(url) if wish.device == "tablet" else None,
+        qr_svg=qr_svg(url) if tablet and url is not None else None,
         help_url=reach.help_url,
         help_qr_svg=None if reach.help_url is None else qr_svg(reach.help_url),
         expires_at=made.expires_at,
@@ -92,24 +96,28 @@ def post_pairing(
 
 @router.post("/devices/pair")
 def post_pair(
-    request_body: PairRequest, request: Request, response: Response, db: Writing, context: Context
+    request_body: PairRequest, request: Request, response: Response, context: Context
 ) -> PairedView:
-    """Use a code up. Guessing is slowed down."""
+    """Use a code up. Guessing is slowed down, and takes no turn at writing."""
     context.storage.require_storage()
-    caller = request.client.host if request.client else "unknown"
-    context.pairing_limiter.attempt(caller)
-    paired = pair(db, code=request_body.code, name=request_body.name, now=context.clock.utc_now())
-    context.pairing_limiter.succeed(caller)
-    device = paired.device
-    context.hub.publish_after_commit(db, device.session_id)
-    record(
-        db,
-        actor=f"{device.kind}:{device.id}",
-        action="device.paired",
-        subject=f"session:{device.session_id}",
-        details={"device": device.kind, "address": caller},
-        now=device.paired_at,
-    )
+    address = request.client.host if request.client else "unknown"
+    network, now = network_of(address), context.clock.utc_now()
+    context.limits.codes.attempt(network)
+    with context.database.reading() as db:
+        usable_code(db, request_body.code, now)
+    with context.database.writing() as db:
+        paired = pair(db, code=request_body.code, name=request_body.name, now=now)
+        device = paired.device
+        context.hub.publish_after_commit(db, device.session_id)
+        record(
+            db,
+            actor=f"{device.kind}:{device.id}",
+            action="device.paired",
+            subject=f"session:{device.session_id}",
+            details={"device": device.kind, "address": address},
+            now=device.paired_at,
+        )
+    context.limits.codes.take_back(network)
     if device.kind == "tablet":
         set_cookie(request, response, TABLET_COOKIE, paired.token, TABLET_COOKIE_DAYS * 86_400)
     return PairedView(

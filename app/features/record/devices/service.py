@@ -61,15 +61,11 @@ def new_code(db: Session, *, session_id: str, kind: str, now: datetime, minutes:
     return NewCode(f"{plain[:3]}-{plain[3:]}", kind, expires_at)
 
 
-def pair(db: Session, *, code: str, name: str, now: datetime) -> Paired:
-    """Use a code up. A device of the same kind that was paired before is replaced.
-
-    Raises NotFound for an unknown code and Gone for one that was used or is too old.
-    """
+def usable_code(db: Session, code: str, now: datetime, *, lock: bool = False) -> PairingCode:
+    """The code; raises NotFound for an unknown one and Gone for one that was used or is too old."""
     plain = "".join(ch for ch in code.upper() if ch.isalnum())
-    row = db.scalar(
-        select(PairingCode).where(PairingCode.code_hash == hash_token(plain)).with_for_update()
-    )
+    query = select(PairingCode).where(PairingCode.code_hash == hash_token(plain))
+    row = db.scalar(query.with_for_update() if lock else query)
     if row is None:
         raise NotFound(
             "no session waits for this code", value=code, remedy="Check the code on the console."
@@ -80,6 +76,15 @@ def pair(db: Session, *, code: str, name: str, now: datetime) -> Paired:
             value=code,
             remedy="Ask the experimenter to show a new code; the device paired first goes on.",
         )
+    return row
+
+
+def pair(db: Session, *, code: str, name: str, now: datetime) -> Paired:
+    """Use a code up. A device of the same kind that was paired before is replaced.
+
+    Raises NotFound for an unknown code and Gone for one that was used or is too old.
+    """
+    row = usable_code(db, code, now, lock=True)
     row.used_at = now
     db.execute(
         update(Device)

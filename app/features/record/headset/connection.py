@@ -31,6 +31,7 @@ from app.features.record.telemetry import (
 from app.platform.access import session_by_id
 from app.platform.context import AppContext
 from app.platform.hub import Subscription
+from app.platform.text import require_text_in_json
 from app.platform.tokens import device_of_token
 from app.wire import (
     CLIENT_MESSAGE,
@@ -278,12 +279,14 @@ def can_be(reading: Probed, answers: Iterable[ProbeAnswer]) -> bool:
 
 def parse_message(text: str) -> ClientMessages:
     """The client's message; raises InvalidInput with the first thing that does not fit."""
+    require_text_in_json(text)
     try:
         return CLIENT_MESSAGE.validate_json(text)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))[:100]
         raise InvalidInput(
-            f"message not understood: {first['msg']} at {'.'.join(map(str, first['loc']))}",
+            f"message not understood: {first['msg'][:300]} at {place}",
             value=text[:200],
             remedy="See docs/protocol.md for the messages.",
         ) from error

@@ -17,26 +17,45 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 
-from app.lan.network import Network
+from app.errors import TooManyAttempts
+from app.lan.network import STRANGER, Network
 from app.lan.serving.authority import fingerprint
 from app.lan.serving.help.page import HelpFacts, help_page, style_hash
 from app.lan.serving.help.texts import texts_for
 
 
 class HelpSite:
-    """An ASGI application of four addresses; `authority` gives the certificate of the moment."""
+    """An ASGI application of four addresses; `authority` gives the certificate of the moment.
 
-    def __init__(self, network: Network, authority: Callable[[], x509.Certificate]) -> None:
-        self._network, self._authority = network, authority
+    `spend` counts a request of a client's address, and raises TooManyAttempts.
+    """
+
+    def __init__(
+        self,
+        network: Network,
+        authority: Callable[[], x509.Certificate],
+        spend: Callable[[str], object] = lambda _: None,
+    ) -> None:
+        self._network, self._authority, self._spend = network, authority, spend
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request; WebSockets are refused."""
         if scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 1000})
         elif scope["type"] == "http":
-            response = self._answer(Request(scope))
+            # Everybody is one here: of a body nothing is read, and the connection ends.
+            scope[STRANGER] = True
+            response = self._counted(Request(scope))
             response.headers.update(_headers())
             await response(scope, receive, send)
+
+    def _counted(self, request: Request) -> Response:
+        try:
+            self._spend(request.client.host if request.client else "")
+        except TooManyAttempts as error:
+            wait = str(round(error.retry_after_s or 1))
+            return PlainTextResponse("Too many requests\n", 429, headers={"retry-after": wait})
+        return self._answer(request)
 
     def _answer(self, request: Request) -> Response:
         if request.method not in ("GET", "HEAD"):
@@ -66,12 +85,18 @@ class HelpSite:
 
     def _page(self, request: Request, certificate: x509.Certificate) -> Response:
         reach = self._network.reach
-        host = urlsplit(f"//{request.headers.get('host', '')}").hostname
+        if not reach.urls:
+            # There is no address to send a device to; its own localhost would be another machine.
+            return PlainTextResponse("The lab's computer is on no network now.\n", 503)
+        try:
+            host = urlsplit(f"//{request.headers.get('host', '')}").hostname
+        except ValueError:
+            host = None
         # A name that is not ours must not get onto the page: it may lead to somebody else.
         same = [one for one in reach.urls if urlsplit(one).hostname == host]
         facts = HelpFacts(
             here=reach.help_url or "",
-            secure=next(iter((*same, *reach.urls)), reach.local_url),
+            secure=(*same, *reach.urls)[0],
             port=reach.port,
             fingerprint=fingerprint(certificate),
             authority_ends=certificate.not_valid_after_utc,

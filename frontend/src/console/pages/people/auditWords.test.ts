@@ -47,6 +47,12 @@ describe("the audit trail in words", () => {
     expect(KINDS.some((kind) => action.startsWith(`${kind}.`))).toBe(true);
   });
 
+  it("tells how many sign-ins a row stands for", () => {
+    expect(sentences(entry("login.refused", { address: "10.0.0.1", count: 59 }), t)).toEqual([
+      "59 more sign-ins from 10.0.0.1 were refused",
+    ]);
+  });
+
   it("tells every change of one act", () => {
     const changed = entry(
       "account.changed",

@@ -23,6 +23,14 @@ export function sentences(entry: AuditEntry, t: Say): readonly string[] {
       ? [whom, t("act.invitation.studies", { studies: list(studies) })]
       : [whom];
   }
+  if (entry.action === "login.refused" && typeof details["count"] === "number") {
+    return [
+      t("act.login.refusedMore", {
+        refused: details["count"],
+        address: String(details["address"]),
+      }),
+    ];
+  }
   const key = SENTENCES[entry.action];
   if (key === undefined) {
     return [`${entry.action} ${subject}`.trim(), rest(details)].filter((part) => part !== "");
