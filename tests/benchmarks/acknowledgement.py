@@ -25,11 +25,11 @@ BYTES_PER_COMMIT = int(SESSIONS * 2 * 90 * COMMIT_S * (8 + 1 + 4 * 91))
 def figures(folder: Path) -> list[Figure]:
     """Latency and CPU with 8 headsets on SQLite (synchronous FULL), and the same bytes bare."""
     with LiveServer(folder) as server:
-        tokens = [_headset(server) for _ in range(SESSIONS)]
+        tokens = [paired_headset(server) for _ in range(SESSIONS)]
         process = psutil.Process(server.pid)
         idle = _cpu_share(process, lambda: time.sleep(IDLE_S))
         told: list[tuple[float, float]] = []
-        busy = _cpu_share(process, lambda: told.extend(_stream(server, tokens)))
+        busy = _cpu_share(process, lambda: told.extend(stream(server, tokens)))
         memory_mib = process.memory_info().rss / 2**20
     bare_s = _bare_disk(folder / "bare")
     words = f"{SESSIONS} sessions x 22 joints x 90 Hz x 2 streams"
@@ -49,7 +49,7 @@ def figures(folder: Path) -> list[Figure]:
     ]
 
 
-def _headset(server: LiveServer) -> str:
+def paired_headset(server: LiveServer) -> str:
     """The token of a headset paired with a new session that has not begun."""
     with server.client() as client:
         credentials = {"username": "admin", "password": ADMIN_PASSWORD}
@@ -66,10 +66,12 @@ def _post(client: httpx2.Client, path: str, body: dict[str, str]) -> dict[str, s
     return answered
 
 
-def _stream(server: LiveServer, tokens: list[str]) -> list[tuple[float, float]]:
+def stream(
+    server: LiveServer, tokens: list[str], duration_s: float = DURATION_S
+) -> list[tuple[float, float]]:
     """Run the headsets in a process of their own; when each message was sent, and its latency."""
     url = f"{server.url.replace('http', 'ws', 1)}/api/vr/stream"
-    plan = json.dumps({"url": url, "tokens": tokens, "duration_s": DURATION_S})
+    plan = json.dumps({"url": url, "tokens": tokens, "duration_s": duration_s})
     done = subprocess.run(
         [sys.executable, "-m", "tests.benchmarks.headsets"],
         cwd=Path(__file__).resolve().parents[2],
@@ -77,7 +79,7 @@ def _stream(server: LiveServer, tokens: list[str]) -> list[tuple[float, float]]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=300,
+        timeout=300 + 2 * duration_s,
     )
     if done.returncode != 0:
         raise RuntimeError(f"the headsets failed:\n{done.stderr[-3000:]}")
