@@ -7,13 +7,13 @@ another Wi-Fi gets other addresses and another certificate while the server runs
 import io
 from dataclasses import dataclass, field
 from datetime import datetime
+from ipaddress import ip_address
 from typing import Literal
 from urllib.parse import urlsplit
 
 import segno
 
 Mode = Literal["loopback", "lan", "without_tls"]
-LOOPBACK_HOSTS = ("localhost", "127.0.0.1", "::1")
 DEFAULT_PORT = 8321
 STRANGER = "reembody.stranger"
 """Marks the scope of a request without login or pairing, for whoever serves the connection."""
@@ -55,17 +55,23 @@ class Reach:
         """The port on this machine, which a USB cable leads to."""
         return urlsplit(self.local_url).port or DEFAULT_PORT
 
-    def for_devices(self, asked_at: str) -> str:
-        """The address to give to a device, when a page was asked for at the URL `asked_at`.
+    def for_devices(self, asked_at: str) -> str | None:
+        """The address to give to another device, when a page was asked for at the URL `asked_at`.
 
         Every page, command and QR code that names an address for a tablet, a headset or another
         person's computer asks here. Whoever asks from this machine sees `localhost`, which is
         another machine for the tablet: then it is the best address of the network, and None where
         only this machine can reach the server.
         """
-        if self.urls and urlsplit(asked_at).hostname in LOOPBACK_HOSTS:
-            return self.urls[0]
-        return asked_at.rstrip("/")
+        if not is_this_machine(urlsplit(asked_at).hostname or ""):
+            return asked_at.rstrip("/")
+        return self.urls[0] if self.urls else None
+
+    @property
+    def for_tablets(self) -> str | None:
+        """The tablet's page for another device; None where only this machine can reach it."""
+        base = self.for_devices(self.local_url)
+        return None if base is None else f"{base}/tablet"
 
 
 @dataclass
@@ -73,6 +79,19 @@ class Network:
     """The newest reach; replaced as a whole, so any thread may read it."""
 
     reach: Reach = field(default_factory=Reach)
+
+
+def is_this_machine(host: str) -> bool:
+    """Whether a URL's host name means, on every machine, that machine itself."""
+    name = host.lower().rstrip(".")
+    if name in ("", "localhost") or name.endswith(".localhost"):
+        return True
+    try:
+        address = ip_address(name.partition("%")[0])
+    except ValueError:
+        return False
+    mapped = getattr(address, "ipv4_mapped", None) or address
+    return bool(mapped.is_loopback or mapped.is_unspecified)
 
 
 def qr_svg(text: str) -> str:

@@ -16,7 +16,7 @@ def test_this_machine_alone_needs_three_lines() -> None:
     """Where to go, the tablet's page, where the data are."""
     assert addresses(Reach(), "data").splitlines() == [
         "Reembody   http://127.0.0.1:8321",
-        "Tablet     http://127.0.0.1:8321/tablet",
+        "Tablet     only this computer can reach the server; for tablets start it with --lan",
         "Data       data",
     ]
 

@@ -115,4 +115,24 @@ def test_a_device_is_never_sent_to_its_own_localhost(asked_at: str, given: str) 
     """Whoever pairs from this machine hands out the network's address, others their own."""
     reach = Reach(mode="lan", urls=("https://192.168.7.20:8443",))
     assert reach.for_devices(asked_at) == given
-    assert Reach().for_devices("http://localhost:8321/") == "http://localhost:8321"
+
+
+@pytest.mark.parametrize(
+    "host",
+    [
+        *("localhost", "LOCALHOST.", "lab.localhost", "127.0.0.1", "127.1.2.3", "0.0.0.0"),  # noqa: S104 - as somebody may type it
+        *("[::1]", "[::]", "[::ffff:127.0.0.1]"),
+    ],
+)
+def test_without_a_network_no_device_gets_an_address(host: str) -> None:
+    """This machine's own names mean another machine everywhere else, so there is none to give."""
+    assert Reach().for_devices(f"http://{host}:8321/") is None
+    assert Reach().for_tablets is None
+    beyond = Reach(mode="lan", urls=("https://192.168.7.20:8443",))
+    assert beyond.for_devices(f"http://{host}:8321/") == "https://192.168.7.20:8443"
+    assert beyond.for_tablets == "https://192.168.7.20:8443/tablet"
+
+
+def test_a_name_that_the_lab_gave_is_an_address_for_devices() -> None:
+    """Behind a proxy of the lab's own, what the console was asked at works elsewhere too."""
+    assert Reach().for_devices("https://vr.example.org/") == "https://vr.example.org"

@@ -2,8 +2,9 @@
 
 import json
 import sys
+from collections.abc import Mapping
 
-from app.lan import Reach, qr_terminal
+from app.lan import Mode, Reach, qr_terminal
 from app.lan.serving import Identity
 
 WITHOUT_TLS = """
@@ -13,12 +14,18 @@ WITHOUT_TLS = """
 """
 
 
+_NO_TABLET: Mapping[Mode, str] = {
+    "loopback": "only this computer can reach the server; for tablets start it with --lan",
+    "lan": "this computer is on no network now",
+    "without_tls": "this computer is on no network now",
+}
+
+
 def addresses(reach: Reach, data: str) -> str:
     """Where to go, line by line."""
-    public = reach.urls[0] if reach.urls else reach.local_url
     lines = [
         f"Reembody   {reach.local_url}",
-        f"Tablet     {public}/tablet",
+        f"Tablet     {reach.for_tablets or _NO_TABLET[reach.mode]}",
         f"Data       {data}",
     ]
     if reach.urls:

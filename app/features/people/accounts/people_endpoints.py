@@ -121,7 +121,11 @@ def post_invitation(
         hours=wish.hours,
     )
     base = context.network.reach.for_devices(str(request.base_url))
-    view = _invitation(db, made.invitation, now) | {"url": f"{base}/#/join/{made.token}"}
+    here = str(request.base_url).rstrip("/")
+    view = _invitation(db, made.invitation, now) | {
+        "url": f"{base or here}/#/join/{made.token}",
+        "only_here": base is None,
+    }
     details = {"role": wish.role, "studies": wish.studies}
     subject = f"invitation:{made.invitation.id}"
     record(

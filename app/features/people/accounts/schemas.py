@@ -102,9 +102,13 @@ class InvitationView(BaseModel):
 
 
 class InvitedView(InvitationView):
-    """A fresh invitation with its link; whoever has the link can use it."""
+    """A fresh invitation with its link; whoever has the link can use it.
+
+    `only_here`: no other computer can reach the server, so the link works on this one alone.
+    """
 
     url: str
+    only_here: bool
 
 
 class InvitationToken(BaseModel):

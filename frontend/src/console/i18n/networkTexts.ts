@@ -4,7 +4,7 @@ export const networkEn = {
   "network.lead": "How tablets and headsets reach this server.",
   "network.mode.loopback": "This computer only",
   "network.mode.loopback.body":
-    "Nobody else can reach the server. Headsets can on a USB cable. For tablets, start it with --lan.",
+    "Nobody else can reach the server. Headsets can on a USB cable. For tablets, stop it and start it with ./run --lan.",
   "network.mode.lan": "Encrypted on the lab's network",
   "network.mode.lan.body": "Tablets and headsets on the same network reach it over https.",
   "network.mode.without_tls": "On the network without encryption",
@@ -38,6 +38,11 @@ export const networkEn = {
   "network.cable.then": "Then open in the headset's browser:",
   "network.none": "No address on a network",
   "network.none.body": "This computer is on no network now. Addresses appear here within a minute.",
+  "pairing.onlyHere": "Only this computer can reach the server",
+  "pairing.onlyHere.body": "To let other devices in, stop the server and start it with:",
+  "pairing.onlyHere.open": "Or open the tablet's page on this computer",
+  "pairing.onlyHere.cable":
+    "Or connect the headset with a USB cable, run the command and use the address:",
   "pairing.first": "First time with this device? Install the certificate",
   "pairing.first.qr": "QR code of the page that helps to install the certificate",
 };
@@ -47,7 +52,7 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.lead": "Wie Tablets und Headsets diesen Server erreichen.",
   "network.mode.loopback": "Nur dieser Rechner",
   "network.mode.loopback.body":
-    "Niemand sonst erreicht den Server. Headsets können es über ein USB-Kabel. Für Tablets mit --lan starten.",
+    "Niemand sonst erreicht den Server. Headsets können es über ein USB-Kabel. Für Tablets beenden und mit ./run --lan starten.",
   "network.mode.lan": "Verschlüsselt im Netz des Labors",
   "network.mode.lan.body": "Tablets und Headsets im selben Netz erreichen ihn über https.",
   "network.mode.without_tls": "Im Netz ohne Verschlüsselung",
@@ -82,6 +87,11 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.none": "Keine Adresse in einem Netz",
   "network.none.body":
     "Dieser Rechner ist gerade in keinem Netz. Adressen erscheinen hier binnen einer Minute.",
+  "pairing.onlyHere": "Nur dieser Rechner erreicht den Server",
+  "pairing.onlyHere.body": "Damit andere Geräte ihn erreichen, den Server beenden und so starten:",
+  "pairing.onlyHere.open": "Oder die Seite für das Tablet auf diesem Rechner öffnen",
+  "pairing.onlyHere.cable":
+    "Oder das Headset per USB-Kabel verbinden, den Befehl ausführen und die Adresse benutzen:",
   "pairing.first": "Zum ersten Mal mit diesem Gerät? Zertifikat installieren",
   "pairing.first.qr": "QR-Code der Seite, die beim Installieren des Zertifikats hilft",
 };

@@ -72,7 +72,7 @@ export const peopleEn = {
   "invite.once":
     "It is shown only now and works once, until {{date}}. Give it to the person in private: whoever has it can use it.",
   "invite.loopback":
-    "This server is reached from this computer only, and so is the link. Start it with --lan to invite people elsewhere.",
+    "Only this computer can reach the server, so the link works here alone. To invite somebody at another computer, stop it, start it with ./run --lan, and make a new invitation.",
   "invite.done": "Done",
   "invitations.for": "For",
   "invitations.status": "Status",
@@ -93,6 +93,8 @@ export const peopleEn = {
   "forbidden.title": "This is not for your role",
   "forbidden.body":
     "You are signed in as {{name}} ({{role}}). Ask the administrator of the lab if you need this page.",
+  "nowhere.title": "There is no page at this address",
+  "nowhere.body": "The link may be old, or a part of it is missing.",
   "forbidden.back": "To the studies",
   "read.only": "You are watching. Your role gives no commands.",
   "blind.study.title": "This study is blinded for you",
@@ -185,7 +187,7 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
   "invite.once":
     "Er wird nur jetzt gezeigt und gilt einmal, bis {{date}}. Geben Sie ihn der Person vertraulich: wer ihn hat, kann ihn benutzen.",
   "invite.loopback":
-    "Dieser Server ist nur von diesem Rechner erreichbar, und damit auch der Link. Mit --lan starten, um andere einzuladen.",
+    "Nur dieser Rechner erreicht den Server, der Link gilt also nur hier. Um jemanden an einem anderen Rechner einzuladen, den Server beenden, mit ./run --lan starten und neu einladen.",
   "invite.done": "Fertig",
   "invitations.for": "Für",
   "invitations.status": "Stand",
@@ -206,6 +208,8 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
   "forbidden.title": "Nicht für Ihre Rolle",
   "forbidden.body":
     "Angemeldet als {{name}} ({{role}}). Wer diese Seite braucht, fragt den Admin des Labors.",
+  "nowhere.title": "Unter dieser Adresse gibt es keine Seite",
+  "nowhere.body": "Der Link ist vielleicht alt oder nicht vollständig.",
   "forbidden.back": "Zu den Studien",
   "read.only": "Sie sehen zu. Ihre Rolle gibt keine Befehle.",
   "blind.study.title": "Diese Studie ist für Sie verblindet",

@@ -194,3 +194,18 @@ def test_the_link_opens_the_tablets_page_with_the_code(lab: Lab) -> None:
     shown = ok(lab.operator.post(path, json={"device": "tablet"}))
     assert shown["url"] == f"http://testserver/tablet?code={shown['code']}"
     assert shown["qr_svg"].startswith("<svg")
+
+
+def test_no_device_is_sent_to_its_own_localhost(lab: Lab) -> None:
+    """Where only this machine reaches the server there is a code, but no address and no QR code."""
+    path = f"/api/sessions/{lab.join()['id']}/pairings"
+    here = {"host": "localhost:8321"}
+    for device in ("tablet", "headset"):
+        shown = ok(lab.operator.post(path, json={"device": device}, headers=here))
+        assert (shown["url"], shown["qr_svg"]) == (None, None)
+        assert shown["code"]
+        assert "localhost" not in str(shown)
+    made = ok(lab.operator.post("/api/invitations", json={"role": "analyst"}, headers=here))
+    assert made["only_here"]
+    elsewhere = ok(lab.operator.post("/api/invitations", json={"role": "analyst"}))
+    assert not elsewhere["only_here"]

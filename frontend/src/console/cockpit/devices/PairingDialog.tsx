@@ -1,5 +1,5 @@
 /** A short code, in type that can be read across the room, and the same as a QR code. */
-import { Button, Loader, Modal } from "@mantine/core";
+import { Anchor, Button, Loader, Modal } from "@mantine/core";
 import { sessions } from "@shared/api/endpoints";
 import type { Device, Pairing, SessionView } from "@shared/api/types";
 import { clockFace } from "@shared/format";
@@ -9,6 +9,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useRef, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
+import { networkQuery } from "../../queries";
 import { useShown } from "../../ui/page";
 import classes from "../Panels.module.css";
 
@@ -92,7 +93,7 @@ function CodeShown({ pairing, device, onRenew }: CodeShownProps): JSX.Element {
   }
   return (
     <div className={classes.pair}>
-      <span>{t(`pairing.how.${device}`)}</span>
+      {pairing.url !== null && <span>{t(`pairing.how.${device}`)}</span>}
       <output className={classes.code}>{pairing.code}</output>
       {pairing.qr_svg !== null && (
         <img
@@ -101,10 +102,47 @@ function CodeShown({ pairing, device, onRenew }: CodeShownProps): JSX.Element {
           src={`data:image/svg+xml;charset=utf-8,${encodeURIComponent(pairing.qr_svg)}`}
         />
       )}
-      <span className={classes.url}>{pairing.url}</span>
+      {pairing.url === null ? (
+        <OnlyHere pairing={pairing} device={device} />
+      ) : (
+        <span className={classes.url}>{pairing.url}</span>
+      )}
       <FirstTime pairing={pairing} />
       <span className="numbers">{t("pairing.left", { time: clockFace(seconds(left)) })}</span>
     </div>
+  );
+}
+
+/** No other device can reach the server: how to change that, and what works without. */
+function OnlyHere({
+  pairing,
+  device,
+}: {
+  readonly pairing: Pairing;
+  readonly device: Device;
+}): JSX.Element {
+  const { t } = useTexts();
+  const network = useQuery(networkQuery).data;
+  return (
+    <Notice tone="warn" title={t("pairing.onlyHere")}>
+      <p className={classes.onlyHere}>{t("pairing.onlyHere.body")}</p>
+      <code className={classes.onlyHere}>./run --lan</code>
+      {device === "tablet" ? (
+        <p className={classes.onlyHere}>
+          <Anchor href={`/tablet?code=${pairing.code}`} target="_blank">
+            {t("pairing.onlyHere.open")}
+          </Anchor>
+        </p>
+      ) : (
+        network !== undefined && (
+          <>
+            <p className={classes.onlyHere}>{t("pairing.onlyHere.cable")}</p>
+            <code className={classes.onlyHere}>{network.cable.command}</code>
+            <code className={classes.onlyHere}>{network.cable.url}</code>
+          </>
+        )
+      )}
+    </Notice>
   );
 }
 

@@ -14,11 +14,11 @@ import { type Invited, invitations, type Role, type StudyKeys } from "@shared/ap
 import { dateTime } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
-import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
+import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { invitationsQuery, networkQuery } from "../../queries";
+import { invitationsQuery } from "../../queries";
 import { RoleBadge } from "../../ui/badges";
 import { RoleChoice, StudiesChoice } from "./RoleAndStudies";
 
@@ -115,7 +115,6 @@ interface InviteLinkProps {
 /** The link of a fresh invitation: nobody, not even the server, can show it again. */
 function InviteLink({ made, onDone }: InviteLinkProps): JSX.Element {
   const { t, language } = useTexts();
-  const loopback = useQuery(networkQuery).data?.mode === "loopback";
   return (
     <Stack>
       <Group gap="sm">
@@ -146,7 +145,7 @@ function InviteLink({ made, onDone }: InviteLinkProps): JSX.Element {
       <Notice tone="warn" icon="key">
         {t("invite.once", { date: dateTime(made.expires_at, language) })}
       </Notice>
-      {loopback && <Notice tone="info">{t("invite.loopback")}</Notice>}
+      {made.only_here && <Notice tone="warn">{t("invite.loopback")}</Notice>}
       <Group justify="flex-end">
         <Button variant="default" onClick={onDone}>
           {t("invite.done")}
