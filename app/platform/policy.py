@@ -25,6 +25,7 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/login": ANYONE,
     "POST /api/logout": ANYONE,
     "POST /api/devices/pair": ANYONE,
+    "GET /api/tablet/paired": ANYONE,
     "POST /api/invitations/look": ANYONE,
     "POST /api/invitations/accept": ANYONE,
     # The lab's people.

@@ -7,7 +7,7 @@ import { InstrumentPage } from "./instruments/InstrumentPage";
 import { InstrumentsPage } from "./instruments/InstrumentsPage";
 import { ConsentPage } from "./pages/consent/ConsentPage";
 import { EquipmentPage } from "./pages/equipment/EquipmentPage";
-import { Only } from "./pages/NotForRole";
+import { NothingHere, Only } from "./pages/NotForRole";
 import { NetworkPage } from "./pages/network/NetworkPage";
 import { PeoplePage } from "./pages/people/PeoplePage";
 import { StudiesPage } from "./pages/Studies";
@@ -175,9 +175,14 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
           </div>
         )}
       </Route>
-      <Route>
+      <Route path="/">
         <div className={classes.main}>
           <StudiesPage />
+        </div>
+      </Route>
+      <Route>
+        <div className={classes.main}>
+          <NothingHere />
         </div>
       </Route>
     </Switch>

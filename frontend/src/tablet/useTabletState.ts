@@ -1,7 +1,7 @@
 /** The screen the server wants, kept current by its live feed, and on the tablet for bad times. */
 import { tablet } from "@shared/api/endpoints";
 import { type FeedState, openFeed } from "@shared/api/live";
-import { isUnauthorised } from "@shared/api/request";
+import { ApiError, isUnauthorised } from "@shared/api/request";
 import type { TabletState } from "@shared/api/types";
 import { type QueryClient, useQuery, useQueryClient } from "@tanstack/react-query";
 import { useEffect, useState } from "react";
@@ -17,7 +17,7 @@ export function useTabletState() {
   const [feed, setFeed] = useState<FeedState>("connecting");
   const query = useQuery({
     queryKey: STATE_KEY,
-    queryFn: tablet.state,
+    queryFn: () => stateIfPaired(queries),
     // Asked also where the system says there is no network: to fail is what brings the kept screen.
     networkMode: "always",
     // Without a connection the page goes on asking; with one the feed tells of every change.
@@ -43,6 +43,20 @@ export function useTabletState() {
     });
   }, [paired, queries]);
   return { query, connected: paired && feed !== "lost" };
+}
+
+/**
+ * The screen. A tablet that shows none yet asks first whether it is paired, which is no error in the
+ * browser's console, as a refused request would be, every five seconds.
+ */
+async function stateIfPaired(queries: QueryClient): Promise<TabletState> {
+  const known = queries.getQueryState<TabletState>(STATE_KEY);
+  if (known?.data === undefined || isUnauthorised(known.error)) {
+    const { state } = await tablet.paired();
+    if (state === null) throw new ApiError(401, { code: "not_signed_in", message: "not paired" });
+    return state;
+  }
+  return tablet.state();
 }
 
 type StateQuery = Pick<

@@ -59,8 +59,8 @@ async def uploaded(
             raise InvalidInput(
                 "the file is empty" if companion_bytes is None else "the first file is empty",
                 value=size,
-                valid="the file, then its companion if there is one",
-                remedy="Send the file as the body of the request.",
+                valid="a file with a recording or a model in it",
+                remedy="Choose another file, or save this one again where it came from.",
             )
         yield await run_sync(_split, whole, size, companion_bytes)
     finally:

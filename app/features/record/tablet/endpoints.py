@@ -7,7 +7,7 @@ from fastapi import APIRouter, Request, Response
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from sqlalchemy.orm import Session
 
-from app.errors import InvalidInput
+from app.errors import InvalidInput, NotSignedIn
 from app.features.design.studies import protocol_of
 from app.features.record.questionnaires import Receipt, SubmissionRequest, submit
 from app.features.record.sessions import (
@@ -27,11 +27,13 @@ from app.features.record.tablet.schemas import (
     HelpWish,
     LanguageChoice,
     RefusalWish,
+    TabletPaired,
     TabletState,
 )
 from app.features.record.tablet.service import may_ask, note_help, tablet_state
 from app.models import Device, StudySession, StudyVersion
 from app.platform.access import session_by_id
+from app.platform.admission import TABLET_COOKIE, bearer_token
 from app.platform.context import AppContext
 from app.platform.dependencies import (
     Context,
@@ -41,6 +43,7 @@ from app.platform.dependencies import (
     tablet_in,
     write,
 )
+from app.platform.tokens import device_of_token, read_cookie
 from app.protocol import Step
 
 calls = APIRouter(tags=["sessions"])
@@ -57,6 +60,19 @@ def get_state(request: Request, context: Context) -> Response:
         state = tablet_state(db, session_by_id(db, tablet.session_id))
     # Written out here, once: the event loop would check it again first.
     return Response(state.model_dump_json(), media_type="application/json")
+
+
+@router.get("/paired", response_model=TabletPaired)
+def get_paired(request: Request, context: Context) -> TabletPaired:
+    """The same for a tablet that does not know whether it is paired; that it is not is no error."""
+    token = read_cookie(request, TABLET_COOKIE) or bearer_token(request)
+    with context.database.reading() as db:
+        try:
+            tablet = device_of_token(db, token or "", "tablet")
+        except NotSignedIn:
+            return TabletPaired(state=None)
+        context.hub.note_seen(tablet.id, context.clock.utc_now())
+        return TabletPaired(state=tablet_state(db, session_by_id(db, tablet.session_id)))
 
 
 @router.put("/language")

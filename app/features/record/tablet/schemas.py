@@ -74,3 +74,9 @@ class RefusalWish(BaseModel):
     wish_id: str = Field(min_length=8, max_length=36)
     step_index: int = Field(ge=0, lt=1000)
     refused: bool
+
+
+class TabletPaired(BaseModel):
+    """What the tablet that asks is to show; null where it is not paired."""
+
+    state: TabletState | None

@@ -6,6 +6,7 @@ last kind is known by its look; otherwise one row is head unless a person says m
 
 import csv
 import io
+import re
 from collections import Counter
 from dataclasses import dataclass
 
@@ -13,6 +14,17 @@ from app.errors import InvalidInput
 
 SEPARATORS = (",", ";", "\t")
 MAX_ROWS, MAX_COLUMNS, MAX_CELL = 20_000, 1000, 5000
+LOOKED_AT = 10_000
+_CONTROL = re.compile("[\x00-\x08\x0e-\x1f]")
+_NO_TABLES = {
+    "\x89PNG": "a picture",
+    "\u2030PNG": "a picture",
+    "\xff\xd8": "a picture",
+    "GIF8": "a picture",
+    "%PDF-": "a PDF",
+    "PK\x03\x04": "a workbook or an archive",
+}
+"""By what a file of another kind begins with, read as Latin-1 or as Windows reads it."""
 _TOOL_IDS = ('{"importid"', "{'importid'")
 
 
@@ -54,6 +66,7 @@ class Sheet:
 def read_sheet(text: str, header_rows: int | None = None) -> Sheet:
     """Read a file; raises InvalidInput with the line of what cannot be read."""
     text = text.removeprefix("\ufeff")
+    _require_table(text)
     separator = _separator(text)
     rows = _rows(text, separator)
     if not rows:
@@ -70,6 +83,18 @@ def _separator(text: str) -> str:
     return max(SEPARATORS, key=first.count)
 
 
+def _require_table(text: str) -> None:
+    """Raise InvalidInput for what is no text at all: a picture, a PDF, a workbook of Excel."""
+    kind = next((kind for begins, kind in _NO_TABLES.items() if text.startswith(begins)), None)
+    if kind is None and _CONTROL.search(text[:LOOKED_AT]) is None:
+        return
+    raise InvalidInput(
+        f"this is {kind or 'no text file'}, not a table",
+        valid="a table as CSV or TSV, with the names of its columns in the first row",
+        remedy="Open it in the program it came from and save it as CSV UTF-8.",
+    )
+
+
 def _rows(text: str, separator: str) -> list[SheetRow]:
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
     rows: list[SheetRow] = []
@@ -81,7 +106,7 @@ def _rows(text: str, separator: str) -> list[SheetRow]:
                 raise _too_long()
     except csv.Error as error:
         raise InvalidInput(
-            f"line {reader.line_num} cannot be read: {error}",
+            f"line {reader.line_num} cannot be read: a quote is in the wrong place or never closed",
             value=reader.line_num,
             remedy="Close every quote; write a quote inside a quoted cell twice.",
         ) from error

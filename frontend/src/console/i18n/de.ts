@@ -98,6 +98,7 @@ export const de: Record<keyof typeof en, string> = {
   "join.open": "Neue Sitzung",
   "join.title": "Neue Sitzung",
   "join.code": "Code der Person",
+  "join.codeTooLong": "Höchstens {{most}} Zeichen",
   "join.codeHint": "Ein Code, nie ein Name. Bleibt das Feld leer, wird einer erzeugt.",
   "join.codePlaceholder": "wird erzeugt",
   "join.language": "Sprache der Person",

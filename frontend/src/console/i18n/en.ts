@@ -97,6 +97,7 @@ export const en = {
   "join.open": "New session",
   "join.title": "New session",
   "join.code": "Participant code",
+  "join.codeTooLong": "At most {{most}} characters",
   "join.codeHint": "A code, never a name. Leave it empty and one is made.",
   "join.codePlaceholder": "made automatically",
   "join.language": "Language of the participant",

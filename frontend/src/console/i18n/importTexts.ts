@@ -6,6 +6,9 @@ export const importsEn = {
   "imports.open": "Import answers",
   "imports.none": "Nothing was imported.",
   "imports.file": "File",
+  "imports.noTable": "{{name}} is not a table",
+  "imports.noTable.body":
+    "Choose a CSV or TSV file. A workbook can be saved as “CSV UTF-8” where it was made.",
   "imports.instrument": "Instrument",
   "imports.forms": "Forms",
   "imports.people": "Participants",
@@ -102,6 +105,9 @@ export const importsDe: Readonly<Record<keyof typeof importsEn, string>> = {
   "imports.open": "Antworten importieren",
   "imports.none": "Es wurde nichts importiert.",
   "imports.file": "Datei",
+  "imports.noTable": "{{name}} ist keine Tabelle",
+  "imports.noTable.body":
+    "Eine CSV- oder TSV-Datei wählen. Eine Arbeitsmappe lässt sich dort, wo sie entstand, als „CSV UTF-8“ speichern.",
   "imports.instrument": "Instrument",
   "imports.forms": "Bögen",
   "imports.people": "Teilnehmende",

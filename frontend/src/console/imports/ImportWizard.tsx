@@ -10,7 +10,7 @@ import { Failure } from "../errors";
 import { useTexts } from "../i18n";
 import classes from "./Imports.module.css";
 import { MappingStep } from "./MappingStep";
-import { decoded, type OpenedFile } from "./readText";
+import { decoded, isText, type OpenedFile } from "./readText";
 
 interface WizardProps {
   readonly study: StudyDetail;
@@ -38,6 +38,7 @@ export function ImportWizard({ study, opened, onClose, onOpen }: WizardProps): J
 }
 
 function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.Element {
+  const { t } = useTexts();
   const [file, setFile] = useState<OpenedFile | null>(null);
   const look = useMutation({
     mutationFn: async (wish: {
@@ -46,11 +47,15 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
       heads: number | null;
     }) => imports.look(study.key, wish.file.text, wish.instrument, wish.heads),
   });
+  const [stranger, setStranger] = useState<string | null>(null);
   const choose = async (chosen: File | null): Promise<void> => {
     if (chosen === null) return;
     const opened = { name: chosen.name.slice(-200), text: decoded(await chosen.arrayBuffer()) };
-    setFile(opened);
-    look.mutate({ file: opened, instrument: null, heads: null });
+    const text = isText(opened.text);
+    setStranger(text ? null : chosen.name);
+    setFile(text ? opened : null);
+    look.reset();
+    if (text) look.mutate({ file: opened, instrument: null, heads: null });
   };
   const again = (instrument: string, heads: number | null): void => {
     if (file !== null) look.mutate({ file, instrument, heads });
@@ -58,6 +63,11 @@ function Wizard({ study, onOpen }: Pick<WizardProps, "study" | "onOpen">): JSX.E
   return (
     <div className={classes.wizard}>
       <Choose fileName={file?.name ?? null} onFile={choose} />
+      {stranger !== null && (
+        <Notice tone="bad" title={t("imports.noTable", { name: stranger })}>
+          {t("imports.noTable.body")}
+        </Notice>
+      )}
       {look.isError && <Failure error={look.error} />}
       {file !== null && look.data !== undefined && (
         <Looked study={study} file={file} look={look.data} onAgain={again} onOpen={onOpen} />

@@ -15,3 +15,13 @@ export function decoded(bytes: ArrayBuffer): string {
     return new TextDecoder("windows-1252").decode(bytes);
   }
 }
+
+/** Whether this is a table's text at all: a picture, a PDF or a workbook is not. */
+export function isText(text: string): boolean {
+  if (text.startsWith("%PDF-") || text.startsWith("PK\u0003\u0004")) return false;
+  for (const character of text) {
+    const code = character.charCodeAt(0);
+    if (code < 0x20 && !"\t\n\v\f\r".includes(character)) return false;
+  }
+  return true;
+}

@@ -1,4 +1,4 @@
-/** A page that somebody came to by its address, and that is not for their role. */
+/** Pages that somebody came to by an address that is not for their role, or leads nowhere. */
 import { Button } from "@mantine/core";
 import type { JSX, ReactNode } from "react";
 import { Link } from "wouter";
@@ -6,6 +6,7 @@ import { useAccount } from "../account";
 import { useTexts } from "../i18n";
 import { type Act, useMay } from "../may";
 import { EmptyState } from "../ui/EmptyState";
+import { useTitle } from "../ui/page";
 
 interface OnlyProps {
   readonly act: Act;
@@ -38,6 +39,24 @@ export function NotForRole(): JSX.Element {
     >
       {account != null &&
         t("forbidden.body", { name: account.username, role: t(`role.${account.role}`) })}
+    </EmptyState>
+  );
+}
+
+export function NothingHere(): JSX.Element {
+  const { t } = useTexts();
+  useTitle(t("nowhere.title"));
+  return (
+    <EmptyState
+      icon="info"
+      title={t("nowhere.title")}
+      action={
+        <Button component={Link} href="/" variant="default">
+          {t("forbidden.back")}
+        </Button>
+      }
+    >
+      {t("nowhere.body")}
     </EmptyState>
   );
 }

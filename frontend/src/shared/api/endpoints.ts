@@ -121,6 +121,7 @@ export const tablet = {
     answer<{ device: Device; session_id: string }>(
       server.POST("/api/devices/pair", { body: { code, name: "" } }),
     ),
+  paired: () => answer<{ state: TabletState | null }>(server.GET("/api/tablet/paired")),
   state: () => answer<TabletState>(server.GET("/api/tablet/state")),
   setLanguage: (language: string) =>
     answer<TabletState>(server.PUT("/api/tablet/language", { body: { language } })),

@@ -107,3 +107,14 @@ def test_a_call_can_be_taken_back(lab: Lab) -> None:
     lab.command(lab.command(view, "start"), "abort", reason="enough")
     assert ok(tablet.put("/api/tablet/help", json={"asked": True}))["help_asked"] is False
     assert len(ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))) == 1
+
+
+def test_an_unpaired_tablet_may_ask_whether_it_is_paired(lab: Lab) -> None:
+    """No error, no screen; a paired one gets its screen at once, an unpaired one none again."""
+    view = lab.join()
+    assert ok(lab.stranger().get("/api/tablet/paired")) == {"state": None}
+    tablet = lab.tablet(view["id"])
+    assert ok(tablet.get("/api/tablet/paired"))["state"] == state(tablet)
+    (device,) = lab.view(view["id"])["devices"]
+    lab.operator.delete(f"/api/sessions/{view['id']}/devices/{device['id']}")
+    assert ok(tablet.get("/api/tablet/paired")) == {"state": None}

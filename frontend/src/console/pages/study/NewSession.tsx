@@ -19,6 +19,9 @@ import { useTexts } from "../../i18n";
 import { sessionQuery } from "../../queries";
 import { KINDS } from "../../ui/KindFilter";
 
+/** As the server has it; what is longer is refused in words instead of being cut. */
+const LONGEST_CODE = 40;
+
 interface NewSessionProps {
   readonly study: StudyDetail;
   readonly opened: boolean;
@@ -72,7 +75,7 @@ function JoinForm({ study, onClose }: Omit<NewSessionProps, "opened">): JSX.Elem
           placeholder={t("join.codePlaceholder")}
           data-autofocus
           value={code}
-          maxLength={40}
+          error={code.trim().length > LONGEST_CODE && t("join.codeTooLong", { most: LONGEST_CODE })}
           onChange={(event) => setCode(event.currentTarget.value)}
         />
         <Radio.Group

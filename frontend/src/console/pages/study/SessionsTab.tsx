@@ -98,7 +98,11 @@ function Row({ session }: { readonly session: SessionSummary }): JSX.Element {
   return (
     <Table.Tr className={classes.row ?? ""} onClick={() => navigate(`/sessions/${session.id}`)}>
       <Table.Td>
-        <Link href={`/sessions/${session.id}`} className={classes.code ?? ""}>
+        <Link
+          href={`/sessions/${session.id}`}
+          className={classes.code ?? ""}
+          title={session.participant_code}
+        >
           {session.participant_code}
         </Link>
       </Table.Td>

@@ -57,7 +57,7 @@ function SlotText({ slot, next }: SlotCellProps): JSX.Element {
     <>
       <SlotMark state={slot.state} />
       <span>
-        <span className={classes.code}>
+        <span className={classes.code} title={last?.participant_code}>
           {last?.participant_code ?? t(next ? "slot.next" : "slot.free")}
           {last !== undefined && (
             <span className="visually-hidden">, {t(`slot.${slot.state}`)}</span>

@@ -53,7 +53,9 @@ function Row({ participant, ...props }: RowProps): JSX.Element {
   return (
     <Table.Tr className={erasure === null ? "" : (classes.erased ?? "")}>
       <Table.Td>
-        <strong className={classes.code}>{participant.code}</strong>
+        <strong className={classes.code} title={participant.code}>
+          {participant.code}
+        </strong>
         {erasure !== null && (
           <div className={classes.soft}>
             <Icon name="lock" size={14} />

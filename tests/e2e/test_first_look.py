@@ -1,0 +1,110 @@
+"""What somebody meets who tries things out: no network, wrong addresses, odd codes, other files."""
+
+from collections.abc import Callable
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from tests.e2e.people import Experimenter
+from tests.features.lab import STUDY
+from tests.support.browser import ColorScheme
+from tests.support.server import LiveServer
+
+Axe = Callable[[Page], list[str]]
+Screenshot = Callable[[Page, str], object]
+LONG = "P-" + "0" * 60
+
+
+@pytest.fixture
+def experimenter(running_server: LiveServer, page_factory: Callable[..., Page]) -> Experimenter:
+    """Signed in at a server that only this computer can reach."""
+    made = Experimenter(page_factory(), running_server.url)
+    made.log_in()
+    return made
+
+
+@pytest.mark.parametrize(
+    ("size", "scheme"), [((1280, 800), "light"), ((1280, 800), "dark"), ((820, 1180), "light")]
+)
+def test_no_device_is_sent_to_its_own_localhost(
+    running_server: LiveServer,
+    page_factory: Callable[..., Page],
+    axe: Axe,
+    screenshot: Screenshot,
+    size: tuple[int, int],
+    scheme: ColorScheme,
+) -> None:
+    """There is a code, no QR code and no address, and how to let devices in; a headset by cable."""
+    experimenter = Experimenter(page_factory(size, scheme), running_server.url)
+    experimenter.log_in()
+    page = experimenter.page
+    experimenter.open_tab(STUDY)
+    experimenter.create_session()
+    page.get_by_role("button", name="Pair the tablet").click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog.get_by_text("Only this computer can reach the server")).to_be_visible()
+    expect(dialog.get_by_text("./run --lan")).to_be_visible()
+    expect(dialog.get_by_role("img", name="QR")).to_have_count(0)
+    assert "localhost" not in dialog.inner_text()
+    assert axe(page) == []
+    screenshot(page, f"pairing-only-here-{scheme}-{size[0]}")
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Pair the headset").click()
+    expect(page.get_by_role("dialog").get_by_text("adb reverse")).to_be_visible()
+    screenshot(page, f"pairing-headset-only-here-{scheme}-{size[0]}")
+
+
+def test_an_unpaired_tablet_complains_of_nothing(
+    running_server: LiveServer, page_factory: Callable[..., Page]
+) -> None:
+    """It asks for its code, and the browser's console stays empty (which every test looks at)."""
+    page = page_factory((1180, 820))
+    page.goto(f"{running_server.url}/tablet")
+    expect(page.get_by_role("textbox").first).to_be_visible()
+    page.wait_for_timeout(6000)
+
+
+@pytest.mark.parametrize("address", ["nothing-here", "studies", "sessions/a/b/c/d"])
+def test_an_address_that_leads_nowhere_says_so(
+    experimenter: Experimenter, screenshot: Screenshot, address: str
+) -> None:
+    """Not the studies in its place; and a way to them."""
+    page = experimenter.page
+    page.goto(f"{page.url.partition('#')[0]}#/{address}")
+    expect(page.get_by_text("There is no page at this address")).to_be_visible()
+    screenshot(page, "nothing-here")
+    page.get_by_role("link", name="To the studies").click()
+    expect(page.get_by_role("heading", name="Studies", exact=True)).to_be_visible()
+
+
+def test_a_long_code_is_not_cut_in_silence(experimenter: Experimenter) -> None:
+    """What was typed stays, with how long it may be."""
+    page = experimenter.page
+    experimenter.open_tab(STUDY)
+    page.get_by_role("button", name="New session").first.click()
+    page.get_by_label("Participant code").fill(LONG)
+    expect(page.get_by_label("Participant code")).to_have_value(LONG)
+    expect(page.get_by_text("At most 40 characters")).to_be_visible()
+
+
+def test_a_loader_keeps_still_where_motion_is_not_wanted(
+    running_server: LiveServer, page_factory: Callable[..., Page]
+) -> None:
+    """Its dots are drawn once instead of flickering for ever."""
+    page = page_factory(reduced_motion="reduce")
+    page.goto(running_server.url)
+    repeats = page.evaluate(
+        """() => {
+            const one = document.createElement('div');
+            one.style.cssText = '';
+            one.className = 'probe';
+            const sheet = document.createElement('style');
+            sheet.textContent = '@keyframes probe {to {opacity: 0}}'
+              + '.probe:nth-child(n) {animation: probe 1s infinite}';
+            document.head.append(sheet);
+            document.body.append(one);
+            const style = getComputedStyle(one);
+            return [style.animationIterationCount, style.animationDuration];
+        }"""
+    )
+    assert repeats == ["1", "1e-05s"]
