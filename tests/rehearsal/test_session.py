@@ -202,6 +202,7 @@ def _commands(performed: Performed, phase_id: int) -> list[Command]:
 
 def _layout(db: Session, session: StudySession, limb: str | None) -> TaskLayout:
     tasks = protocol_of(db.get_one(StudyVersion, session.study_version_id)).tasks
+    assert limb is not None
     return tasks.layout(limb)
 
 

@@ -5,9 +5,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
-from sqlalchemy import column, select, table
+from sqlalchemy import Select, column, select, table
 from sqlalchemy.orm import Session
 
 from app.clock import Clock
@@ -121,7 +121,7 @@ def checked_backup(path: Path, workplace: Path, progress: Progress = silent) -> 
 
 def holds_people(backup: Backup) -> bool:
     """Whether there are participants in it who are people, neither simulated nor a test."""
-    people = (
+    people: Select[tuple[Any]] = (
         select(column("id")).select_from(table("participants")).where(column("kind") == "people")
     )
     return backup.connection.execute(people.limit(1)).first() is not None

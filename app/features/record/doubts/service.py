@@ -265,8 +265,9 @@ class _Reader:
         )
         found: dict[Key, list[Completed]] = defaultdict(list)
         for row in self._of_chosen(query, Completion):
-            one = Completed(*row[2:7], order=tuple(row[7]))
-            found[row[0], row[1]].append(one)
+            session_id, phase_id, epoch, number, at_s, active_s, duration_s, order = row
+            one = Completed(epoch, number, at_s, active_s, duration_s, order=tuple(order))
+            found[session_id, phase_id].append(one)
         return found
 
     def _coverage(self) -> dict[Key, Coverage]:
@@ -304,4 +305,4 @@ def _boxes(protocol: StudyProtocol, phase: Phase) -> int:
     if phase.kind not in TASKS:
         return 0
     task = protocol.tasks.hand if phase.limb == "hand" else protocol.tasks.foot
-    return len(task.boxes)
+    return 0 if task is None else len(task.boxes)

@@ -6,7 +6,13 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, TypeAdapter
 
 ShortfallCode = Literal[
-    "phase_skipped", "phase_short", "form_skipped", "latency_missing", "latency_off"
+    "phase_skipped",
+    "phase_short",
+    "phase_doubtful",
+    "form_skipped",
+    "latency_missing",
+    "latency_off",
+    "headset_doubtful",
 ]
 _PHASE_WORDS = {
     "hand": "hand task",
@@ -51,6 +57,10 @@ class Shortfall(BaseModel):
                 return "skipped"
             case "phase_short":
                 return f"{self.value:.1f} s of active time, at least {self.limit:g} s needed"
+            case "phase_doubtful":
+                return "what the headset said of it cannot be true"
+            case "headset_doubtful":
+                return "what the headset said of the whole session cannot be true"
             case "form_skipped":
                 return f"questionnaire {self.instrument} not answered"
             case "latency_missing":

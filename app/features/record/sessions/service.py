@@ -1,6 +1,7 @@
 """Running sessions: joining, and applying commands to the event log in one transaction."""
 
 import secrets
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -215,9 +216,12 @@ def apply_command(
     return Applied(session, state, tuple(events))
 
 
-def judge_again(db: Session, session: StudySession) -> None:
-    """Decide once more whether a session counts, since a latency was measured after its end."""
-    settle_validity(db, session, plan_of(db, session), state_of(session))
+def judge_again(db: Session, session: StudySession, doubted: Collection[int | None]) -> None:
+    """Decide once more whether a session counts: a latency was measured, or data are in doubt.
+
+    `doubted`: phases of which the headset said what cannot be true, None for the whole session.
+    """
+    settle_validity(db, session, plan_of(db, session), state_of(session), doubted)
 
 
 def is_repeated(db: Session, session_id: str, command_id: str) -> bool:

@@ -5,7 +5,7 @@ measured latency comes in later; the outcome is stored on the session (`shortfal
 dashboard, statistics, export and cockpit read it there.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -35,6 +35,7 @@ def judged(
     plan: Sequence[Step],
     state: SessionState,
     delays: Mapping[int, PhaseDelay],
+    doubted: Collection[int | None] = (),
 ) -> tuple[Shortfall, ...]:
     """What a session lacks, in the order of its steps; nothing if it counts.
 
@@ -44,12 +45,20 @@ def judged(
         state: where it stands.
         delays: by phase id. A phase without one has not been looked at yet: nothing is held against
             it until it has.
+        doubted: ids of phases of which the headset said what cannot be true; None stands for the
+            whole session.
     """
-    return tuple(found for step in plan for found in _of_step(rules, step, state, delays))
+    whole = [Shortfall(code="headset_doubtful", step="session")] if None in doubted else []
+    of_steps = (_of_step(rules, step, state, delays, doubted) for step in plan)
+    return (*whole, *(found for of_step in of_steps for found in of_step))
 
 
 def _of_step(
-    rules: ValidWhen, step: Step, state: SessionState, delays: Mapping[int, PhaseDelay]
+    rules: ValidWhen,
+    step: Step,
+    state: SessionState,
+    delays: Mapping[int, PhaseDelay],
+    doubted: Collection[int | None],
 ) -> Iterator[Shortfall]:
     done = state.steps[step.index].status == "done"
     limb = None if step.limb is None else str(step.limb)
@@ -73,6 +82,7 @@ def _of_step(
             rule.least_s(step.duration_s or 0.0),
             runs[-1],
             delays.get(runs[-1].phase_id),
+            doubtful=runs[-1].phase_id in doubted,
         )
         if done and runs
         else [Found("phase_skipped")]
@@ -97,9 +107,16 @@ class Found(NamedTuple):
 
 
 def _of_phase(
-    latency: LatencyRule | None, least_s: float, run: PhaseState, delay: PhaseDelay | None
+    latency: LatencyRule | None,
+    least_s: float,
+    run: PhaseState,
+    delay: PhaseDelay | None,
+    *,
+    doubtful: bool,
 ) -> Iterator[Found]:
     """What a phase that was carried through lacks."""
+    if doubtful:
+        yield Found("phase_doubtful")
     if run.active_s < least_s:
         yield Found("phase_short", run.active_s, least_s)
     if delay is None or latency is None:
@@ -114,16 +131,21 @@ def _of_phase(
 
 
 def settle_validity(
-    db: Session, session: StudySession, plan: Sequence[Step], state: SessionState
+    db: Session,
+    session: StudySession,
+    plan: Sequence[Step],
+    state: SessionState,
+    doubted: Collection[int | None] = (),
 ) -> None:
     """Decide whether a completed session counts, and whether it keeps its slot.
 
+    `doubted` as for `judged`: who asks knows the doubts, since they are made from the whole record.
     Nothing is decided of one that still runs or was broken off, nor where the study has no rules.
     """
     rules = version_content(db, session.study_version_id).protocol.valid_when
     if rules is None or state.status != "completed" or state.erased:
         return
-    found = judged(rules, plan, state, _delays(db, session.id))
+    found = judged(rules, plan, state, _delays(db, session.id), doubted)
     session.shortfalls = [one.model_dump() for one in found]
     settle_attempt(db, session, counts=not found)
 

@@ -100,7 +100,7 @@ class Summariser(Part):
                     return
                 replace_rows(db, session_id, phase_id, rows, wanted)
                 db.flush()
-                judge_again(db, session)
+                judge_again(db, session, [one.phase_id for one in doubts_of(db, session_id)])
             self._tell_doubts(session_id, phase_id)
         except Exception as error:
             log.exception("summaries of phase %s of %s failed", phase_id, session_id)

@@ -27,6 +27,8 @@ export const validityEn = {
   "validity.phase_skipped": "skipped",
   "validity.phase_short": "{{value}} s of active time, at least {{limit}} s needed",
   "validity.form_skipped": "questionnaire {{instrument}} not answered",
+  "validity.phase_doubtful": "what the headset said of it cannot be true",
+  "validity.headset_doubtful": "what the headset said of the whole session cannot be true",
   "validity.latency_missing": "no achieved latency could be measured",
   "validity.latency_off": "achieved latency off by {{value}} ms, limit {{limit}} ms",
   "outcome.invalid": "Completed, does not count",
@@ -60,6 +62,8 @@ export const validityDe: Readonly<Record<keyof typeof validityEn, string>> = {
   "validity.phase_skipped": "übersprungen",
   "validity.phase_short": "{{value}} s aktive Zeit, mindestens {{limit}} s nötig",
   "validity.form_skipped": "Fragebogen {{instrument}} nicht ausgefüllt",
+  "validity.phase_doubtful": "die Angaben des Headsets dazu können nicht stimmen",
+  "validity.headset_doubtful": "die Angaben des Headsets zur ganzen Sitzung können nicht stimmen",
   "validity.latency_missing": "die tatsächliche Verzögerung ließ sich nicht messen",
   "validity.latency_off":
     "tatsächliche Verzögerung um {{value}} ms daneben, erlaubt sind {{limit}} ms",

@@ -506,7 +506,7 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Pair
-         * @description Use a code up. Guessing is slowed down.
+         * @description Use a code up. Guessing is slowed down, and takes no turn at writing.
          */
         readonly post: operations["post_pair_api_devices_pair_post"];
         readonly delete?: never;
@@ -2202,6 +2202,26 @@ export interface paths {
          * @description The screen, again at every change; ends when the tablet is unpaired.
          */
         readonly get: operations["get_live_api_tablet_live_get"];
+        readonly put?: never;
+        readonly post?: never;
+        readonly delete?: never;
+        readonly options?: never;
+        readonly head?: never;
+        readonly patch?: never;
+        readonly trace?: never;
+    };
+    readonly "/api/tablet/paired": {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        /**
+         * Get Paired
+         * @description The same for a tablet that does not know whether it is paired; that it is not is no error.
+         */
+        readonly get: operations["get_paired_api_tablet_paired_get"];
         readonly put?: never;
         readonly post?: never;
         readonly delete?: never;
@@ -5127,6 +5147,8 @@ export interface components {
         /**
          * InvitedView
          * @description A fresh invitation with its link; whoever has the link can use it.
+         *
+         *     `only_here`: no other computer can reach the server, so the link works on this one alone.
          */
         readonly InvitedView: {
             /**
@@ -5145,6 +5167,8 @@ export interface components {
             readonly id: string;
             /** Note */
             readonly note: string;
+            /** Only Here */
+            readonly only_here: boolean;
             /**
              * Role
              * @enum {string}
@@ -5898,8 +5922,9 @@ export interface components {
          * PairingView
          * @description A code that works once, until `expires_at`; `url` and `qr_svg` open the page with it.
          *
-         *     A headset's client is given the address of the server and types the code; it has no page to
-         *     scan, so its `qr_svg` is null. `help_url` is the page on which a device that comes for the first
+         *     Both are null where no other device can reach the server. A headset's client is given the
+         *     address of the server and types the code; it has no page to scan, so its `qr_svg` is null.
+         *     `help_url` is the page on which a device that comes for the first
          *     time gets the lab's certificate; null where there is nothing to install.
          */
         readonly PairingView: {
@@ -5922,7 +5947,7 @@ export interface components {
             /** Qr Svg */
             readonly qr_svg: string | null;
             /** Url */
-            readonly url: string;
+            readonly url: string | null;
         };
         /**
          * PairRequest
@@ -7232,7 +7257,7 @@ export interface components {
              * Code
              * @enum {string}
              */
-            readonly code: "phase_skipped" | "phase_short" | "form_skipped" | "latency_missing" | "latency_off";
+            readonly code: "phase_skipped" | "phase_short" | "phase_doubtful" | "form_skipped" | "latency_missing" | "latency_off" | "headset_doubtful";
             /** Instrument */
             readonly instrument?: string | null;
             /** Limit */
@@ -7840,6 +7865,13 @@ export interface components {
             readonly status: "open" | "adopted" | "declined";
             /** Version */
             readonly version: number;
+        };
+        /**
+         * TabletPaired
+         * @description What the tablet that asks is to show; null where it is not paired.
+         */
+        readonly TabletPaired: {
+            readonly state: components["schemas"]["TabletState"] | null;
         };
         /**
          * TabletState
@@ -13412,6 +13444,44 @@ export interface operations {
                 };
                 content: {
                     readonly "text/event-stream": components["schemas"]["ErrorBody"];
+                };
+            };
+        };
+    };
+    readonly get_paired_api_tablet_paired_get: {
+        readonly parameters: {
+            readonly query?: never;
+            readonly header?: never;
+            readonly path?: never;
+            readonly cookie?: never;
+        };
+        readonly requestBody?: never;
+        readonly responses: {
+            /** @description Refused, with the reason and the way out. */
+            readonly "4XX": {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
+                };
+            };
+            /** @description Successful Response */
+            readonly 200: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["TabletPaired"];
+                };
+            };
+            /** @description Cannot be stored now, so nothing was promised. */
+            readonly 503: {
+                headers: {
+                    readonly [name: string]: unknown;
+                };
+                content: {
+                    readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
         };

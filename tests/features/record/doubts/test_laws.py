@@ -184,7 +184,7 @@ def test_no_honest_clock_is_doubted(
 )
 def test_a_contact_that_cannot_be_is_doubted(changed: dict[str, int], kind: str) -> None:
     """It ends after it began, touches what is there, and lies in the phase's active time."""
-    contacts = PHASE.contacts[0]._replace(**changed)  # type: ignore[arg-type]  # any claim
+    contacts = PHASE.contacts[0]._replace(**changed)
     assert doubts(contacts=(contacts,), completed=()) == [(1, kind)]
 
 
