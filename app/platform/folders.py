@@ -61,6 +61,9 @@ def traces_of_a_database(settings: Settings) -> list[str]:
         patterns += [f"{file.name}{suffix}" for suffix in DATABASE_SUFFIXES[1:]]
     if home.resolve() == settings.data_dir.resolve():
         patterns += _TRACES_IN_DATA_DIR
+    link = settings.data_dir / "reembody.sqlite"
+    if not settings.database_url and link.is_symlink():
+        found.append(f"the link {link.name}")
     for pattern in patterns:
         there = sorted(home.glob(pattern))
         if len(there) == 1:

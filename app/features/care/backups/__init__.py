@@ -32,6 +32,7 @@ from app.features.care.backups.service import (
     restore,
     stamped,
 )
+from app.features.care.backups.shapes import TableShape
 from app.features.care.backups.writing import shapes_at
 
 __all__ = [
@@ -40,6 +41,7 @@ __all__ = [
     "Backup",
     "Restored",
     "RestoredContent",
+    "TableShape",
     "back_up",
     "checked_backup",
     "columns_in",

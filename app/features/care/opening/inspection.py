@@ -11,12 +11,12 @@ file drops the locks that SQLite's own handles hold.
 import os
 import re
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 
 from app.database import BUSY_TIMEOUT_S
-from app.features.care.backups import columns_in, shapes_at, wrong_rows, wrong_tables
+from app.features.care.backups import TableShape, columns_in, shapes_at, wrong_rows, wrong_tables
 from app.features.care.opening.wal import frames_noted, inspect_log
 from app.platform.trouble import in_plain_words, proves_damage
 from app.schema_revisions import VERSION_TABLE, known_revisions, newest_revision
@@ -206,8 +206,19 @@ def _wrong_content(connection: sqlite3.Connection) -> str | None:
     if names[0] not in known_revisions():
         return UNNAMED if names[0] < newest_revision() else None  # a newer program's
     shapes = shapes_at(names[0])
-    wrong = wrong_tables(found, shapes)
+    wrong = wrong_tables(found, shapes) or _too_new(found, shapes)
     return wrong[0] if wrong else next(wrong_rows(connection, shapes), None)
+
+
+def _too_new(found: Mapping[str, set[str]], shapes: Iterable[TableShape]) -> list[str]:
+    """What only later schemas than that of these shapes have: a migration would meet it."""
+    there = {shape.name: {one.name for one in shape.columns} for shape in shapes}
+    return [
+        f"it has {shape.name}.{column.name} of a later schema than it names"
+        for shape in shapes_at(newest_revision())
+        for column in shape.columns
+        if column.name in found.get(shape.name, ()) and column.name not in there.get(shape.name, ())
+    ]
 
 
 def _read_through(file: Path) -> None:

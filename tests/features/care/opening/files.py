@@ -2,8 +2,10 @@
 
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
 
 from app.database import open_database
@@ -23,6 +25,11 @@ for number in range(rows):
     connection.execute("INSERT INTO written VALUES (?, ?)", (number, data))
 os.kill(os.getpid(), signal.SIGKILL)
 """
+UNDECODABLE = (
+    "UPDATE sqlite_master SET sql = CAST(x'435245415445205441424c4520ff' || sql AS TEXT) "
+    "WHERE name = 'accounts'"
+)
+"""A table's definition becomes one that SQLite quotes in an error, and that is no UTF-8."""
 
 
 def filled(file: Path, rows: int = 60) -> Path:
@@ -50,3 +57,11 @@ def flip(file: Path, at: int) -> None:
     data = bytearray(file.read_bytes())
     data[at] ^= 1
     file.write_bytes(data)
+
+
+def edited(file: Path, statement: str) -> None:
+    """Change what is in a database, by force."""
+    with closing(sqlite3.connect(file, isolation_level=None)) as connection:
+        connection.execute("PRAGMA writable_schema=ON")
+        connection.execute("PRAGMA ignore_check_constraints=ON")
+        connection.execute(statement)

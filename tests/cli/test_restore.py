@@ -1,0 +1,175 @@
+"""`reembody restore`: what it says, asks for and leaves behind."""
+
+import json
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from sqlalchemy import select
+
+from app.database import open_database
+from app.features.care.backups import back_up
+from app.models import Erasure, Participant
+from tests.cli.invoked import Invoked
+from tests.features.care.backups.lab import CLOCK
+from tests.features.care.opening.files import UNDECODABLE, edited
+from tests.features.lab import STUDY, Lab, ok, running_lab
+from tests.support.sqlite import fresh_sqlite
+
+RESTORE = Invoked("restore")
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """An installation with a participant who was erased after the backup was made."""
+
+    backup: Path
+    erasures: Path
+    code: str
+
+
+@contextmanager
+def lab_in(folder: Path) -> Iterator[Lab]:
+    """A running installation with its data in `folder`."""
+    folder.mkdir()
+    with running_lab(fresh_sqlite(folder / "reembody.sqlite"), data_dir=folder) as lab:
+        yield lab
+
+
+@pytest.fixture
+def earlier(tmp_path: Path) -> Earlier:
+    """Backed up, then erased."""
+    backup = tmp_path / "all.reembody"
+    with lab_in(tmp_path / "earlier") as lab:
+        session = lab.join(kind="people", participant_code="CANARY-1")
+        lab.command(lab.command(session, "start"), "withdraw", reason="enough")
+        back_up(lab.database, backup, clock=CLOCK)
+        with lab.database.reading() as db:
+            participant_id = db.scalar(select(Participant.id))
+        ok(
+            lab.operator.post(
+                f"/api/studies/{STUDY}/participants/{participant_id}/erasure",
+                json={"confirm": "CANARY-1", "reason_code": "requested"},
+            )
+        )
+    return Earlier(backup, tmp_path / "earlier" / "erasures.jsonl", "CANARY-1")
+
+
+@pytest.fixture
+def data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a new installation, which is not there yet."""
+    monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "new"))
+    return tmp_path / "new"
+
+
+def codes(data: Path) -> list[str]:
+    """Of the participants."""
+    database = open_database(f"sqlite:///{data / 'reembody.sqlite'}")
+    with database.reading() as db:
+        found = list(db.scalars(select(Participant.code)))
+    database.close()
+    return found
+
+
+def test_without_a_list_of_erasures_it_says_who_may_be_back(earlier: Earlier, data: Path) -> None:
+    """And how to make it good, which then works: with the option, or by the list alone."""
+    result = RESTORE.run(earlier.backup)
+    assert result.exit_code == 0
+    assert "has no list of erasures" in result.stderr
+    assert "--erasures FILE" in result.stderr
+    assert codes(data) == [earlier.code]
+    told = RESTORE.figures(earlier.backup, "--replace", "--erasures", earlier.erasures)
+    assert told["erasures_reapplied"] == 1
+    assert earlier.code not in codes(data)
+    assert (data / "erasures.jsonl").read_text() == earlier.erasures.read_text()
+
+
+def test_with_the_list_it_says_nothing_and_brings_nobody_back(earlier: Earlier, data: Path) -> None:
+    """Given as an option, or copied along before."""
+    result = RESTORE.run(earlier.backup, "--erasures", earlier.erasures, "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert earlier.code not in codes(data)
+    shutil.rmtree(data)
+    data.mkdir()
+    shutil.copyfile(earlier.erasures, data / "erasures.jsonl")
+    result = RESTORE.run(earlier.backup)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert earlier.code not in codes(data)
+
+
+def test_erasures_that_find_nobody_here_are_kept_for_the_next_backup(
+    earlier: Earlier, data: Path, tmp_path: Path
+) -> None:
+    """An older backup may hold them."""
+    with lab_in(tmp_path / "other") as lab:
+        lab.join(kind="people", participant_code="P-1")
+        back_up(lab.database, tmp_path / "other.reembody", clock=CLOCK)
+    assert RESTORE.run(tmp_path / "other.reembody", "--erasures", earlier.erasures).exit_code == 0
+    assert RESTORE.run(earlier.backup, "--replace").exit_code == 0
+    database = open_database(f"sqlite:///{data / 'reembody.sqlite'}")
+    with database.reading() as db:
+        assert db.scalar(select(Erasure.id)) is not None
+    database.close()
+
+
+@pytest.mark.parametrize("line", ["{}", "not JSON", '{"erasure_id": "x"}', "\udcff"])
+def test_a_list_that_is_none_is_refused(earlier: Earlier, data: Path, line: str) -> None:
+    """Before anything is touched: an erasure that is left out brings somebody back."""
+    text = earlier.erasures.read_text() + line + "\n"
+    earlier.erasures.write_text(text, errors="surrogateescape")
+    assert "are no erasures" in RESTORE.refusal(earlier.backup, "--erasures", earlier.erasures)
+    assert not data.exists()
+
+
+def test_a_backup_without_people_is_restored_without_a_word(data: Path, tmp_path: Path) -> None:
+    """There is nobody in it who could be back."""
+    with lab_in(tmp_path / "earlier") as lab:
+        lab.join(kind="simulated")
+        back_up(lab.database, tmp_path / "all.reembody", clock=CLOCK)
+    result = RESTORE.run(tmp_path / "all.reembody")
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert data.is_dir()
+
+
+def test_a_restore_that_fails_leaves_nothing(
+    earlier: Earlier, data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Neither a database without accounts, nor a mark, nor a folder."""
+
+    def fail(*_: object) -> int:
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr("app.features.care.backups.service._unpair_headsets", fail)
+    assert "Input/output error" in RESTORE.refusal(earlier.backup, "--erasures", earlier.erasures)
+    assert not data.exists()
+
+
+@pytest.mark.parametrize("replace", [(), ("--replace",)])
+def test_a_damaged_database_is_put_away_and_the_restore_goes_on(
+    earlier: Earlier, data: Path, replace: tuple[str, ...]
+) -> None:
+    """Whoever restores has decided; even where nothing of the damage can be decoded."""
+    assert RESTORE.run(earlier.backup, "--erasures", earlier.erasures).exit_code == 0
+    file = data / "reembody.sqlite"
+    edited(file, UNDECODABLE)
+    damaged = file.read_bytes()
+    result = RESTORE.run(earlier.backup, *replace, "--json")
+    assert result.exit_code == 0, result.output
+    assert "is damaged" in result.stderr
+    assert json.loads(result.stdout)["before"] is None
+    (kept,) = (data / "quarantine").glob("*/reembody.sqlite")
+    assert kept.read_bytes() == damaged
+
+
+def test_what_is_written_is_for_its_owner(earlier: Earlier, data: Path) -> None:
+    """Every file and folder that a command makes."""
+    assert RESTORE.run(earlier.backup, "--erasures", earlier.erasures).exit_code == 0
+    assert Invoked("backup").run(data.parent / "again.reembody").exit_code == 0
+    export = Invoked("export").run("--study", STUDY, "--to", data.parent / "export")
+    assert export.exit_code == 0, export.output
+    made = [data, *data.rglob("*"), data.parent / "again.reembody", data.parent / "export"]
+    made += (data.parent / "export").rglob("*")
+    assert {oct(path.stat().st_mode & 0o077) for path in made} == {"0o0"}
