@@ -155,18 +155,26 @@ def go_on(server: LiveServer, session_id: str) -> None:
 
 
 @pytest.mark.parametrize("engine", ["sqlite", pytest.param("postgresql", marks=pytest.mark.long)])
-def test_a_running_server_goes_on_with_what_was_restored(tmp_path: Path, engine: str) -> None:
-    """Not started anew: its logins, sessions and streams are those of the backup."""
+def test_a_server_is_stopped_for_a_restore_and_goes_on_with_what_was_restored(
+    tmp_path: Path, engine: str
+) -> None:
+    """Beside it a restore is refused; afterwards logins, sessions, streams are the backup's."""
     with installation(tmp_path / "live", engine) as server, server, server.client() as client:
         study = add_short_study(server)
         assert client.post("/api/login", json=CREDENTIALS).is_success
         kept = join(client, study, "kept")
         assert reembody(server, "backup", tmp_path / "all.reembody").code == 0
         later = join(client, study, "later")
+        beside = reembody(server, "restore", tmp_path / "all.reembody", "--replace")
+        assert beside.code == UNUSABLE
+        assert f"process id {server.pid} on port {server.port}" in beside.err
+        assert client.get(f"/api/sessions/{later}").json()["participant_code"] == "later"
+        server.stop()
         refused = reembody(server, "restore", tmp_path / "all.reembody")
         assert refused.code == UNUSABLE
         assert "--replace" in refused.err
         done = reembody(server, "restore", tmp_path / "all.reembody", "--replace", "--json").json
+        server.start()
         assert Path(done["before"]).parent == server.data_dir / "backups"
         assert client.get(f"/api/sessions/{kept}").json()["participant_code"] == "kept"
         assert client.get(f"/api/sessions/{later}").status_code == 404
@@ -175,8 +183,10 @@ def test_a_running_server_goes_on_with_what_was_restored(tmp_path: Path, engine:
         report = asyncio.run(rehearse(plan, journal=ledger))
         with record(server) as db:
             assert reconcile(db, report.session_id, ledger).sound
+        server.stop()
         back = reembody(server, "restore", done["before"], "--replace", "--json").json
         assert back["rows"] > 0
+        server.start()
         assert client.get(f"/api/sessions/{later}").json()["participant_code"] == "later"
 
 
@@ -200,6 +210,7 @@ def test_a_restore_waits_for_active_sessions_to_end(
         started = client.post(f"/api/sessions/{session_id}/commands", json=command)
         assert started.is_success, started.text
         reembody(live_server, "backup", tmp_path / "all.reembody")
+        live_server.stop()
         said = reembody(live_server, "restore", tmp_path / "all.reembody", "--replace")
         assert said.code == UNUSABLE
         assert f"P-014 ({session_id})" in said.err
@@ -207,6 +218,7 @@ def test_a_restore_waits_for_active_sessions_to_end(
         assert not (live_server.data_dir / "backups").exists()
         insisting = ("--replace", "--even-though-active")
         assert reembody(live_server, "restore", tmp_path / "all.reembody", *insisting).code == 0
+        live_server.start()
         assert client.get(f"/api/sessions/{session_id}").json()["status"] == "active"
 
 

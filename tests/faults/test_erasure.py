@@ -192,7 +192,9 @@ def test_a_restored_backup_does_not_undo_an_erasure(
         site.command(visit.session_id, "withdraw", reason="enough")
         erased = erase(site, visit)
         assert [one["place"] for one in erased["remaining"]] == [str(backup)]
+        site.server.stop()
         said = reembody(site.server, "restore", backup, "--replace", "--json").json
+        site.server.start()
         ok(site.operator.post("/api/login", json=CREDENTIALS))
         search = Search(site, visit, elsewhere)
         residuals = search.residuals()
