@@ -154,7 +154,10 @@ def frame_to_csv(lab: Lab, recorder: Recorder) -> None:
     _, device = lab.paired(view, "headset")
     offered = ["reembody.v1", f"bearer.{device['token']}"]
     with lab.client.websocket_connect("/api/vr/stream", subprotocols=offered) as socket:
-        socket.send_text(json.dumps({"type": "hello", "protocol": 1, "client": "walk"}))
+        # The shipped study of the commit may be moved by physics or not.
+        avatars = ["delayed_copy", "physics"]
+        hello = {"type": "hello", "protocol": 1, "client": "walk", "avatars": avatars}
+        socket.send_text(json.dumps(hello))
         epoch = _heard(socket, "welcome")["epoch"]
         socket.send_bytes(_batch(epoch, 0))
         _acknowledged(socket, 9)

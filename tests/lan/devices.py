@@ -27,8 +27,7 @@ async def greeted(url: str, token: str, **options: object) -> dict[str, object]:
         subprotocols=[SUBPROTOCOL, f"bearer.{token}"],  # type: ignore[list-item]  # a token is a plain str
         **options,  # type: ignore[arg-type]  # handed on
     ) as connection:
-        await connection.send(
-            json.dumps({"type": "hello", "protocol": PROTOCOL_VERSION, "client": "test"})
-        )
+        hello = {"type": "hello", "protocol": PROTOCOL_VERSION, "client": "test"}
+        await connection.send(json.dumps({**hello, "avatars": ["delayed_copy", "physics"]}))
         answer: dict[str, object] = json.loads(await connection.recv())
         return answer
