@@ -16,6 +16,7 @@ import numpy as np
 
 from app.client.journal import Entry, Journal
 from app.client.telemetry import TelemetryClient
+from app.rehearsal.rehearse import AVATARS
 from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
 
 RATE_HZ = 90.0
@@ -48,7 +49,12 @@ async def stream(url: str, token: str, duration_s: float, seed: int) -> list[tup
     journal, began_s = TimedJournal(), time.monotonic()
     values = movement(seed)
     async with TelemetryClient(
-        url, token, f"benchmark {seed}", lambda: time.monotonic() - began_s, journal=journal
+        url,
+        token,
+        f"benchmark {seed}",
+        lambda: time.monotonic() - began_s,
+        avatars=AVATARS,
+        journal=journal,
     ) as client:
         # Headsets do not tick together.
         await asyncio.sleep(float(np.random.default_rng(seed).uniform(0, 0.07)))

@@ -11,6 +11,7 @@ import httpx2
 import numpy as np
 
 from app.client.telemetry import TelemetryClient
+from app.rehearsal.rehearse import AVATARS
 from app.wire import StreamName, encode_batch
 from app.wire.messages import MaterialisedReport
 from tests.benchmarks.headsets import FRAMES_PER_BATCH, RATE_HZ, movement
@@ -94,7 +95,7 @@ async def _stream_one(
 
     values = movement(seed)
     async with TelemetryClient(
-        url, headset.token, f"fault {seed}", now_s, journal=headset.ledger
+        url, headset.token, f"fault {seed}", now_s, avatars=AVATARS, journal=headset.ledger
     ) as client:
         batch = 0
         while more():

@@ -58,10 +58,12 @@ export function CurrentStep(props: CurrentStepProps): JSX.Element {
       <p className={classes.guide}>{t(guidance(session))}</p>
       {lacksHeadset(session) && <p className={classes.guide}>{t("step.noHeadset")}</p>}
       {session.shortfalls !== null && session.shortfalls.length > 0 && (
-        <Notice tone="warn" title={t("validity.title")}>
-          <p>{t("validity.body")}</p>
-          <Shortfalls found={session.shortfalls} />
-        </Notice>
+        <div className={classes.notValid}>
+          <Notice tone="warn" title={t("validity.title")}>
+            {t("validity.body")}
+            <Shortfalls found={session.shortfalls} />
+          </Notice>
+        </div>
       )}
       {step !== null && isTimed(step) && <PhaseClock session={session} store={live.store} />}
       {session.current?.status === "paused" && <PauseReason live={live} />}
