@@ -10,7 +10,7 @@ import typer
 
 from app import __version__
 from app.cli.analyse.command import analyse
-from app.cli.errors import INCOMPLETE, reported
+from app.cli.errors import INCOMPLETE, reported, warn
 from app.cli.retarget.command import retarget
 from app.cli.serve.command import serve, tls
 from app.cli.tune.command import tune
@@ -137,19 +137,21 @@ def rehearse(
     from app.cli.rehearsing import run_rehearsal
 
     with reported(ValueError, RuntimeError):
-        print(
-            run_rehearsal(
-                url=url,
-                token=token,
-                capture=capture,
-                speed=speed,
-                seed=seed,
-                study=study,
-                data=data,
-                physics=physics,
-                as_json=as_json,
-            )
+        text, completed = run_rehearsal(
+            url=url,
+            token=token,
+            capture=capture,
+            speed=speed,
+            seed=seed,
+            study=study,
+            data=data,
+            physics=physics,
+            as_json=as_json,
         )
+    print(text)
+    if not completed:
+        warn("the session was ended before its last step, so this was not a whole rehearsal")
+        raise typer.Exit(INCOMPLETE)
 
 
 @app.command()

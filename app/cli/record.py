@@ -23,12 +23,15 @@ from app.features.people.audit import (
     AuditCheck,
     TrailHead,
     holds_head,
+    record,
     record_copy,
     verify_trail,
 )
 from app.features.record.receipts import SessionReceipt, receipt_of, receipt_text
 from app.features.results.analysis.tables import KINDS, Kind
 from app.features.results.exports.writing import Exported, export_study, usual_kind
+from app.models import Study
+from app.platform.access import hidden_sessions, session_by_id
 from app.platform.half_made import Notes
 from app.settings import read_settings
 
@@ -75,6 +78,15 @@ def _put_on_record(database: Database, study: str, done: Exported) -> None:
                 now=Clock().utc_now(),
                 sessions=done.sessions,
             )
+            if done.revealed:
+                record(
+                    db,
+                    actor=COMMAND_LINE,
+                    action="study.exported",
+                    subject=f"study:{study}",
+                    details={"kind": done.kind, "revealed": sorted(done.revealed)},
+                    now=Clock().utc_now(),
+                )
     except (DBAPIError, sqlite3.Error) as error:
         warn(
             f"the export is whole, but could not be put on record ({getattr(error, 'orig', error)})"
@@ -135,8 +147,11 @@ def verify_record(
 
 
 def _receipt(db: Session, session_id: str) -> SessionReceipt:
+    """Without latencies while the session's condition must not be known."""
     try:
-        return receipt_of(db, session_id)
+        receipt = receipt_of(db, session_id)
+        study = db.get_one(Study, session_by_id(db, session_id).study_id)
+        return receipt.without_latencies() if session_id in hidden_sessions(db, study) else receipt
     except NotFound as error:
         raise NotFound(
             f"there is no session {session_id!r}",

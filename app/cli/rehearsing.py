@@ -20,6 +20,7 @@ from httpx2 import Client, HTTPError
 from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, rehearse
 
 START_TIMEOUT_S = 60.0
+COMPLETED = "completed"
 
 
 def run_rehearsal(
@@ -33,8 +34,11 @@ def run_rehearsal(
     data: Path | None,
     physics: bool,
     as_json: bool,
-) -> str:
-    """Rehearse and give the report as text or JSON; raises ValueError or RuntimeError."""
+) -> tuple[str, bool]:
+    """Rehearse; the report as text or JSON, and whether the session was completed.
+
+    Raises ValueError or RuntimeError.
+    """
     if url is not None and token is None:
         raise ValueError("--url needs --token; make one with: reembody token")
     if not 0 < speed <= 100:
@@ -53,7 +57,8 @@ def run_rehearsal(
     else:
         with _own_server(data) as (own_url, password):
             report = _run(RehearsalPlan(**{**asdict(plan), "url": own_url, "password": password}))
-    return json.dumps(asdict(report), indent=2) if as_json else _text(report)
+    text = json.dumps(asdict(report), indent=2) if as_json else _text(report)
+    return text, report.status == COMPLETED
 
 
 def _run(plan: RehearsalPlan) -> RehearsalReport:
@@ -128,6 +133,7 @@ def _text(report: RehearsalReport) -> str:
     practised = sum(phase["kind"] == "practice" for phase in report.phases)
     lines = [
         f"SIMULATED session {report.session_id}: {report.duration_s:.1f} s at {report.speed:g}x",
+        *([] if report.status == COMPLETED else [f"NOT COMPLETED: it was {report.status}"]),
         f"avatar {report.avatar} {(report.avatar_configuration_hash or '')[:12]}".rstrip(),
         f"frames sent {report.frames_sent}, stored {report.frames_stored}",
         f"{len(phases)} task phases, {report.questionnaires} questionnaires",
@@ -136,8 +142,13 @@ def _text(report: RehearsalReport) -> str:
         f"{report.side_contacts} contacts with the sides of boxes",
     ]
     lines += [
-        f"  {phase['limb']:4}  {phase['latency_ms']:5.0f} ms  {phase['active_s']:6.2f} s  "
+        f"  {phase['limb']:4}  {_latency(phase['latency_ms'])}  {phase['active_s']:6.2f} s  "
         f"{phase['completions']:2d} completions  {phase['side_contacts']:3d} side contacts"
         for phase in phases
     ]
     return "\n".join(lines)
+
+
+def _latency(latency_ms: float | None) -> str:
+    """As wide as a number with its unit; a blinded operator is not told which it was."""
+    return f"{'hidden':>8}" if latency_ms is None else f"{latency_ms:5.0f} ms"

@@ -2,8 +2,15 @@
 
 What is not theirs does not exist for them: a foreign object is answered like one that was never
 there, so its address tells nothing.
+
+Blinding is one rule, `hidden_sessions`. An order belongs to a slot of the ledger, and a slot whose
+session was aborted or withdrawn is given to the next participant. So in a blinded study the order
+of a slot, and with it the condition of every session that held it, is known once the session that
+holds it *now* is completed, or was revealed for a reason that is on record. Operators never know
+it: known orders narrow down those that are left.
 """
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -15,6 +22,7 @@ from app.models import (
     Account,
     CopyMade,
     SessionEvent,
+    SlotAttempt,
     Study,
     StudyMember,
     StudySession,
@@ -91,25 +99,96 @@ def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudyS
 def is_blind(
     db: Session, caller: Caller, protocol: StudyProtocol, session: StudySession | None
 ) -> bool:
-    """Whether the caller must not learn the condition of a session (or of some, if None).
-
-    In a blinded study an operator never does, not even afterwards: orders that are known tell those
-    that are left. Everybody else does once the session is over, or was unblinded for a reason that
-    is on record.
-    """
+    """Whether the caller must not learn the condition of a session (or of some, if None)."""
     if not protocol.blinding.operator:
         return False
-    if caller.role == "operator":
+    if caller.role == "operator" or session is None:
         return True
-    return session is None or not (session.status in OVER or was_unblinded(db, session))
+    return bool(_not_known(db, StudySession.id == session.id))
 
 
-def was_unblinded(db: Session, session: StudySession) -> bool:
-    """Whether somebody had this session's condition shown to them before it was over."""
-    query = select(SessionEvent.seq).where(
-        SessionEvent.session_id == session.id, SessionEvent.type == "blinding_lifted"
+def hidden_sessions(db: Session, study: Study, caller: Caller | None = None) -> frozenset[str]:
+    """Ids of the sessions of a study whose condition must not leave the record.
+
+    `caller`: who gets it; None for whatever is made for all who read results, who are never
+    operators. The versions of a study are told apart: a session stays blinded although a newer
+    version is not.
+    """
+    blinded = _blinded_versions(db, study)
+    if not blinded:
+        return frozenset()
+    of_blinded = StudySession.study_version_id.in_(blinded)
+    if caller is not None and caller.role == "operator":
+        return frozenset(db.scalars(select(StudySession.id).where(of_blinded)))
+    return _not_known(db, of_blinded)
+
+
+def revealed_sessions(db: Session, study: Study) -> frozenset[str]:
+    """Ids of a study's blinded sessions that are not completed, and whose condition is known.
+
+    A copy that holds any of them says so on the record.
+    """
+    blinded = _blinded_versions(db, study)
+    if not blinded:
+        return frozenset()
+    of_blinded = StudySession.study_version_id.in_(blinded)
+    open_ = select(StudySession.id).where(of_blinded, StudySession.status != "completed")
+    return frozenset(db.scalars(open_)) - _not_known(db, of_blinded)
+
+
+def _blinded_versions(db: Session, study: Study) -> list[str]:
+    versions = db.execute(
+        select(StudyVersion.id, StudyVersion.canonical_json).where(
+            StudyVersion.study_id == study.id
+        )
     )
-    return db.scalar(query.limit(1)) is not None
+    return [id_ for id_, text in versions if json.loads(text)["blinding"]["operator"]]
+
+
+def _not_known(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
+    """Of these sessions those whose slot is held by one that is neither completed nor revealed."""
+    open_ = (which, StudySession.status != "completed")
+    asked = dict(
+        db.execute(
+            select(SlotAttempt.session_id, SlotAttempt.slot_id)
+            .join(StudySession, StudySession.id == SlotAttempt.session_id)
+            .where(*open_)
+        ).all()
+    )
+    if not asked:
+        return frozenset()
+    # By a query, not by a list of ids: that could be longer than a statement may be.
+    slots = (
+        select(SlotAttempt.slot_id)
+        .join(StudySession, StudySession.id == SlotAttempt.session_id)
+        .where(*open_)
+    )
+    attempts = db.execute(
+        select(SlotAttempt.slot_id, SlotAttempt.session_id, SlotAttempt.outcome)
+        .where(SlotAttempt.slot_id.in_(slots))
+        .order_by(SlotAttempt.opened_at)
+    )
+    holders: dict[str, tuple[str, str]] = {}
+    for slot_id, session_id, outcome in attempts:
+        # Whoever gave the slot up holds it no longer than until somebody takes it.
+        if slot_id not in holders or holders[slot_id][1] not in ("open", "completed"):
+            holders[slot_id] = (session_id, outcome)
+    revealed = set(
+        db.scalars(
+            select(SessionEvent.session_id)
+            .join(SlotAttempt, SlotAttempt.session_id == SessionEvent.session_id)
+            .where(
+                SlotAttempt.slot_id.in_(slots),
+                SlotAttempt.outcome != "completed",
+                SessionEvent.type == "blinding_lifted",
+            )
+        )
+    )
+    return frozenset(
+        session_id
+        for session_id, slot_id in asked.items()
+        if holders[slot_id][1] != "completed" and holders[slot_id][0] not in revealed
+    )
 
 
 _STUDY_OF: dict[str, tuple[str, Select[str]]] = {

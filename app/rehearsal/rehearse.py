@@ -62,9 +62,14 @@ class RehearsalPlan:
 
 @dataclass(frozen=True)
 class RehearsalReport:
-    """What was sent and what the server says it stored."""
+    """What was sent and what the server says it stored.
+
+    `status`: how the session ended; somebody else may have aborted it. Phases have no latency where
+    whoever rehearsed must not know it.
+    """
 
     session_id: str
+    status: str
     simulated: bool
     avatar: str
     avatar_configuration_hash: str | None
@@ -180,6 +185,7 @@ async def report_of(cast: Cast, plan: RehearsalPlan, duration_s: float) -> Rehea
             stored[row["stream"]] = stored.get(row["stream"], 0) + row["frames_stored"]
     return RehearsalReport(
         session_id=session_id,
+        status=view["status"],
         simulated=True,
         avatar=view["avatar"],
         avatar_configuration_hash=view["avatar_configuration_hash"],

@@ -2,6 +2,8 @@
 
 from fastapi import APIRouter
 from fastapi.responses import StreamingResponse
+from sqlalchemy import select
+from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
 from app.features.care.rights.copies import copies_of_study, mark_destroyed
@@ -22,7 +24,8 @@ from app.features.people.audit import in_browser_of, record, record_copy
 from app.features.record.erasure import expect_erasure, overwrite
 from app.features.record.questionnaires import StoredAnswers, stored_answers
 from app.features.results.exports import ExportDesk
-from app.platform.access import session_by_id
+from app.models import Study, StudySession
+from app.platform.access import revealed_sessions, session_by_id
 from app.platform.context import AppContext
 from app.platform.dependencies import FREES_SPACE, Context, Reading, SignedIn, Writing
 
@@ -114,7 +117,7 @@ def get_access(
         actor=caller.actor,
         action="participant.copied",
         subject=f"participant:{participant.id}",
-        details={"copy": copy.id, "study": study.key},
+        details={"copy": copy.id, "study": study.key, **_revealed(db, study, participant.id)},
         now=now,
     )
     pieces = access_archive(context.database, study.key, participant.id, now=now)
@@ -124,6 +127,13 @@ def get_access(
         media_type="application/zip",
         headers={"content-disposition": f'attachment; filename="{name}"'},
     )
+
+
+def _revealed(db: Session, study: Study, participant_id: str) -> dict[str, list[str]]:
+    """The participant's sessions that tell their condition in the copy although not completed."""
+    own = select(StudySession.id).where(StudySession.participant_id == participant_id)
+    revealed = revealed_sessions(db, study) & frozenset(db.scalars(own))
+    return {"revealed": sorted(revealed)} if revealed else {}
 
 
 @router.post("/sessions/{session_id}/submissions/{submission_id}/corrections", status_code=201)

@@ -34,9 +34,10 @@ from app.features.record.sessions import (
     events_of,
     plan_of,
     state_of,
+    without_condition,
 )
 from app.models import LedgerSlot, Participant, SlotAttempt, Study, StudySession, StudyVersion
-from app.platform.access import Caller, is_blind
+from app.platform.access import Caller, hidden_sessions, is_blind
 from app.platform.context import AppContext
 from app.protocol import Step, StudyProtocol
 
@@ -94,11 +95,12 @@ def list_sessions(
     if kind is not None:
         query = query.where(StudySession.kind == kind)
     versions = {version.id: version for version in versions_of(db, study)}
+    hidden = hidden_sessions(db, study, caller)
     summaries = []
     for session, code, sequence in db.execute(query):
         version = versions[session.study_version_id]
         protocol = protocol_of(version)
-        blinded = is_blind(db, caller, protocol, session)
+        blinded = session.id in hidden
         summaries.append(_summary(session, protocol, version, code, sequence, blinded=blinded))
     return summaries
 
@@ -114,7 +116,7 @@ def event_views(db: Session, session: StudySession, caller: Caller) -> list[Even
     for row in events_of(db, session.id):
         data = json.loads(row.payload)
         if blinded:
-            data.pop("latency_ms", None)
+            data = without_condition(data)
         views.append(
             EventView(
                 seq=row.seq,

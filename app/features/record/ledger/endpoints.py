@@ -10,7 +10,7 @@ from app.features.design.studies import newest_version, protocol_of, study_by_ke
 from app.features.record.ledger.schemas import AttemptView, Kind, LedgerView, SequenceRow, SlotRow
 from app.features.record.ledger.service import SlotView, end_reason, ledger_of, planned_slots
 from app.models import SlotAttempt
-from app.platform.access import Caller, is_blind
+from app.platform.access import hidden_sessions, is_blind
 from app.platform.dependencies import Reading, SignedIn
 
 router = APIRouter(tags=["participants"])
@@ -21,9 +21,10 @@ GIVEN_UP = ("aborted", "withdrawn")
 def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -> LedgerView:
     """Every slot with its attempts; before the first join, the slots as they will be.
 
-    In a blinded study only the orders of completed slots are told, and to operators none.
+    In a blinded study only the orders are told that are known by now, and to operators none.
     """
-    version = newest_version(db, study_by_key(db, key))
+    study = study_by_key(db, key)
+    version = newest_version(db, study)
     protocol = protocol_of(version)
     latency_ms = {condition.key: condition.latency_ms for condition in protocol.conditions}
     slots = ledger_of(db, version, kind)
@@ -38,21 +39,24 @@ def get_ledger(key: str, db: Reading, caller: SignedIn, kind: Kind = "people") -
         )
         for index, (sequence, replicate) in enumerate(planned_slots(protocol))
     ]
-    blinded = is_blind(db, caller, protocol, None)
+    hidden = hidden_sessions(db, study, caller)
+    # A slot that is free is for a session of the newest version.
+    free = is_blind(db, caller, protocol, None)
+    blinded = free or bool(hidden)
     return LedgerView(
         kind=kind,
         seed=None if blinded else protocol.orders.seed,
         when_full=protocol.orders.when_full,
         started=bool(slots),
         sequences=None if blinded else _sequences(rows),
-        slots=[_hidden(row, caller) for row in rows] if blinded else rows,
+        slots=[
+            row.model_copy(update={"sequence": None})
+            if (free and (row.state == "free" or caller.role == "operator"))
+            or any(attempt.session_id in hidden for attempt in row.attempts)
+            else row
+            for row in rows
+        ],
     )
-
-
-def _hidden(row: SlotRow, caller: Caller) -> SlotRow:
-    """A slot of a blinded study: its order is told once it is completed, and never to operators."""
-    told = row.state == "completed" and caller.role != "operator"
-    return row if told else row.model_copy(update={"sequence": None})
 
 
 def _row(db: Session, view: SlotView, latency_ms: dict[str, float]) -> SlotRow:

@@ -1,7 +1,7 @@
 """One session's receipt, made from the record at the moment it is asked for."""
 
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import asdict, dataclass, replace
+from typing import Any, Self
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
@@ -43,6 +43,10 @@ class SessionReceipt:
     def as_json(self) -> dict[str, Any]:
         """For machines."""
         return asdict(self)
+
+    def without_latencies(self) -> Self:
+        """For who must not know the session's condition."""
+        return replace(self, achieved_latency=())
 
 
 def receipt_of(db: Session, session_id: str) -> SessionReceipt:

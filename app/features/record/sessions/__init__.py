@@ -40,7 +40,13 @@ from app.features.record.sessions.engine.commands import (
     RetractRefusal,
     SubmitForm,
 )
-from app.features.record.sessions.journal import ChainCheck, canonical, events_of, verify_chain
+from app.features.record.sessions.journal import (
+    ChainCheck,
+    canonical,
+    events_of,
+    verify_chain,
+    without_condition,
+)
 from app.features.record.sessions.service import (
     apply_command,
     is_repeated,
@@ -99,4 +105,5 @@ __all__ = [
     "state_of",
     "store_content",
     "verify_chain",
+    "without_condition",
 ]

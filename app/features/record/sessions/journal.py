@@ -6,9 +6,10 @@ row that was edited, removed or put in.
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from typing import Any
 
 from sqlalchemy import bindparam, insert, select
 from sqlalchemy.orm import Session
@@ -18,6 +19,8 @@ from app.features.record.sessions.engine import Event, event_from_json, event_to
 from app.models import SessionEvent
 
 FIRST_HASH = "0" * 64
+TELLS_CONDITION = frozenset({"latency_ms"})
+"""Fields of events that say what the session's condition is."""
 _APPENDED = insert(SessionEvent)
 _HASH_AT = select(SessionEvent.hash).where(
     SessionEvent.session_id == bindparam("session_id"), SessionEvent.seq == bindparam("seq")
@@ -95,6 +98,11 @@ def verify_chain(rows: Sequence[SessionEvent], *, version: int | None = None) ->
     if version is not None and version != len(rows):
         return ChainCheck(ok=False, events=len(rows), broken_at=min(version, len(rows)) + 1)
     return ChainCheck(ok=True, events=len(rows))
+
+
+def without_condition(payload: Mapping[str, Any]) -> dict[str, Any]:
+    """An event's payload for who must not know the session's condition."""
+    return {name: value for name, value in payload.items() if name not in TELLS_CONDITION}
 
 
 def canonical(value: object) -> str:

@@ -29,6 +29,7 @@ from app.features.results.analysis.tables import (
 )
 from app.features.results.analysis.tables.context import Contexts, phase_limbs, shared_contexts
 from app.models import InstrumentVersion
+from app.platform.access import hidden_sessions
 from app.protocol import StudyProtocol
 from app.science.instruments import Instrument
 
@@ -65,13 +66,15 @@ class Tables(dict[str, pd.DataFrame]):
 class Material:
     """The tables of a study's sessions of one kind, every row, valid or not.
 
-    `instruments` by (key, version). `tables` by the names in `READ`.
+    `instruments` by (key, version). `tables` by the names in `READ`. `hidden`: sessions whose
+    condition must not be known, whichever version of the study they ran.
     """
 
     protocol: StudyProtocol
     kind: DashboardKind
     tables: Tables
     instruments: Mapping[tuple[str, int], Instrument]
+    hidden: frozenset[str] = frozenset()
 
     @property
     def sessions(self) -> pd.DataFrame:
@@ -126,13 +129,13 @@ class Material:
     @property
     def blinded(self) -> bool:
         """Whether those who run sessions must not know the latencies."""
-        return self.protocol.blinding.operator
+        return self.protocol.blinding.operator or bool(self.hidden)
 
     @property
     def visible(self) -> pd.DataFrame:
         """The sessions whose measures are shown: of a blinded study those that are completed."""
-        done = self.sessions["status"] == "completed"
-        return self.sessions[done] if self.blinded else self.sessions
+        known = self.sessions[~self.sessions["session_id"].isin(list(self.hidden))]
+        return known[known["status"] == "completed"] if self.blinded else known
 
     def chosen(self, chosen: FigureFilter) -> "Material":
         """What a filter leaves; rows stay as they are, valid or not."""
@@ -184,8 +187,10 @@ class _Reader:
 
     def material(self) -> Material:
         """Without a table yet; raises NotFound for an unknown study."""
-        protocol = protocol_of(newest_version(self.db, study_by_key(self.db, self.study_key)))
-        return Material(protocol, self.kind, Tables(self._read), _instruments(self.db))
+        study = study_by_key(self.db, self.study_key)
+        protocol = protocol_of(newest_version(self.db, study))
+        instruments, hidden = _instruments(self.db), hidden_sessions(self.db, study)
+        return Material(protocol, self.kind, Tables(self._read), instruments, hidden)
 
     def _read(self, name: str) -> pd.DataFrame:
         with shared_contexts(self.contexts):

@@ -181,7 +181,8 @@ class ExportDesk(Part):
             job.ended_ns = self.clock.monotonic_ns()
             if isinstance(result, Made) and not job.given_up:
                 job.size_bytes, job.sha256 = result.size_bytes, result.sha256
-                job.sessions, job.made_at = result.sessions, self.clock.utc_now()
+                job.sessions, job.revealed = result.sessions, result.revealed
+                job.made_at = self.clock.utc_now()
                 job.state = "ready"
                 self._forget_later()
                 return

@@ -1,10 +1,11 @@
 """Exports over HTTP: sent while they are made, or ordered as files, watched and fetched."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from datetime import datetime
 
 from fastapi import APIRouter
 from fastapi.responses import FileResponse, StreamingResponse
+from sqlalchemy import select
 from sqlalchemy.orm import Session
 from starlette.concurrency import run_in_threadpool
 
@@ -17,8 +18,8 @@ from app.features.results.exports.desk import ExportDesk
 from app.features.results.exports.jobs import Job
 from app.features.results.exports.names import archive_name
 from app.features.results.exports.schemas import ExportView, ExportWish
-from app.models import Participant, Study
-from app.platform.access import Caller, require_object, session_by_id
+from app.models import Participant, Study, StudySession
+from app.platform.access import Caller, require_object, revealed_sessions, session_by_id
 from app.platform.context import AppContext
 from app.platform.dependencies import FREES_SPACE, Context, Reading, SignedIn, Writing
 
@@ -41,7 +42,9 @@ def get_export(
     study = study_by_key(db, key)
     now = context.clock.utc_now()
     _put_on_record(
-        db, caller.actor, study, kind, now, {"kind": kind}, sessions=sessions_in(db, study, kind)
+        *(db, caller.actor, study, kind, now, {"kind": kind}),
+        revealed=_revealed(db, study, kind),
+        sessions=sessions_in(db, study, kind),
     )
     pieces = study_archive(context.database, study.key, kind, now=now)
     name = archive_name(study.key, kind, now.date())
@@ -141,6 +144,7 @@ def _put_job_on_record(db: Session, context: AppContext, caller: Caller, job: Jo
     details = {"kind": job.kind, "session": job.session_id}
     _put_on_record(
         *(db, caller.actor, study, job.kind, now, details),
+        revealed=job.revealed,
         sessions=job.sessions,
         size_bytes=job.size_bytes,
     )
@@ -154,10 +158,14 @@ def _put_on_record(
     now: datetime,
     details: Mapping[str, str | None],
     *,
+    revealed: Collection[str],
     sessions: int,
     size_bytes: int | None = None,
 ) -> None:
-    """The copy that leaves now, before its first byte: what breaks off has left, too."""
+    """The copy that leaves now, before its first byte: what breaks off has left, too.
+
+    `revealed`: sessions of a blinded study whose condition it tells although they are not over.
+    """
     record_copy(
         db,
         kind="export",
@@ -170,4 +178,13 @@ def _put_on_record(
         size_bytes=size_bytes,
     )
     subject = f"study:{study.key}"
-    record(db, actor=actor, action="study.exported", subject=subject, details=details, now=now)
+    told = {**details, **({"revealed": sorted(revealed)} if revealed else {})}
+    record(db, actor=actor, action="study.exported", subject=subject, details=told, now=now)
+
+
+def _revealed(db: Session, study: Study, kind: Kind) -> frozenset[str]:
+    revealed = revealed_sessions(db, study)
+    if not revealed:
+        return revealed
+    wanted = StudySession.kind == kind if kind != "all" else StudySession.kind != "expert"
+    return revealed & frozenset(db.scalars(select(StudySession.id).where(wanted)))

@@ -38,6 +38,7 @@ class Job:
     size_bytes: int = 0
     sha256: str | None = None
     sessions: int = 0
+    revealed: frozenset[str] = frozenset()
     made_at: datetime | None = None
     fetched_at: datetime | None = None
     recorded: bool = False

@@ -30,11 +30,15 @@ class Order:
 
 @dataclass(frozen=True)
 class Made:
-    """A complete file: its size, its hash, and how many sessions it holds."""
+    """A complete file: its size, its hash, and how many sessions it holds.
+
+    `revealed`: those of a blinded study that were not completed and tell their condition.
+    """
 
     size_bytes: int
     sha256: str
     sessions: int
+    revealed: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)

@@ -39,11 +39,13 @@ from app.features.results.analysis.tables import (
     sessions_table,
 )
 from app.features.results.exports.names import receipt_path, samples_path
+from app.features.results.exports.writing.blinding import without_conditions
 from app.features.results.exports.writing.cells import csv_pieces
 from app.features.results.exports.writing.readme import FileCount, Origin, readme_text
 from app.features.results.exports.writing.samples import SampleFile
 from app.features.results.imports import import_files
 from app.models import Study, StudyVersion
+from app.platform.access import hidden_sessions, revealed_sessions
 
 TABLE_FILES: dict[str, Callable[[Session, str, Kind], pd.DataFrame]] = {
     "sessions": sessions_table,
@@ -82,7 +84,9 @@ class Member:
 class Contents:
     """The members of one export. Iterate once; `files` and `sessions` fill as members are used.
 
-    `only`: leave out every session but these, as for one participant's own copy.
+    `only`: leave out every session but these, as for one participant's own copy. Of sessions in
+    `hidden` nothing is written that tells their condition, whoever the copy is for; `revealed` are
+    those that are not completed and whose condition is told, since somebody had it shown.
     """
 
     db: Session
@@ -93,19 +97,23 @@ class Contents:
     files: list[FileCount] = field(default_factory=list)
     sessions: int = 0
     audit_head: TrailHead = field(init=False)
+    hidden: frozenset[str] = field(init=False)
+    revealed: frozenset[str] = field(default=frozenset(), init=False)
 
     def __post_init__(self) -> None:
         self.audit_head = head_of(self.db)
+        self.hidden = hidden_sessions(self.db, study_by_key(self.db, self.study_key))
 
     def members(self) -> Iterator[Member]:
         """Tables, codebook, frames and receipt of each session, and the README last."""
-        sessions = self._table(sessions_table)
+        sessions = self._table("sessions", sessions_table)
         self.sessions = len(sessions)
         study = study_by_key(self.db, self.study_key)
         used = {int(number) for number in sessions["study_version"].dropna()}
         rules = has_rules(self.db, study, used)
+        self.revealed = revealed_sessions(self.db, study) & frozenset(sessions["session_id"])
         for name, table in TABLE_FILES.items():
-            frame = sessions if name == "sessions" else self._table(table)
+            frame = sessions if name == "sessions" else self._table(name, table)
             yield self._member(f"{name}.csv", csv_pieces(name, frame, rules=rules))
         equipment = calibrations_table(self.db)
         yield self._member("calibrations.csv", csv_pieces("calibrations", equipment))
@@ -113,7 +121,9 @@ class Contents:
         yield self._member("codebook.csv", csv_pieces("codebook", described))
         rows = sessions[["participant_code", "session_id", "simulated", "avatar"]]
         for code, session_id, simulated, avatar in rows.itertuples(index=False, name=None):
-            samples = SampleFile(self.db, session_id, bool(simulated), avatar)
+            samples = SampleFile(
+                *(self.db, session_id, bool(simulated), avatar), blinded=session_id in self.hidden
+            )
             yield self._member(samples_path(code, session_id), samples.pieces())
             yield self._member(receipt_path(code, session_id), self._receipt(session_id))
         # Apart from every table, since nothing here ran them; a person's own copy is of sessions.
@@ -122,13 +132,18 @@ class Contents:
                 yield self._member(f"imported/{name}", iter([body]))
         yield Member(README, iter([self._readme(study, used, sessions, rules=rules).encode()]))
 
-    def _table(self, table: Callable[[Session, str, Kind], pd.DataFrame]) -> pd.DataFrame:
+    def _table(
+        self, name: str, table: Callable[[Session, str, Kind], pd.DataFrame]
+    ) -> pd.DataFrame:
         frame = table(self.db, self.study_key, self.kind)
-        return frame if self.only is None else frame[frame["session_id"].isin(list(self.only))]
+        own = frame if self.only is None else frame[frame["session_id"].isin(list(self.only))]
+        return without_conditions(name, own, self.hidden)
 
     def _receipt(self, session_id: str) -> Iterator[bytes]:
         """What of the session is there, and the proof; told by this very export's record."""
-        yield json.dumps(receipt_of(self.db, session_id).as_json(), indent=2).encode() + b"\n"
+        receipt = receipt_of(self.db, session_id)
+        told = receipt.without_latencies() if session_id in self.hidden else receipt
+        yield json.dumps(told.as_json(), indent=2).encode() + b"\n"
 
     def _member(self, path: str, pieces: Iterator[bytes]) -> Member:
         return Member(path, self._counted(path, pieces))
@@ -152,5 +167,8 @@ class Contents:
             row.number: row.content_hash for row in versions if not used or row.number in used
         }
         statuses = {str(key): int(n) for key, n in sessions["status"].value_counts().items()}
-        origin = Origin(self.study_key, self.kind, self.now, self.audit_head, hashes, statuses)
+        blinded = int(sessions["session_id"].isin(list(self.hidden)).sum())
+        origin = Origin(
+            self.study_key, self.kind, self.now, self.audit_head, hashes, statuses, blinded
+        )
         return readme_text(origin, self.files, rules=rules)

@@ -69,7 +69,7 @@ def _made(order: Order) -> Made:
     finally:
         database.close()
     order.to.with_suffix(".part").rename(order.to)
-    return Made(progress.bytes, digest.hexdigest(), contents.sessions)
+    return Made(progress.bytes, digest.hexdigest(), contents.sessions, contents.revealed)
 
 
 def watched(members: Iterable[Member], progress: Progress) -> Iterator[Member]:

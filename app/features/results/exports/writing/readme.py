@@ -49,7 +49,8 @@ Reading the files
 class Origin:
     """Where an export comes from: `versions` maps numbers to content hashes.
 
-    `audit_head`: the newest entry of the audit trail at that moment.
+    `audit_head`: the newest entry of the audit trail at that moment. `blinded`: how many of its
+    sessions may not tell their condition yet.
     """
 
     study_key: str
@@ -58,6 +59,7 @@ class Origin:
     audit_head: TrailHead
     versions: Mapping[int, str]
     statuses: Mapping[str, int]
+    blinded: int = 0
 
 
 @dataclass(frozen=True)
@@ -89,6 +91,7 @@ def readme_text(origin: Origin, files: Sequence[FileCount], *, rules: bool = Tru
         + (f" ({statuses})" if statuses else ""),
         f"Audit head        {origin.audit_head}",
         *_warning(origin.kind),
+        *(_blinded(origin.blinded) if origin.blinded else ()),
         "",
     ]
     listing = [
@@ -96,6 +99,15 @@ def readme_text(origin: Origin, files: Sequence[FileCount], *, rules: bool = Tru
         for file in sorted(files, key=lambda file: file.path)
     ]
     return "\n".join([*head, reading, "Files (SHA-256, lines with the header, name)", *listing, ""])
+
+
+def _blinded(sessions: int) -> list[str]:
+    return [
+        "",
+        f"The study is blinded. Of {sessions} of these sessions nobody may know the condition yet:",
+        "their order, condition, latencies and hashes are empty; contacts, completions, joint",
+        "errors and the avatar's frames are left out. Export again once the order is known.",
+    ]
 
 
 def _warning(kind: str) -> list[str]:

@@ -58,22 +58,26 @@ def shortest_doubles(values: NDArray[np.float32]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class SampleFile:
-    """A session's file: `pieces()` reads it from the database as it goes; `rows` counts."""
+    """A session's file: `pieces()` reads it from the database as it goes; `rows` counts.
+
+    `blinded`: without the avatar's frames, which lag behind the participant's by the latency.
+    """
 
     db: Session
     session_id: str
     simulated: bool
     avatar: str
+    blinded: bool = False
 
     def pieces(self) -> Iterator[bytes]:
         """The file in pieces of about a second of movement."""
         yield (",".join(column.name for column in columns_of("samples")) + "\n").encode()
         start = f"{'true' if self.simulated else 'false'},{self.avatar},"
         for epoch in self._epochs():
-            target, actual = (
-                iter_frames(self.db, self.session_id, stream, epoch)
-                for stream in (StreamName.TARGET, StreamName.ACTUAL)
-            )
+            target = iter_frames(self.db, self.session_id, StreamName.TARGET, epoch)
+            actual = iter_frames(self.db, self.session_id, StreamName.ACTUAL, epoch)
+            if self.blinded:
+                actual = iter(())
             for rows in paired_rows(target, actual):
                 yield _csv(rows, f"{start}{epoch},".encode())
 

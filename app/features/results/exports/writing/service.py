@@ -23,13 +23,17 @@ from app.platform.half_made import Notes, made_beside
 
 @dataclass(frozen=True)
 class Exported:
-    """What was written where, and the head of the audit trail then."""
+    """What was written where, and the head of the audit trail then.
+
+    `revealed`: sessions of a blinded study that are not completed and tell their condition.
+    """
 
     to: Path
     kind: Kind
     sessions: int
     files: int
     audit_head: TrailHead
+    revealed: frozenset[str] = frozenset()
 
 
 def export_study(
@@ -52,7 +56,14 @@ def export_study(
     contents = Contents(db, study_key, kind, now)
     beside = partial(made_beside, "export", now=now, notes=notes, study_key=study_key)
     write_folder(contents.members(), to, beside=beside, progress=progress)
-    return Exported(to, kind, contents.sessions, len(contents.files) + 1, contents.audit_head)
+    return Exported(
+        to,
+        kind,
+        contents.sessions,
+        len(contents.files) + 1,
+        contents.audit_head,
+        contents.revealed,
+    )
 
 
 def study_archive(
