@@ -3,9 +3,9 @@
 from _pytest.terminal import TerminalReporter
 
 from tests.faults.figures import as_table, noted, save
-from tests.features.conftest import lab
+from tests.features.conftest import fresh_lab, lab
 
-__all__ = ["lab"]
+__all__ = ["fresh_lab", "lab"]
 
 
 def pytest_terminal_summary(terminalreporter: TerminalReporter) -> None:

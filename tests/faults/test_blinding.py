@@ -17,20 +17,28 @@ import pytest
 from app.platform.policy import POLICY
 from app.rehearsal.cast import Cast, perform
 from app.rehearsal.rehearse import RehearsalPlan, assembled
+from tests.faults.blinded_world import (
+    HEAVY,
+    REVEALED,
+    TAKEN_AGAIN,
+    Search,
+    build_world,
+    call_errors,
+    canaries,
+    fetch,
+    fetch_jobs,
+    get_routes,
+    listen,
+    people,
+)
 from tests.faults.figures import note
 from tests.faults.short_study import KEY, ONE_LATENCY_LESS, PHASE_S, ROAM_S
+from tests.features.lab import Lab, ok
 from tests.protocol.helpers import edited
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
-CANARIES = re.compile(
-    rb"(?<![0-9a-f.])(?:0?\.?137[.]?25|0?\.?262[.]?5)(?:0{0,3}(?![0-9])|0{4})|canary", re.IGNORECASE
-)
-"""Both latencies in ms and s, and what their conditions are called.
-
-A number begins where they begin: the microseconds of a time of day and the middle of an identifier
-hold every sequence of four digits sooner or later. It ends where they end, but for zeros and the
-rounding behind them: a headset's clock passes 137.256 s.
-"""
+CANARIES = canaries((137.25, 262.5), more=("canary",))
+"""Both latencies in ms and s, and what their conditions are called."""
 LOOK_EVERY_S = 0.02
 SPEED = 16.0
 PAGES = ("/", "/tablet")
@@ -199,3 +207,42 @@ def test_a_blinded_operator_cannot_find_the_condition(tmp_path: Path) -> None:
     assert any(b"event: telemetry" in body for _, body in operator.heard)
     assert operator.leaks() == []
     assert analyst.leaks(), "the search finds a condition where it may be known"
+
+
+QUICK = ("active", "aborted", TAKEN_AGAIN, "completed", REVEALED)
+"""Of the statuses those that differ in who may know; `./run bench blinding` has all of them."""
+
+
+@pytest.mark.one_engine
+def test_nobody_who_must_not_know_gets_a_condition_by_any_way_out(fresh_lab: Lab) -> None:
+    """Every route of a study or session, archives unpacked, sockets and errors, by every role."""
+    all_ = build_world(fresh_lab, QUICK)
+    search = Search()
+    routes = [one for one in get_routes(fresh_lab) if not any(part in one for part in HEAVY)]
+    for role, client in people(fresh_lab).items():
+        fetch(search, role, client, all_, routes)
+        call_errors(search, role, client, all_)
+        listen(fresh_lab, search, role, client, all_[0])
+    note(33, "blinded study, every role", "answers and files searched", search.fetched.total())
+    note(33, "blinded study, every role", "leaks", len(search.leaks))
+    assert search.leaks == []
+    assert search.found_where_known > 0, "the search finds a condition where it may be known"
+
+
+def test_a_copy_with_a_condition_of_an_open_session_is_on_record(fresh_lab: Lab) -> None:
+    """Export, file and a participant's own copy say which session it was, who took it and when."""
+    revealed, hidden = build_world(fresh_lab, (REVEALED, "active"))
+    reader = people(fresh_lab)["experimenter"]
+    fetch_jobs(Search(), "experimenter", reader, [revealed])
+    for one in (revealed, hidden):
+        base = f"/api/studies/{one.key}"
+        assert reader.get(f"{base}/export").is_success
+        assert reader.get(f"{base}/participants/{one.participant_ids[0]}/access").is_success
+    entries = ok(fresh_lab.operator.get("/api/audit"))["entries"]
+    copies = [one for one in entries if one["action"] in ("study.exported", "participant.copied")]
+    told = [one["details"].get("revealed") for one in copies]
+    assert told.count([revealed.session_ids[0]]) == 4
+    assert told.count(None) == 2
+    assert {one["actor"].partition("-")[0] for one in copies} == {"account:experimenter"}
+    events = ok(fresh_lab.operator.get(f"/api/sessions/{revealed.session_ids[0]}/events"))
+    assert [one["by"] for one in events if one["type"] == "blinding_lifted"] == ["account:admin"]

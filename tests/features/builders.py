@@ -37,9 +37,9 @@ def build_study(db: Session) -> str:
     return STUDY
 
 
-def build_session(db: Session, spec: SessionSpec) -> StudySession:
+def build_session(db: Session, spec: SessionSpec, study: str = STUDY) -> StudySession:
     """A session with its forms, phases, contacts, completions, joint errors and events."""
-    version = newest_version(db, study_by_key(db, STUDY))
+    version = newest_version(db, study_by_key(db, study))
     slot = take_slot(db, version, protocol_of(version), spec.kind, NOW)
     participant = Participant(
         study_id=version.study_id, kind=spec.kind, code=spec.code, created_at=NOW
