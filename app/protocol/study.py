@@ -45,7 +45,8 @@ Language = Annotated[
 class Blinding(Strict):
     """Who must not know the condition. The participant is never told.
 
-    `operator`: the console then hides the condition and its order until the session is over.
+    `operator`: conditions and orders are then hidden, from operators for good, from everybody else
+    until the session that holds the slot is completed.
     """
 
     operator: bool

@@ -231,9 +231,9 @@ def _reveal(lab: Lab, db: Session, session: StudySession) -> None:
     apply_command(db, lab.context, session, LiftBlinding(content=made), actor="account:admin")
 
 
-def people(lab: Lab) -> dict[str, TestClient]:
-    """Somebody of every role."""
-    return {role: sign_in(lab, role) for role in ROLES}
+def people(lab: Lab, roles: Sequence[str] = ROLES) -> dict[str, TestClient]:
+    """Somebody of each role."""
+    return {role: sign_in(lab, role) for role in roles}
 
 
 def fetch(

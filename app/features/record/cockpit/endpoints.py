@@ -3,6 +3,7 @@
 from fastapi import APIRouter
 from sqlalchemy import select
 
+from app.errors import Conflict
 from app.features.design.studies import study_by_key
 from app.features.record.cockpit.commands import command_of, reason_given
 from app.features.record.cockpit.schemas import (
@@ -112,9 +113,10 @@ def get_events(session_id: str, db: Reading, caller: SignedIn) -> list[EventView
 def post_reveal(
     session_id: str, request: Reveal, db: Writing, context: Context, caller: SignedIn
 ) -> SessionView:
-    """Show a blinded session's condition before it is over, for a reason that goes on record.
+    """Show a blinded session's condition before it is known, for a reason that goes on record.
 
-    Asking again changes nothing. An operator stays blind.
+    Asking again changes nothing. An operator stays blind. Raises Conflict where another session has
+    this one's slot by now: its condition would be shown, too.
     """
     session = session_by_id(db, session_id, lock=True)
     reason = reason_given(request.reason, "showing the condition")
@@ -128,6 +130,12 @@ def post_reveal(
             now=context.clock.utc_now(),
         )
         apply_command(db, context, session, LiftBlinding(content=content), actor=caller.actor)
+        if is_blind(db, caller, protocol_of_session(db, session), session):
+            raise Conflict(
+                "another session has this one's place in the ledger, and with it the same order",
+                value=session.status,
+                remedy="Show the condition of that session, or wait until it is completed.",
+            )
     return session_view(db, context, session, caller)
 
 

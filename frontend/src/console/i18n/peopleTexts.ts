@@ -13,9 +13,9 @@ export const peopleEn = {
   "role.operator.may": "Create and run sessions, pair devices, enter answers.",
   "role.analyst.may": "Read sessions, dashboards and protocols; export pseudonymous data.",
   "role.admin.not":
-    "In a blinded study: a session's condition before it is over, unless a reason is on record.",
+    "In a blinded study: a session's condition before its order is known, unless a reason is on record.",
   "role.experimenter.not":
-    "People and audit trail. In a blinded study: a condition before the session is over, unless a reason is on record.",
+    "People and audit trail. In a blinded study: a condition before its order is known, unless a reason is on record.",
   "role.operator.not":
     "Dashboards, exports, protocols. In a blinded study: any condition, not even afterwards.",
   "role.analyst.not": "Changing anything: no commands, no studies, no people.",
@@ -127,9 +127,9 @@ export const peopleDe: Readonly<Record<keyof typeof peopleEn, string>> = {
   "role.analyst.may":
     "Sitzungen, Auswertung und Studienprotokolle lesen; pseudonyme Daten exportieren.",
   "role.admin.not":
-    "In einer verblindeten Studie: die Bedingung einer Sitzung vor ihrem Ende, außer mit Grund in den Akten.",
+    "In einer verblindeten Studie: die Bedingung einer Sitzung, bevor ihre Reihenfolge bekannt ist, außer mit Grund in den Akten.",
   "role.experimenter.not":
-    "Personen und Prüfpfad. In einer verblindeten Studie: eine Bedingung vor dem Ende der Sitzung, außer mit Grund in den Akten.",
+    "Personen und Prüfpfad. In einer verblindeten Studie: eine Bedingung, bevor ihre Reihenfolge bekannt ist, außer mit Grund in den Akten.",
   "role.operator.not":
     "Auswertung, Export, Studienprotokolle. In einer verblindeten Studie: jede Bedingung, auch danach.",
   "role.analyst.not": "Etwas ändern: keine Befehle, keine Studien, keine Personen.",

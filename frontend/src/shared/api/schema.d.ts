@@ -1272,9 +1272,10 @@ export interface paths {
         readonly put?: never;
         /**
          * Post Reveal
-         * @description Show a blinded session's condition before it is over, for a reason that goes on record.
+         * @description Show a blinded session's condition before it is known, for a reason that goes on record.
          *
-         *     Asking again changes nothing. An operator stays blind.
+         *     Asking again changes nothing. An operator stays blind. Raises Conflict where another session has
+         *     this one's slot by now: its condition would be shown, too.
          */
         readonly post: operations["post_reveal_api_sessions__session_id__reveal_post"];
         readonly delete?: never;
@@ -1749,7 +1750,7 @@ export interface paths {
          * Get Ledger
          * @description Every slot with its attempts; before the first join, the slots as they will be.
          *
-         *     In a blinded study only the orders of completed slots are told, and to operators none.
+         *     In a blinded study only the orders are told that are known by now, and to operators none.
          */
         readonly get: operations["get_ledger_api_studies__key__ledger_get"];
         readonly put?: never;
