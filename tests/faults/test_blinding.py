@@ -232,6 +232,7 @@ def test_nobody_who_must_not_know_gets_a_condition_by_any_way_out(fresh_lab: Lab
     assert search.found_where_known > 0, "the search finds a condition where it may be known"
 
 
+@pytest.mark.one_engine
 def test_a_copy_with_a_condition_of_an_open_session_is_on_record(fresh_lab: Lab) -> None:
     """Export, file and a participant's own copy say which session it was, who took it and when."""
     revealed, hidden = build_world(fresh_lab, (REVEALED, "active"))
