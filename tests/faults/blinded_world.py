@@ -259,8 +259,11 @@ def _paths(route: str, one: Canaried) -> Iterator[str]:
     of_study = route.startswith("/api/studies/{key}")
     base = route.replace("{key}", one.key if of_study else "karas2020")
     for session_id, participant_id in zip(one.session_ids, one.participant_ids, strict=True):
-        ids = {**IDS, "session_id": session_id, "participant_id": participant_id}
-        yield re.sub(r"\{(\w+)\}", lambda found, ids=ids: ids.get(found[1], NOBODY), base)
+        path = base
+        for name in re.findall(r"\{(\w+)\}", base):
+            ids = {**IDS, "session_id": session_id, "participant_id": participant_id}
+            path = path.replace(f"{{{name}}}", ids.get(name, NOBODY))
+        yield path
         if "{session_id}" not in base and "{participant_id}" not in base:
             return
 

@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator
 
 import pytest
-from click.testing import Result
+from typer.testing import Result
 
 from tests.cli.invoked import Invoked
 from tests.faults.short_study import add_short_study
