@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 WAIT_S = 5.0
 """How long a command that ends by itself is waited for."""
 TRY_EVERY_S = 0.1
-LOOK_EVERY_S = 2.0
+LOOK_EVERY_S = 1.0
 OWNER = "owner"
 """The name of the watch among what runs in the background."""
 

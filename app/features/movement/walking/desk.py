@@ -105,7 +105,7 @@ class FittingDesk(Part):
         fit = _Fit(model_id, order, files)
         with self._lock:
             self._fits[model_id] = fit
-        done = self._maker.submit(self._make, fit)
+        done = self._maker.submit(self._make_or_fail, fit)
         done.add_done_callback(lambda one: self.background.watched(QUEUE, one))
 
     def halt(self, model_id: str) -> None:
@@ -134,6 +134,14 @@ class FittingDesk(Part):
         if fit is not None and told is not None and told.stage == "waiting":
             return Progress("walks")  # its process is starting
         return told
+
+    def _make_or_fail(self, fit: _Fit) -> None:
+        """Whatever happens, nobody waits for ever; the error is the queue's to be noticed."""
+        try:
+            self._make(fit)
+        except Exception:
+            self._settle(fit, None, BROKE)
+            raise
 
     def _make(self, fit: _Fit) -> None:
         with self._lock:

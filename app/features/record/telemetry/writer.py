@@ -127,6 +127,7 @@ class TelemetryWriter(Part):
         self._wake.set()
 
     def _run(self) -> None:
+        begun_anew = True
         while True:
             self._wake.wait(timeout=1.0)
             self._wake.clear()
@@ -137,8 +138,10 @@ class TelemetryWriter(Part):
                 arrivals, self._waiting = self._waiting, []
             if arrivals:
                 self._store_or_keep(arrivals)
-            self.context.background.well(WRITER)
-            self._record_incidents()
+            if arrivals or begun_anew:
+                self.context.background.well(WRITER)
+                self._record_incidents()
+                begun_anew = False
             if self._stopping and not self._waiting:
                 return
 
