@@ -41,7 +41,8 @@ class Figure:
         """Whether the value keeps to the limit."""
         if self.limit is None:
             return None
-        return self.value <= self.limit if self.peer in AT_MOST else self.value >= self.limit
+        # NumPy's truth values are none of JSON's.
+        return bool(self.value <= self.limit if self.peer in AT_MOST else self.value >= self.limit)
 
     def as_json(self) -> dict[str, Any]:
         """For machines."""
