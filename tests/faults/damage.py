@@ -135,7 +135,7 @@ def _looked_around(client: TestClient, session_id: str) -> Iterator[str]:
 
 
 def _restored(folder: Folder, settings: Settings) -> Iterator[str]:
-    with patch("app.cli.backups.Settings", lambda: settings):
+    with patch("app.cli.backups.read_settings", lambda: settings):
         restore_from(
             folder.backup,
             replace=False,

@@ -1,10 +1,11 @@
 """The operating system's lock on a folder: held by an open file, gone with its process.
 
-The lock is on the file `owner.lock` in the folder, which is never removed, so every path that leads
-to the folder leads to the same lock. Its text says who holds it, and means nothing by itself: what
-counts is the lock. It is `flock`, which belongs to the open file. No process that this one starts
-inherits the file, and a plain fork closes it again, so that a worker which outlives its server
-holds nothing; and closing some other handle, as with POSIX record locks, loses nothing.
+The lock is on the file `owner.lock` in the folder, so every path that leads to the folder leads to
+the same lock. The file stays there, but in a folder that the lock itself has made and nobody has
+used. Its text says who holds it, and means nothing by itself: what counts is the lock. It is
+`flock`, which belongs to the open file. No process that this one starts inherits the file, and a
+plain fork closes it again, so that a worker which outlives its server holds nothing; and closing
+some other handle, as with POSIX record locks, loses nothing.
 """
 
 import errno
@@ -12,6 +13,7 @@ import os
 import sys
 import time
 import weakref
+from contextlib import suppress
 from pathlib import Path
 
 from app.errors import NotDurable
@@ -32,6 +34,7 @@ class FolderLock:
     def __init__(self, folder: Path, owner: Owner) -> None:
         self.folder = folder.resolve()
         self._file, self._owner = self.folder / NAME, owner
+        self._made = [one for one in (self.folder, *self.folder.parents) if not one.exists()]
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             self._handle: int | None = self._taken()
@@ -70,15 +73,31 @@ class FolderLock:
         self.announce(self._owner)
 
     def release(self) -> None:
-        """Let go; the file stays, since removing it would be a race with the next owner."""
+        """Let go. A folder that was made for the lock and has nothing else in it goes, too."""
+        unused = self._handle is not None and bool(self._made) and self._is_empty()
+        with suppress(OSError):
+            if unused:
+                # While it is held: who opened it meanwhile finds that it is not there any more.
+                self._file.unlink()
+        self.forget()
+        with suppress(OSError):
+            if unused:
+                for folder in self._made:
+                    folder.rmdir()
+
+    def forget(self) -> None:
+        """Close the file. In a fork the lock is the parent's, and ends with the parent."""
         handle, self._handle = self._handle, None
         _HOLDING.discard(self)
         if handle is not None:
             os.close(handle)
 
-    def forget(self) -> None:
-        """In a fork: the lock is the parent's, and ends with the parent."""
-        self.release()
+    def _is_empty(self) -> bool:
+        """Whether there is nothing in the folder but the lock."""
+        try:
+            return [one.name for one in self.folder.iterdir()] == [NAME]
+        except OSError:
+            return False
 
     def _taken(self) -> int:
         for _ in range(_TRIES):

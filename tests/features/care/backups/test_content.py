@@ -11,10 +11,10 @@ from sqlalchemy import text
 from app.database import Database, open_database
 from app.errors import InvalidInput
 from app.features.care.backups import RestoredContent
-from app.features.care.backups.manifest import MANIFEST_TABLE, Manifest, read_manifest
+from app.features.care.backups.manifest import Manifest, read_manifest
 from app.features.care.backups.manifest import write_manifest as seal
 from app.features.care.backups.reading import digests, opened_copy
-from app.features.care.backups.shapes import shapes_of
+from app.features.care.backups.shapes import MANIFEST_TABLE, shapes_of
 from tests.features.care.backups.lab import make, put_back
 from tests.features.lab import PASSWORD, Lab, ok, running_lab
 from tests.support.filled import contents

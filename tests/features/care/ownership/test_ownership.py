@@ -81,7 +81,7 @@ def settings(tmp_path: Path) -> Settings:
 
 
 def test_the_second_is_refused_with_process_port_machine_and_time(settings: Settings) -> None:
-    """And goes on as soon as the first has let go; nothing else is written into the folder."""
+    """And goes on as soon as the first has let go; a folder made for nothing else goes with it."""
     with own_data(settings, port=8321), pytest.raises(Owned) as refused:
         own_data(settings, port=8400)
     said = refused.value.message
@@ -92,7 +92,8 @@ def test_the_second_is_refused_with_process_port_machine_and_time(settings: Sett
     assert "REEMBODY_DATA_DIR" in refused.value.remedy
     with own_data(settings) as own:
         assert own.owner.port is None
-    assert [path.name for path in settings.data_dir.iterdir()] == [NAME]
+        assert [path.name for path in settings.data_dir.iterdir()] == [NAME]
+    assert not settings.data_dir.exists()
 
 
 @pytest.mark.parametrize("more", ["", FORKS, SPAWNS])

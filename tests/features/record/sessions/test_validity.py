@@ -95,7 +95,7 @@ def measure(db: Session, session: StudySession, achieved_s: float | None) -> Non
     db.execute(delete(PhaseLatency).where(PhaseLatency.session_id == session.id))
     db.add(measured(phase, achieved_s))
     db.flush()
-    judge_again(db, session)
+    judge_again(db, session, ())
 
 
 def test_a_session_in_which_everything_was_done_counts() -> None:
@@ -190,7 +190,7 @@ def test_a_latency_that_comes_later_decides_again(fresh_lab: Lab) -> None:
     view = lab.join()
     with lab.database.writing() as db:
         session = complete(db, view)
-        judge_again(db, session)
+        judge_again(db, session, ())
         assert session.shortfalls == []
     assert ledger(lab)[0]["state"] == "completed"
     for achieved_s, outcome in ((None, "invalid"), (0.1, "completed")):
