@@ -72,6 +72,7 @@ KNOWN = tuple(
         (
             r"all\.reembody",
             r"data/reembody\.sqlite(-wal|-shm)?",
+            r"data/(owner\.lock|reserve)",
             r"data/erasures\.jsonl",
             r"data/erasure-unfinished",
             r"data/backups/before-(restore|migration)-[^/]*\.reembody",
