@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from app.platform.space_reserve import NAME as RESERVE
 from tests.faults.power.files import Choice, Rng, TracedFile
 from tests.faults.tracing.events import NEVER, Event
 
@@ -49,6 +50,8 @@ class Disk:
 
     def begin(self, event: Event) -> None:
         """A call has begun: from now on it may have happened."""
+        if Path(event.path).name == RESERVE:
+            return  # Room, no data: nobody ever reads it.
         if event.what in ("write", "truncate"):
             name = self._names.get(event.path)
             # A removed file that is still open is nobody's concern.
