@@ -55,7 +55,8 @@ def test_closing_clears_everything_and_says_why() -> None:
 
 def test_every_alarm_has_a_severity() -> None:
     """Only silence, loss, and a person who is unwell, calls or refuses: all cannot wait."""
+    losing = {"silent", "disconnected", "storage", "writer_failed"}
     critical = {code for code, severity in SEVERITIES.items() if severity == "critical"}
     of_person = {"stop_rule_met", "help_asked", "question_asked", "consent_refused"}
-    assert critical == {"silent", "disconnected", "storage"} | of_person
+    assert critical == losing | of_person
     assert GAP.severity == "warning"
