@@ -59,7 +59,7 @@ def test_a_study_from_template_to_second_version(
     page.get_by_role("link", name="Two latencies, hand task").click()
     writer.sees_no_problem()
     assert axe(page) == []
-    page.get_by_label("Key", exact=True).fill("my-study")
+    page.get_by_label("Key", exact=True).first.fill("my-study")
     expect(page.locator(".cm-content")).to_contain_text("key: my-study")
 
     writer.open_section("Conditions")

@@ -52,6 +52,7 @@ def short_study() -> str:
     start, end = text.index("procedure:\n"), text.index("  after:\n")
     text = text[:start] + PROCEDURE + text[end:]
     text = re.sub(r"  - key: latency_125\n.*?(?=  - key)", "", text, flags=re.DOTALL)
+    text = text.replace("    - {phase: foot, min_active_share: 0.9}\n", "")
     text = text.replace("en: Acting through another body", f"en: {TITLE}", 1)
     return text.replace("key: reembodiment-latency", f"key: {STUDY}", 1)
 

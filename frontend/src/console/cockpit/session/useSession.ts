@@ -120,7 +120,7 @@ export function useSession(id: string) {
       [stop, command]
         .filter(({ variables }) => !isOutlived(variables, query.data))
         .map(({ error }) => error)
-        .find((error) => !isTold(error)) ?? null,
+        .find((error) => error !== null && !isTold(error)) ?? null,
     overtaken,
     dismiss: () => {
       command.reset();
