@@ -3,6 +3,7 @@
 import json
 import logging
 import math
+import sqlite3
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -92,7 +93,7 @@ def install_error_handler(app: FastAPI) -> None:
 
 
 def _install_database_handlers(app: FastAPI) -> None:
-    """What the database refuses, in our words: its own would tell of the inside."""
+    """What the database or the disk refuses, in our words: its own would tell of the inside."""
 
     @app.exception_handler(OperationalError)
     def not_now(_: Request, error: OperationalError) -> JSONResponse:
@@ -101,6 +102,12 @@ def _install_database_handlers(app: FastAPI) -> None:
 
     @app.exception_handler(DatabaseError)
     def never(_: Request, error: DatabaseError) -> JSONResponse:
+        _log_refusal(error)
+        return _went_wrong() if explain(error) is None else _not_durable(error)
+
+    @app.exception_handler(sqlite3.Error)
+    @app.exception_handler(OSError)
+    def refused(_: Request, error: Exception) -> JSONResponse:
         _log_refusal(error)
         return _went_wrong() if explain(error) is None else _not_durable(error)
 
@@ -124,16 +131,16 @@ def _install_database_handlers(app: FastAPI) -> None:
         )
 
 
-def _log_refusal(error: DatabaseError) -> None:
+def _log_refusal(error: Exception) -> None:
     trouble = explain(error)
     if trouble is None:
         log.error("the database refused", exc_info=error)
     else:
         # Where it came from was logged when it began; a full disk must not be filled by telling.
-        log.error("a request was refused: %s (%s)", trouble.message, error.orig)
+        log.error("a request was refused: %s (%s)", trouble.message, getattr(error, "orig", error))
 
 
-def _not_durable(error: DatabaseError) -> JSONResponse:
+def _not_durable(error: Exception) -> JSONResponse:
     trouble = explain(error) or BUSY
     message = f"{trouble.message}: nothing was stored or promised"
     return error_response(NotDurable(message, remedy=f"{trouble.remedy} Then try again."))

@@ -73,9 +73,12 @@ _STORAGE_STATES = ("08", "53", "57P", "58", "XX001", "XX002")
 
 
 def explain(error: Exception) -> Trouble | None:
-    """What a refusal of the database means, in words for people; None if storage is not at fault,
-    as in a deadlock, or when a constraint is violated.
+    """What a refusal of the database or the disk means, in words for people.
+
+    None if storage is not at fault, as in a deadlock, or when a constraint is violated.
     """
+    if isinstance(error, OSError):
+        return _BY_ERRNO.get(error.errno or 0)
     origin = error.orig if isinstance(error, DBAPIError) else error
     code = getattr(origin, "sqlite_errorcode", None)
     if isinstance(code, int):

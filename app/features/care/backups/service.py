@@ -1,21 +1,33 @@
 """Backing up and restoring, as the rest of the product asks for it."""
 
+import sqlite3
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
+from types import TracebackType
 from typing import Any, Protocol
 
 from sqlalchemy import Select, column, select, table
+from sqlalchemy.exc import DBAPIError
 from sqlalchemy.orm import Session
 
 from app.clock import Clock
 from app.database import Database
 from app.errors import Conflict
-from app.features.care.backups.reading import Backup, as_newest, opened_backup, require_ours
+from app.features.care.backups.manifest import Manifest
+from app.features.care.backups.reading import (
+    Backup,
+    as_newest,
+    digests,
+    opened_backup,
+    opened_copy,
+    require_ours,
+)
 from app.features.care.backups.restoring import hold_still, is_empty, replace_rows
 from app.features.care.backups.rows import Progress, silent
+from app.features.care.backups.shapes import shapes_of
 from app.features.care.backups.writing import write_backup
 from app.features.people.audit import head_of
 from app.features.record.devices import devices_of_session, revoke
@@ -157,48 +169,68 @@ def restore(
     looks at the rows before they are committed, and refuses them by raising ReembodyError.
     """
     began_ns = clock.monotonic_ns()
-    with database.writing() as db:
+    with _Before(database) as kept, database.writing() as db:
         target = db.connection()
         hold_still(target, backup.shapes)
         if not even_though_active:
             _refuse_if_active(db)
         if erasures is not None:
             erasures.before(db)
-        before = None
         if not is_empty(target, backup.shapes):
-            before = _place_before(backup.path, keep_in, clock.utc_now(), replace=replace)
-            write_backup(target, before, now=clock.utc_now(), progress=progress)
-        with _removed_if_refused(before):
-            replace_rows(target, backup, progress)
-            if content is not None:
-                content(db)
-            reapplied = 0 if erasures is None else erasures.behind(db)
-            unpaired = _unpair_headsets(db, clock.utc_now())
-            db.flush()
+            to = _place_before(backup.path, keep_in, clock.utc_now(), replace=replace)
+            kept.manifest = write_backup(target, to, now=clock.utc_now(), progress=progress)
+            kept.path = to
+        replace_rows(target, backup, progress)
+        if content is not None:
+            content(db)
+        reapplied = 0 if erasures is None else erasures.behind(db)
+        unpaired = _unpair_headsets(db, clock.utc_now())
     return Restored(
         path=backup.path,
         made_at=backup.manifest.made_at,
         rows=sum(table.rows for table in backup.tables.values()),
         duration_s=(clock.monotonic_ns() - began_ns) * _S_PER_NS,
         sha256=backup.manifest.sha256,
-        before=before,
+        before=kept.path,
         unpaired=unpaired,
         erasures_reapplied=reapplied,
     )
 
 
-@contextmanager
-def _removed_if_refused(before: Path | None) -> Iterator[None]:
-    """What was to be replaced stays, so that its backup would be one copy of people's data more.
+@dataclass
+class _Before:
+    """The backup of what a restore replaces; it goes if the restore fails.
 
-    Not around the commit: one that fails may have happened all the same.
+    What was to be replaced is still there then, and the backup would be one copy of people's data
+    more. But a commit that fails may have happened all the same: so it is looked at again.
     """
-    try:
-        yield
-    except BaseException:
-        if before is not None:
-            before.unlink(missing_ok=True)
-        raise
+
+    database: Database
+    path: Path | None = None
+    manifest: Manifest | None = None
+
+    def __enter__(self) -> "_Before":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        _error: BaseException | None,
+        _trace: TracebackType | None,
+    ) -> None:
+        if kind is None or self.path is None:
+            return
+        with suppress(DBAPIError, sqlite3.Error, OSError):
+            if self._is_still_there():
+                self.path.unlink(missing_ok=True)
+
+    def _is_still_there(self) -> bool:
+        """Whether the database holds what it held, seen with a new connection."""
+        if self.path is None or self.manifest is None:
+            return False
+        self.database.engine.dispose()
+        with opened_copy(self.path) as copy, self.database.reading() as db:
+            return digests(db.connection(), shapes_of(copy)) == self.manifest.tables
 
 
 def stamped(folder: Path, name: str, now: datetime) -> Path:

@@ -13,6 +13,7 @@ that leaves.
 
 import logging
 import shutil
+import sqlite3
 import time
 from pathlib import Path
 
@@ -59,11 +60,12 @@ def overwrite(database: Database, settings: Settings, *, starting: bool = False)
     """
     try:
         done = _anew(database, starting=starting)
-    except DBAPIError as error:
-        log.warning("erased rows are still to be overwritten: %s", error.orig)
+        if done:
+            forget_erasure(settings)
+    except (DBAPIError, sqlite3.Error, OSError) as error:
+        words = getattr(error, "orig", error)
+        log.warning("erased rows are still to be overwritten: %s", words)
         return False
-    if done:
-        forget_erasure(settings)
     return done
 
 
