@@ -20,7 +20,8 @@ from app.platform.half_made import Notes, made_beside
 from app.settings import Settings
 notes = Notes.of(Settings(data_dir=Path(sys.argv[1])))
 now = datetime(2026, 11, 21, 6, 11, 8, tzinfo=UTC)
-with made_beside("export", Path(sys.argv[2]), now=now, notes=notes, study_key="pilot") as folder:
+to, study = Path(sys.argv[2]), sys.argv[3]
+with made_beside("export", to, now=now, notes=notes, study_key=study) as folder:
     (folder / "new").mkdir()
     (folder / "new" / "answers.csv").write_text("somebody's")
     os.kill(os.getpid(), signal.SIGKILL)
@@ -37,7 +38,7 @@ def settings(tmp_path: Path) -> Settings:
 
 def killed(settings: Settings, to: Path) -> None:
     """Let a process die while it makes an export."""
-    arguments = [sys.executable, "-c", KILLED, str(settings.data_dir), str(to)]
+    arguments = [sys.executable, "-c", KILLED, str(settings.data_dir), str(to), "pilot"]
     assert subprocess.run(arguments, check=False).returncode == -signal.SIGKILL
 
 

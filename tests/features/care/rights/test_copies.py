@@ -2,13 +2,19 @@
 
 import io
 import json
+import subprocess
+import sys
 import zipfile
+from datetime import UTC, datetime
 from pathlib import Path
 
+from app.platform.half_made import Notes, made_beside
+from app.settings import Settings
 from tests.faults.commands import reembody
 from tests.features.care.rights.visit import erase, in_bytes, make_visit, participant_of
 from tests.features.lab import STUDY, Json, error, ok
 from tests.features.record.headset.site import Site
+from tests.platform.test_half_made import KILLED
 
 
 def copies(site: Site) -> list[Json]:
@@ -58,6 +64,27 @@ def test_an_erasure_lists_the_copies_that_may_hold_the_data(site: Site) -> None:
     remaining = participant_of(site, visit.session_id)["erasure"]["remaining"]
     assert [one["id"] for one in remaining if one["destroyed_at"]] == [own["id"]]
     error(site.operator.post("/api/copies/nothing/destroyed"), 404, "not_found")
+
+
+def test_an_erasure_knows_what_is_half_made(site: Site, tmp_path: Path) -> None:
+    """What a crash left goes; what is being made saw them, and is listed as a copy."""
+    visit = make_visit(site, "copied-6")
+    site.command(visit.session_id, "withdraw", reason="enough")
+    data = site.server.data_dir
+    subprocess.run(
+        [sys.executable, "-c", KILLED, str(data), str(tmp_path / "left"), STUDY], check=False
+    )
+    (left,) = tmp_path.iterdir()
+    settings = Settings(data_dir=data)
+    to = tmp_path / "export"
+    now = datetime.now(UTC)
+    with made_beside("export", to, now=now, notes=Notes.of(settings), study_key=STUDY):
+        shown = ok(site.operator.get("/api/storage"))["half_made"]
+        assert {(one["place"], one["going_on"]) for one in shown} >= {(str(left), False)}
+        places = [one["place"] for one in erase(site, visit)["remaining"]]
+    assert str(to) in places
+    assert str(tmp_path / "left") not in places
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_participants_own_copy_holds_everything_in_their_words(site: Site) -> None:
