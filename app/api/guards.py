@@ -43,7 +43,8 @@ STRANGERS_BODY_BYTES = 16 * 1024
 """A login, a pairing or an invitation takes a few hundred bytes."""
 SOCKET_COST = 10.0
 """A stranger's socket is closed at once, but may have brought a message with its handshake."""
-HELD_S, MOST_HELD = 0.25, 512
+HELD_S, MOST_HELD = 1.0, 512
+"""A held request keeps what of its body came before it was looked at, 64 KiB at most."""
 TOO_LARGE_COST = 10.0
 LARGE_BODY_BYTES = 64 * 1024
 """Above this, looking for characters that cannot be stored is worth a thread."""
@@ -103,20 +104,18 @@ class Guards:
             return
         except ReembodyError as error:
             if isinstance(error, TooManyAttempts):
-                await self._hold(scope)
+                await self._hold()
             await _refuse(scope, receive, send, error)
             return
         await self._app(scope, receive, send)
 
-    async def _hold(self, scope: Scope) -> None:
+    async def _hold(self) -> None:
         """Let a stranger who asks too much wait for a moment, where that costs next to nothing.
 
-        Whoever asks again as soon as they are answered asks a few times a second then, and not as
-        often as this machine can refuse. A large body would have to be kept meanwhile.
+        Whoever asks again as soon as they are answered asks once a second then, and not as often as
+        this machine can refuse. Nothing more of a body is read meanwhile.
         """
-        declared = Headers(scope=scope).get("content-length", "0")
-        small = declared.isdigit() and int(declared[:20]) <= STRANGERS_BODY_BYTES
-        if not small or self._held >= MOST_HELD:
+        if self._held >= MOST_HELD:
             return
         self._held += 1
         try:

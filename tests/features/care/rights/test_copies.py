@@ -70,7 +70,9 @@ def test_an_erasure_knows_what_is_half_made(site: Site, tmp_path: Path) -> None:
     """What a crash left goes; what is being made saw them, and is listed as a copy."""
     visit = make_visit(site, "copied-6")
     site.command(visit.session_id, "withdraw", reason="enough")
-    data = site.server.data_dir
+    # Notes lie beside the database, which is not in the server's data folder here.
+    file = site.database.engine.url.database if site.database.is_sqlite else None
+    data = Path(file).parent if file else site.server.data_dir
     subprocess.run(
         [sys.executable, "-c", KILLED, str(data), str(tmp_path / "left"), STUDY], check=False
     )
