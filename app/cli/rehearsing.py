@@ -40,7 +40,7 @@ def run_rehearsal(
     Raises ValueError or RuntimeError.
     """
     if url is not None and token is None:
-        raise ValueError("--url needs --token; make one with: reembody token")
+        raise ValueError("--url needs --token; make one with: ./run token")
     if not 0 < speed <= 100:
         raise ValueError(f"a speed of {speed} is not possible; give above 0 and at most 100")
     plan = RehearsalPlan(

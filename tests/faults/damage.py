@@ -59,7 +59,7 @@ class Case:
     @property
     def has_advice(self) -> bool:
         """Whether what was said names the way out."""
-        return "reembody restore FILE" in self.said
+        return "./run restore FILE" in self.said
 
 
 def damaged(folder: Path, rng: np.random.Generator) -> str:

@@ -100,7 +100,7 @@ def test_it_is_put_away_and_a_backup_brings_everything_back(
     said = refusal(server)
     (place,) = (server.data_dir / "quarantine").iterdir()
     assert str(place) in said
-    assert "reembody restore FILE" in said
+    assert "./run restore FILE" in said
     assert checksums(place) == before
     assert not file_of(server).exists()
     assert "the earlier database is damaged" in refusal(server)

@@ -60,7 +60,7 @@ def read_model(path: Path) -> tuple[FittedWalking, FollowingRules, str]:
             tables = {name: archive[name] for name in _TABLES}
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
         raise WalkingError(
-            f"{path}: no model of how people walk ({error}); `reembody walk fit` writes one."
+            f"{path}: no model of how people walk ({error}); `./run walk fit` writes one."
         ) from error
     _check_header(path, header)
     digest = str(header.pop("content_hash", ""))

@@ -42,7 +42,7 @@ def retarget(
         _check(check, as_json=as_json)
         return
     if clip is None or to is None:
-        fail("a clip and --to are needed, as in: reembody retarget walk.bvh --to 165cm")
+        fail("a clip and --to are needed, as in: ./run retarget walk.bvh --to 165cm")
     from app.cli.retarget import output as texts
     from app.cli.retarget.run import RetargetOrder, carry_out
 

@@ -97,7 +97,7 @@ class LabAuthority:
             raise InvalidInput(
                 f"{self.authority_file} cannot be read: {error}",
                 remedy=(
-                    "Put it back from a copy, or run `reembody tls renew --new-authority`; devices"
+                    "Put it back from a copy, or run `./run tls renew --new-authority`; devices"
                     " then install the new certificate"
                 ),
             ) from error

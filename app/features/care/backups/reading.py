@@ -106,7 +106,7 @@ def _refused(path: Path, why: str) -> InvalidInput:
     return InvalidInput(
         f"{path} is not a whole backup of ours: {why}. Nothing was changed",
         value=str(path),
-        valid="a file that `reembody backup` wrote",
+        valid="a file that `./run backup` wrote",
         remedy="Take another copy of this backup, or another backup.",
     )
 

@@ -85,8 +85,8 @@ def refuse_to_begin_unasked(settings: Settings, *, new_database: bool) -> None:
             f"{', '.join(traces)}. No new one was begun",
             value=traces,
             remedy="Put the database back (is its disk there, are the settings the same?), or "
-            f"restore a backup: reembody restore FILE.{_newest_backup(settings)} Or begin an empty "
-            "database, knowing what that means: reembody serve --new-database.",
+            f"restore a backup: ./run restore FILE.{_newest_backup(settings)} Or begin an empty "
+            "database, knowing what that means: ./run serve --new-database.",
         )
 
 
@@ -223,8 +223,8 @@ def _damaged(what: str, place: Path, settings: Settings) -> Damaged:
     return Damaged(
         f"{what}. It is in {place} with its log, unchanged",
         value=str(place),
-        remedy=f"Restore the newest backup: reembody restore FILE.{_newest_backup(settings)} Or "
-        "begin an empty database, knowing what that means: reembody serve --new-database.",
+        remedy=f"Restore the newest backup: ./run restore FILE.{_newest_backup(settings)} Or "
+        "begin an empty database, knowing what that means: ./run serve --new-database.",
     )
 
 

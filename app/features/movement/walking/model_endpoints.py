@@ -85,7 +85,7 @@ async def resume_model(model_id: str, context: Context, caller: SignedIn) -> Mod
 @router.get(
     "/models/{model_id}/file",
     response_class=StreamingResponse,
-    responses={200: binary("The model's file, as `reembody walk` reads it.")},
+    responses={200: binary("The model's file, as `./run walk` reads it.")},
 )
 def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingResponse:
     """The model as a file."""

@@ -30,7 +30,7 @@ export const networkEn = {
   "network.expires.own": "{{date}}. Put a new one in its place before; no restart is needed.",
   "network.uncovered": "Not valid for some addresses of this computer",
   "network.uncovered.body":
-    "{{addresses}}. Devices there are warned. Run “reembody tls renew --new-authority”; each device then installs the new certificate.",
+    "{{addresses}}. Devices there are warned. Run “./run tls renew --new-authority”; each device then installs the new certificate.",
   "network.uncovered.own": "{{addresses}}. Devices that use them are warned.",
   "network.cable": "A headset on a USB cable",
   "network.cable.body":
@@ -78,7 +78,7 @@ export const networkDe: Readonly<Record<keyof typeof networkEn, string>> = {
   "network.expires.own": "{{date}}. Vorher ein neues an seine Stelle legen; ohne Neustart.",
   "network.uncovered": "Für manche Adressen dieses Rechners nicht gültig",
   "network.uncovered.body":
-    "{{addresses}}. Geräte werden dort gewarnt. „reembody tls renew --new-authority“ ausführen; jedes Gerät installiert dann das neue Zertifikat.",
+    "{{addresses}}. Geräte werden dort gewarnt. „./run tls renew --new-authority“ ausführen; jedes Gerät installiert dann das neue Zertifikat.",
   "network.uncovered.own": "{{addresses}}. Geräte, die sie benutzen, werden gewarnt.",
   "network.cable": "Ein Headset am USB-Kabel",
   "network.cable.body":

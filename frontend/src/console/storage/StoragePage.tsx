@@ -85,7 +85,7 @@ function Room({ room }: { readonly room: StorageRoom }): JSX.Element {
             {t("storage.backup")}
           </Title>
           <p className={classes.text}>{t("storage.backup.body")}</p>
-          <Copyable text="reembody backup FILE" />
+          <Copyable text="./run backup FILE" />
           <p className={classes.soft}>{t("storage.backup.docs")}</p>
         </Paper>
         {room.half_made.length > 0 && (

@@ -13985,7 +13985,7 @@ export interface operations {
                     readonly "application/json": components["schemas"]["ErrorBody"];
                 };
             };
-            /** @description The model's file, as `reembody walk` reads it. */
+            /** @description The model's file, as `./run walk` reads it. */
             readonly 200: {
                 headers: {
                     readonly [name: string]: unknown;

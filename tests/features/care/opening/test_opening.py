@@ -127,7 +127,7 @@ def test_a_damaged_database_is_put_away_and_none_is_begun_in_silence(tmp_path: P
     for _ in range(3):
         with pytest.raises(Conflict, match="is damaged") as refused:
             prepare_database(settings, CLOCK)
-        assert "reembody restore FILE" in refused.value.remedy
+        assert "./run restore FILE" in refused.value.remedy
         assert "--new-database" in refused.value.remedy
         assert not file.exists()
     (held,) = (tmp_path / "quarantine").glob("*/reembody.sqlite")

@@ -75,7 +75,7 @@ CODEBOOK: tuple[Column, ...] = (
 PREFACE = """\
 # Data dictionary
 
-Every column of an export (`reembody export`, `codebook.csv`). Generated from the codebook in
+Every column of an export (`./run export`, `codebook.csv`). Generated from the codebook in
 `app/features/results/analysis/codebook`; a test holds it to that.
 
 Missing values are empty cells. Booleans are `true` and `false`, times are UTC in ISO 8601, angles

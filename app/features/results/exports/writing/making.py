@@ -121,5 +121,5 @@ def _no_room(order: Order) -> NotMade:
     return NotMade(
         f"the disk has less than {keep_gb:.1f} GB left, which are kept for running sessions",
         "Free space on the server's disk (the page Storage shows what takes it), or export to"
-        " another disk on the server: reembody export --to FOLDER.",
+        " another disk on the server: ./run export --to FOLDER.",
     )

@@ -39,7 +39,7 @@ Reading the files
   consent_given and consent_at_utc in sessions.csv say that and when consent was given. The signed
   records hold names: they stay with the lab and are in no export.
   Audit head is the newest entry of the lab's audit trail when this was written. The lab proves with
-  it that nothing was cut from the trail since: reembody verify --head SEQ:HASH.
+  it that nothing was cut from the trail since: ./run verify --head SEQ:HASH.
   Rows with phase_kind = practice or free_roam come before the blocks: never analyse them with
   those of tasks.
 """
