@@ -1,11 +1,13 @@
 """Every route of the application, in one place."""
 
 from datetime import datetime
+from functools import lru_cache
 from typing import Any, Literal
 
 from fastapi import APIRouter, FastAPI
 from pydantic import BaseModel
 from sqlalchemy import text
+from starlette.routing import BaseRoute
 
 from app import __version__
 from app.features.care.network.endpoints import router as network
@@ -89,7 +91,15 @@ REFUSALS: dict[int | str, dict[str, Any]] = {
 
 
 def add_routes(app: FastAPI) -> None:
-    """The routes under /api: each part at once, since all routes of a level are built anew."""
+    """The routes under /api. They belong to no application: whichever serves them is in a request's
+    scope, so one process builds them once, however many applications it makes.
+    """
+    app.router.routes.extend(_routes())
+
+
+@lru_cache(maxsize=1)
+def _routes() -> tuple[BaseRoute, ...]:
+    """Each part at once, since all routes of a level are built anew."""
     parts = (
         # Looked through in this order: what comes in crowds first.
         *(tablet, sessions, watching),
@@ -108,11 +118,12 @@ def add_routes(app: FastAPI) -> None:
         ),
         *(walks, walking_models),
     )
-    for part in parts:
-        app.include_router(part, prefix=API_PREFIX, responses=REFUSALS)
     own = APIRouter()
     own.add_api_route("/health", get_health, methods=["GET"], tags=["health"])
-    app.include_router(own, prefix=API_PREFIX, responses=REFUSALS)
+    everything = APIRouter()
+    for part in (*parts, own):
+        everything.include_router(part, prefix=API_PREFIX, responses=REFUSALS)
+    return tuple(everything.routes)
 
 
 def get_health(context: Context) -> Health:
