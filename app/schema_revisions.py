@@ -6,6 +6,8 @@ understand what it finds.
 """
 
 import errno
+import sqlite3
+from contextlib import closing
 from functools import lru_cache
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from alembic.config import Config
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection, column, inspect, select, table
 
+from app.database import make_engine
 from app.resources import migrations_dir
 
 VERSION_TABLE = "alembic_version"
@@ -39,6 +42,39 @@ def migrate_file(file: Path, revision: str = "head") -> None:
     nothing, and whoever then moves or reads the file alone has half of it. Raises OSError for that.
     """
     command.upgrade(alembic_config(f"sqlite:///{file}"), revision)
+    _require_whole(file)
+
+
+def make_file(file: Path, revision: str = "head") -> None:
+    """A new SQLite file with the schema of a revision and nothing in it.
+
+    The steps to it are taken once in a process. Raises OSError or sqlite3.Error where it cannot be
+    written; FileExistsError where there is one.
+    """
+    with file.open("xb") as new:
+        new.write(_empty(newest_revision() if revision == "head" else revision))
+    with closing(sqlite3.connect(file)) as connection:
+        # As whoever works with it would have it; what it is in memory has no log.
+        connection.execute("PRAGMA journal_mode=WAL")
+    _require_whole(file)
+
+
+@lru_cache(maxsize=4)
+def _empty(revision: str) -> bytes:
+    """What a SQLite file with the schema of a revision holds before anything is in it."""
+    config = alembic_config("sqlite://")
+    engine = config.attributes["engine"] = make_engine("sqlite://")
+    try:
+        command.upgrade(config, revision)
+        with engine.connect() as connection:
+            driver = connection.connection.dbapi_connection
+            assert isinstance(driver, sqlite3.Connection)  # noqa: S101 - it is a SQLite engine
+            return driver.serialize()
+    finally:
+        engine.dispose()
+
+
+def _require_whole(file: Path) -> None:
     log = file.with_name(f"{file.name}-wal")
     if log.exists():
         raise OSError(errno.EIO, "its log could not be copied into it", str(file))

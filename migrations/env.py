@@ -5,8 +5,10 @@ a changed schema, because Python's driver used to commit before such statements;
 transactions to `app.database`, so it can.
 """
 
+from typing import Any
+
 from alembic import context
-from sqlalchemy import Connection, text
+from sqlalchemy import Connection, Engine, text
 
 import app.models  # noqa: F401 - registers the tables
 from app.database import Base, make_engine
@@ -15,9 +17,14 @@ LOCK_TIMEOUT = "10s"
 
 
 def run() -> None:
-    """Migrate the database whose address `alembic_config` put into the attributes."""
-    url = context.config.attributes.get("url") or context.config.get_main_option("sqlalchemy.url")
-    engine = make_engine(url).execution_options(reembody_writes=True)
+    """Migrate the database whose address `alembic_config` put into the attributes.
+
+    An `engine` there is used instead, and left open: what is in memory would be gone with it.
+    """
+    attributes = context.config.attributes
+    url: Any = attributes.get("url") or context.config.get_main_option("sqlalchemy.url")
+    given: Engine | None = attributes.get("engine")
+    engine = (given or make_engine(url)).execution_options(reembody_writes=True)
     applied: list[str] = []
     try:
         with engine.connect() as connection:
@@ -36,7 +43,8 @@ def run() -> None:
                 if applied and connection.dialect.name == "sqlite":
                     _check_references(connection)
     finally:
-        engine.dispose()
+        if given is None:
+            engine.dispose()
 
 
 def _prepare(connection: Connection) -> None:

@@ -157,5 +157,5 @@ def usual_limits(monotonic_ns: Callable[[], int]) -> Limits:
         names=RateLimiter(10, 60.0, monotonic_ns),
         sign_ins=RateLimiter(30, 60.0, monotonic_ns),
         codes=RateLimiter(20, 60.0, monotonic_ns),
-        strangers=Budget(1000.0, 20.0, monotonic_ns),
+        strangers=Budget(400.0, 20.0, monotonic_ns),
     )

@@ -69,6 +69,7 @@ def measure(parts: frozenset[str], duration_s: float = DURATION_S, runs: int = R
         "ratio": ratio,
         "ratios": ratios,
         "memory_growth_mib": growth,
+        "peer_memory_growth_mib": max(one.growth_mib for one in peers),
         "answers": dict(answers),
     }
     words = f"{CALLERS} callers beside {SESSIONS} headsets"

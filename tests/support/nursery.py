@@ -20,6 +20,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -214,6 +215,7 @@ def main() -> None:
         ship_studies_from(Path(os.environ[STUDIES]))
     _read_shipped_files()
     _build_routes()
+    _make_a_database()
     if os.environ.get(CHEAP_PASSWORDS):
         make_passwords_cheap()
     wishes, workers = (socket.socket(fileno=int(argument)) for argument in sys.argv[1:])
@@ -267,6 +269,14 @@ def _build_routes() -> None:
     add_routes(app)
     for route in app.routes:
         route.matches({"type": "http", "method": "GET", "path": "/", "headers": []})
+
+
+def _make_a_database() -> None:
+    """The steps to an empty database are taken once in a process."""
+    from app.schema_revisions import make_file
+
+    with tempfile.TemporaryDirectory() as folder:
+        make_file(Path(folder) / "empty.sqlite")
 
 
 if __name__ == "__main__":

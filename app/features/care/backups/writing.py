@@ -14,7 +14,6 @@ from datetime import datetime
 from pathlib import Path
 
 from sqlalchemy import Connection
-from sqlalchemy.exc import DBAPIError
 
 from app import __version__
 from app.errors import Conflict, InvalidInput, NotDurable, NotFound
@@ -24,7 +23,7 @@ from app.features.care.backups.reading import opened_backup, opened_copy
 from app.features.care.backups.rows import Progress, read_rows, silent, sqlite_insert
 from app.features.care.backups.shapes import TableShape, shapes_of, shapes_of_models
 from app.platform.half_made import Notes, made_beside
-from app.schema_revisions import known_revisions, migrate_file, newest_revision, revision_of
+from app.schema_revisions import known_revisions, make_file, newest_revision, revision_of
 
 SPARE_BYTES = 64 * 1024 * 1024
 """What a backup leaves free on its disk, which may be the one that the server writes to."""
@@ -137,9 +136,9 @@ def _told_as_not_durable(to: Path) -> Iterator[None]:
 def _make_tables(file: Path, revision: str) -> None:
     """The product's own schema, as the database that is copied has it."""
     try:
-        migrate_file(file, revision)
-    except DBAPIError as error:
-        raise OSError(str(error.orig)) from error
+        make_file(file, revision)
+    except sqlite3.Error as error:
+        raise OSError(str(error)) from error
 
 
 def shapes_at(revision: str) -> tuple[TableShape, ...]:

@@ -26,8 +26,8 @@ from app.platform.folders import (
 from app.platform.trouble import in_plain_words, plainly
 from app.schema_revisions import (
     known_revisions,
+    make_file,
     migrate,
-    migrate_file,
     newest_revision,
     revision_of,
 )
@@ -271,7 +271,7 @@ def begin(file: Path, clock: Clock) -> None:
             prefix=BEGINNING, dir=folder, ignore_cleanup_errors=True
         ) as beside:
             fresh = Path(beside) / file.name
-            migrate_file(fresh)
+            make_file(fresh)
             flush_to_disk(fresh)
             if not is_there(file):
                 fresh.rename(file)

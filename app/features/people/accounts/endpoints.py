@@ -37,6 +37,8 @@ from app.platform.rate_limit import network_of
 from app.platform.tokens import delete_cookie, hash_token, read_cookie, set_cookie
 
 router = APIRouter(tags=["accounts"])
+REFUSED_SIGN_IN_COST = 5.0
+"""Of what an address may ask for without a login: sixty typing errors in a row use it up."""
 
 
 @router.post("/login", dependencies=[FREES_SPACE])
@@ -57,6 +59,7 @@ def post_login(
         if isinstance(error, Busy):
             context.limits.sign_ins.take_back(network)
             context.limits.names.take_back(f"{network} {name}")
+        context.limits.strangers.charge(network, REFUSED_SIGN_IN_COST)
         checked = isinstance(error, NotSignedIn)
         context.part(RefusedSignIns).note(network, name, checked=checked)
         raise

@@ -1,0 +1,44 @@
+"""A new database: what the steps of the migrations lead to, without taking them each time."""
+
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from app.schema_revisions import known_revisions, make_file, migrate_file
+
+
+def contents(file: Path) -> tuple[set[str], list[object]]:
+    """Words of the schema, in whatever order its constraints are, and what is in the file."""
+    with closing(sqlite3.connect(file)) as connection:
+        schema = connection.execute("SELECT type, name, sql FROM sqlite_master").fetchall()
+        asked = ("journal_mode", "page_size", "auto_vacuum", "encoding", "integrity_check")
+        settings = [connection.execute(f"PRAGMA {one}").fetchone()[0] for one in asked]
+        tables = [name for kind, name, _ in schema if kind == "table"]
+        counts = [connection.execute(f"SELECT count(*) FROM {one}").fetchone()[0] for one in tables]  # noqa: S608 - names of the schema
+    lines = {
+        f"{kind} {name} {line.strip().rstrip(',')}"
+        for kind, name, words in schema
+        for line in (words or "").splitlines()
+    }
+    return lines, [settings, sorted(zip(tables, counts, strict=True))]
+
+
+@pytest.mark.parametrize("revision", [known_revisions()[3], known_revisions()[-1]])
+def test_a_new_file_is_what_the_steps_lead_to(tmp_path: Path, revision: str) -> None:
+    """The same tables, indexes and constraints, the same settings, and nothing in it."""
+    migrate_file(tmp_path / "steps.sqlite", revision)
+    for name in ("first.sqlite", "again.sqlite"):
+        make_file(tmp_path / name, revision)
+        assert contents(tmp_path / name) == contents(tmp_path / "steps.sqlite")
+    assert {one.suffix for one in tmp_path.iterdir()} == {".sqlite"}
+
+
+def test_a_new_file_takes_the_place_of_none(tmp_path: Path) -> None:
+    """What is there stays as it is."""
+    there = tmp_path / "reembody.sqlite"
+    there.write_bytes(b"somebody's")
+    with pytest.raises(FileExistsError):
+        make_file(there)
+    assert there.read_bytes() == b"somebody's"
