@@ -23,7 +23,10 @@ their own plain errors; services translate them into these. One handler (`app.ap
 them into the same JSON for every route.
 """
 
+import errno
+import os
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import ClassVar
 
 
@@ -162,3 +165,40 @@ class NotDurable(ReembodyError):
 
     code = "not_durable"
     status = 503
+
+
+def as_sentences(*parts: str) -> str:
+    """Messages one after the other, each with one full stop at its end; empty ones are left out."""
+    stripped = (part.strip() for part in parts)
+    return " ".join(
+        part if part.endswith((".", "!", "?")) else f"{part}." for part in stripped if part
+    )
+
+
+def missing_file(path: Path) -> str:
+    """That a file is not there, with the folder that was looked into."""
+    folder = path.absolute().parent
+    if folder.is_dir():
+        return f"there is no file {path.name} in {folder}"
+    return f"there is no file {path}: there is no folder {folder}"
+
+
+def file_problem(error: OSError) -> str:
+    """What the operating system refuses about a file, without its numbers and brackets.
+
+    An error that names no file is quoted as it is.
+    """
+    if not isinstance(error.filename, str | bytes):
+        return str(error)
+    path = Path(os.fsdecode(error.filename))
+    match error.errno:
+        case errno.ENOENT:
+            return missing_file(path)
+        case errno.EISDIR:
+            return f"{path} is a folder, where a file is needed"
+        case errno.ENOTDIR:
+            return f"there is no {path}: part of that path is a file, not a folder"
+        case errno.EACCES | errno.EPERM:
+            return f"{path} cannot be opened: your account does not have the permission"
+        case _:
+            return f"{path}: {error.strerror}"

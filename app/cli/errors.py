@@ -8,9 +8,10 @@ that nothing was kept.
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import NoReturn
 
-from app.errors import ReembodyError
+from app.errors import ReembodyError, as_sentences, file_problem
 
 INCOMPLETE, UNUSABLE = 1, 2
 """Exit codes: something of a session is missing; the input or the installation cannot be used."""
@@ -27,6 +28,12 @@ def warn(message: str) -> None:
     print(f"reembody: {message}", file=sys.stderr)
 
 
+def require_folder_of(out: Path | None) -> None:
+    """Refuse a file to write whose folder is missing, before the work; raises ValueError."""
+    if out is not None and not out.absolute().parent.is_dir():
+        raise ValueError(f"--out {out}: there is no folder {out.absolute().parent}")
+
+
 @contextmanager
 def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[None]:
     """Fail with the words of an error of the product, and of those `expected` of the input.
@@ -40,14 +47,14 @@ def reported(*expected: type[Exception], with_valid: bool = False) -> Iterator[N
         valid = ""
         if with_valid and isinstance(error.valid, list):
             valid = f"; valid: {', '.join(error.valid)}"
-        fail(f"{error.message}{valid}. {error.remedy}".strip())
+        fail(as_sentences(f"{error.message}{valid}", error.remedy))
     except expected as error:
-        fail(str(error))
+        fail(file_problem(error) if isinstance(error, OSError) else str(error))
     except Exception as error:
         refused = _refused_by_storage(error)
         if refused is None:
             raise
-        fail(f"{refused.message}. {refused.remedy}")
+        fail(as_sentences(refused.message, refused.remedy))
 
 
 def _refused_by_storage(error: Exception) -> ReembodyError | None:

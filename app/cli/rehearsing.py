@@ -15,8 +15,10 @@ from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 
+import numpy as np
 from httpx2 import Client, HTTPError
 
+from app.rehearsal.body import make_person
 from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, rehearse
 
 START_TIMEOUT_S = 60.0
@@ -43,6 +45,8 @@ def run_rehearsal(
         raise ValueError("--url needs --token; make one with: ./run token")
     if not 0 < speed <= 100:
         raise ValueError(f"a speed of {speed} is not possible; give above 0 and at most 100")
+    # A capture that nobody can move by is refused before a server is started.
+    make_person(np.random.default_rng(seed), capture)
     plan = RehearsalPlan(
         url=url or "",
         study=study,

@@ -13,6 +13,8 @@ from typing import Any
 
 from httpx2 import AsyncClient, HTTPError, Response
 
+from app.errors import as_sentences
+
 Json = dict[str, Any]
 PATIENCE_S = 60.0
 RETRY_S = (0.05, 0.1, 0.2, 0.5, 1.0)
@@ -24,7 +26,7 @@ class ServerRefusedError(RuntimeError):
     """The server said no; the message holds its reason and remedy, `code` its error code."""
 
     def __init__(self, status: int, error: Json) -> None:
-        super().__init__(f"{error.get('message', 'refused')}. {error.get('remedy', '')}".strip())
+        super().__init__(as_sentences(error.get("message", "refused"), error.get("remedy") or ""))
         self.status = status
         self.code = str(error.get("code", ""))
         self.error = error

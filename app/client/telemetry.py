@@ -13,6 +13,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 from app.client.journal import Entry, Journal
+from app.errors import as_sentences
 from app.wire import (
     PROTOCOL_VERSION,
     REPORT_STREAM,
@@ -246,7 +247,7 @@ class TelemetryClient:
 
     def _raise_failure(self) -> None:
         if self.failure is not None:
-            raise TelemetryError(f"{self.failure.message}. {self.failure.remedy}")
+            raise TelemetryError(as_sentences(self.failure.message, self.failure.remedy))
         if self._keeper is not None and self._keeper.done() and not self._keeper.cancelled():
             raise TelemetryError("the connection's keeper has ended") from self._keeper.exception()
 

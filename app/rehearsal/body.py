@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from app.adapters.captures import CaptureError, read_capture_file
+from app.errors import file_problem
 from app.science.retargeting import movement_in_place, propose_joint_map
 from app.science.rig import RigError, RigMotion
 from app.science.simulation import SimulatedParticipant, idle_movement
@@ -31,7 +32,9 @@ def captured_movement(path: Path, skeleton: Skeleton) -> Movement:
         source = skeleton_motion(path)
         joint_map = propose_joint_map(source.rig).joint_map
         return movement_in_place(source, joint_map, skeleton)
-    except (CaptureError, RigError, SkeletonError, OSError) as error:
+    except OSError as error:
+        raise UnusableCapture(file_problem(error)) from error
+    except (CaptureError, RigError, SkeletonError) as error:
         raise UnusableCapture(f"{path} cannot be used: {error}") from error
 
 

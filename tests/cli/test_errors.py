@@ -40,6 +40,15 @@ def test_an_error_without_a_remedy_ends_with_its_message(
     assert _said(capsys, NotFound("it is gone")) == "reembody: it is gone.\n"
 
 
+@pytest.mark.parametrize("end", ["", ".", "!", "?"])
+def test_a_message_and_its_remedy_have_one_stop_each(
+    capsys: pytest.CaptureFixture[str], end: str
+) -> None:
+    """Whether or not whoever wrote them put one."""
+    said = _said(capsys, NotFound(f"it is gone{end}", remedy="Bring it back"))
+    assert said == f"reembody: it is gone{end or '.'} Bring it back.\n"
+
+
 def test_an_expected_error_is_told_in_its_own_words(capsys: pytest.CaptureFixture[str]) -> None:
     """As the operating system puts it."""
     assert _said(capsys, FileNotFoundError("no such file")) == "reembody: no such file\n"

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Literal
 
 from app.adapters.captures import Capture, CaptureError, Reading, read_capture_file
+from app.errors import missing_file
 from app.science.retargeting import (
     REFERENCE_JOINT_MAP,
     Ground,
@@ -97,7 +98,9 @@ def named_avatar_or_file(key: str) -> Rig:
     try:
         return named_avatar(key)
     except ValueError as error:
-        raise ValueError(f"{error} A file with a skeleton is taken too, if it exists.") from error
+        raise ValueError(
+            f"{error} A file with a skeleton is taken too, but {missing_file(Path(key))}."
+        ) from error
 
 
 def reading_of(skeleton: Path | None, unit: float | None, up: str | None) -> Reading:

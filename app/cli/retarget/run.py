@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.adapters.captures import to_bvh, to_csv
+from app.cli.errors import require_folder_of
 from app.cli.retarget.inputs import (
     Clip,
     ground_along,
@@ -106,7 +107,6 @@ def _check_out(order: RetargetOrder) -> None:
         return
     if order.out.suffix.lower() not in _WRITTEN:
         raise ValueError(f"--out {order.out}: names ending with .bvh or .csv are valid")
-    if not order.out.parent.is_dir():
-        raise ValueError(f"--out {order.out}: there is no folder {order.out.parent}")
+    require_folder_of(order.out)
     if order.out.exists() and order.clip.exists() and order.out.samefile(order.clip):
         raise ValueError(f"--out {order.out}: that is the clip itself, give another name")

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from app.cli.errors import require_folder_of
 from app.cli.tune.storage import check_key, lab_database, save_tuned, stored_avatar
 from app.database import Database
 from app.protocol.avatar import avatar_text
@@ -82,6 +83,7 @@ def carry_out(order: TuneOrder) -> Tuned:
     )
     if order.evaluate and (order.save is not None or order.out is not None):
         raise ValueError("--evaluate changes nothing, so there is nothing to --save or write --out")
+    require_folder_of(order.out)
     if order.save is None and order.avatar is None:
         return _carried_out(order, options, None)
     if order.save is not None:

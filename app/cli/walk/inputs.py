@@ -9,6 +9,7 @@ from pathlib import Path
 from app.adapters.captures import CaptureError, read_capture_file
 from app.adapters.walks import load_scene, load_shipped, shipped_scenes
 from app.adapters.walks.track_table import TrackReading, read_tracks
+from app.errors import missing_file
 from app.protocol import ConfigError
 from app.science.rig import RigError
 from app.science.walking.planning import LazyThetaPlanner
@@ -75,7 +76,7 @@ def read_scene(key: str | None) -> Scene | None:
     path = Path(key)
     if not path.exists():
         known = ", ".join(shipped_scenes())
-        raise ValueError(f"--scene {key}: no such file; shipped with the product are {known}.")
+        raise ValueError(f"--scene: {missing_file(path)}; shipped with the product are {known}.")
     try:
         return load_scene(path.read_text(encoding="utf-8-sig"))
     except ConfigError as error:

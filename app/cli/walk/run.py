@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from app.adapters.walks.model_file import read_model, write_model
+from app.cli.errors import require_folder_of
 from app.cli.walk.inputs import People, planned, read_people, read_scene, read_walks
 from app.science.walking.evaluation import Evaluation, evaluate
 from app.science.walking.following import SteeringFollower
@@ -112,8 +113,7 @@ def carry_out_fit(order: FitOrder, progress: Callable[[int, int], None] | None =
     """Fit a model and write it; raises ValueError or OSError, with nothing written."""
     if order.reading not in READINGS:
         raise ValueError(f"--reading {order.reading!r}: {', '.join(READINGS)} are valid")
-    if not order.out.parent.is_dir():
-        raise ValueError(f"--out {order.out}: there is no folder {order.out.parent}")
+    require_folder_of(order.out)
     entries = _entries(order.walks)
     names, left_out = _names(entries)
     people = {entry.walk.subject for entry in entries}

@@ -19,7 +19,7 @@ from typing import Literal, Protocol
 from cryptography import x509
 
 from app.clock import Clock
-from app.errors import InvalidInput, NotAllowed
+from app.errors import InvalidInput, NotAllowed, file_problem, missing_file
 from app.lan.serving.addresses import Address, Machine
 from app.lan.serving.authority import Authority, authority_from_pem, fingerprint, new_authority
 from app.lan.serving.leaf import (
@@ -156,13 +156,22 @@ class OwnFiles:
 
     def current(self, machine: Machine) -> Identity:
         """What the certificate says; raises InvalidInput if it cannot be served."""
+        for file in (self.certificate_file, self.key_file):
+            if not file.exists():
+                raise InvalidInput(
+                    missing_file(file),
+                    value=str(file),
+                    valid="PEM files: the server's certificate followed by its chain; its key",
+                    remedy="Name the right file, or leave both out to use the built-in authority",
+                )
         try:
             certificate = x509.load_pem_x509_certificates(self.certificate_file.read_bytes())[0]
             self.load_into(ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER))
         except (OSError, ValueError) as error:  # ssl.SSLError is an OSError
+            why = file_problem(error) if isinstance(error, OSError) else str(error)
             raise InvalidInput(
                 f"the certificate {self.certificate_file} with the key {self.key_file} cannot be"
-                f" used: {error}",
+                f" used: {why}",
                 valid="PEM files: the server's certificate followed by its chain; its key",
                 remedy="Name the right files, or leave both out to use the built-in authority",
             ) from error

@@ -16,7 +16,7 @@ from typing import Any
 from sqlalchemy import Connection, StaticPool, create_engine
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
-from app.errors import InvalidInput, NotDurable, NotFound
+from app.errors import InvalidInput, NotDurable, NotFound, missing_file
 from app.features.care.backups.content import wrong_rows, wrong_tables
 from app.features.care.backups.digest import TableDigest, digest_of
 from app.features.care.backups.manifest import Manifest, ManifestError, read_manifest
@@ -49,7 +49,7 @@ def opened_backup(path: Path, progress: Progress = silent) -> Iterator[Backup]:
     not of ours. The file is neither changed nor locked.
     """
     if not path.is_file():
-        raise NotFound(f"there is no file {path}", value=str(path))
+        raise NotFound(missing_file(path), value=str(path))
     with closing(sqlite3.connect(_address(path), uri=True, check_same_thread=False)) as driver:
         try:
             manifest = read_manifest(driver)

@@ -16,7 +16,7 @@ from pathlib import Path
 from sqlalchemy import Connection
 
 from app import __version__
-from app.errors import Conflict, InvalidInput, NotDurable, NotFound
+from app.errors import Conflict, InvalidInput, NotDurable, NotFound, file_problem
 from app.features.care.backups.digest import Digester, TableDigest
 from app.features.care.backups.manifest import Manifest, write_manifest
 from app.features.care.backups.reading import opened_backup, opened_copy
@@ -127,10 +127,14 @@ def _told_as_not_durable(to: Path) -> Iterator[None]:
         yield
     except (sqlite3.Error, OSError, InvalidInput) as error:
         raise NotDurable(
-            f"{to} could not be written: {error}; nothing is left of it",
+            f"{to} could not be written: {_why(error)}; nothing is left of it",
             value=str(to),
             remedy="Free some space there, or name a file on another disk.",
         ) from error
+
+
+def _why(error: Exception) -> str:
+    return file_problem(error) if isinstance(error, OSError) else str(error)
 
 
 def _make_tables(file: Path, revision: str) -> None:

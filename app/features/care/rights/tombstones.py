@@ -16,7 +16,7 @@ from pathlib import Path
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from app.errors import InvalidInput, NotDurable, NotFound
+from app.errors import InvalidInput, NotDurable, NotFound, file_problem, missing_file
 from app.models import Erasure
 from app.platform.folders import home_of
 from app.platform.trouble import plainly
@@ -80,7 +80,7 @@ class TombstoneFile:
                 os.fsync(file.fileno())
         except OSError as error:
             raise NotDurable(
-                f"the data were erased, but {self.path} could not be written: {error}",
+                f"the data were erased, but the list could not be written: {file_problem(error)}",
                 remedy="Free some space there, then start the server again: it completes the list.",
             ) from error
 
@@ -94,7 +94,12 @@ def read_list(path: Path) -> tuple[Tombstone, ...]:
     Unlike our own list it is completed from no table: a line that cannot be read is refused.
     """
     if not path.is_file():
-        raise NotFound(f"there is no list of erasures {path}", value=str(path))
+        raise NotFound(
+            missing_file(path),
+            value=str(path),
+            valid=f"the file {NAME} of a data folder",
+            remedy="Name the list of erasures of the earlier data folder; nothing was changed.",
+        )
     with plainly(f"the list of erasures {path} cannot be read"):
         found, unreadable = _parsed(path.read_bytes())
     if unreadable:

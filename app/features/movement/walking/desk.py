@@ -21,6 +21,7 @@ from sqlalchemy.orm import Session
 
 from app.clock import Clock
 from app.database import Database
+from app.errors import as_sentences
 from app.features.movement.files import compress, store
 from app.features.movement.walking.progress import FitFolder, Progress
 from app.features.movement.walking.sources import Cannot, FitOrder, Store
@@ -182,7 +183,7 @@ def _outcome(future: "Future[dict[str, Any]]") -> tuple[dict[str, Any] | None, s
     try:
         return future.result(), None
     except Cannot as error:
-        return None, f"{error.reason}. {error.remedy}".strip()
+        return None, as_sentences(error.reason, error.remedy)
     except (BrokenProcessPool, CancelledError):
         return None, BROKE
     except Exception as error:

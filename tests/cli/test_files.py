@@ -1,0 +1,145 @@
+"""A file that is not there is named in a sentence, by every command, before any work."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import get_args, get_type_hints
+
+import pytest
+import typer
+
+from app.cli.commands import app
+from app.cli.errors import UNUSABLE
+from app.errors import file_problem
+from tests.cli.invoked import Invoked
+
+MISSING = "nowhere.file"
+TABLE = ("--subject", "id", "--within", "limb", "--measure", "score")
+READ: dict[str, tuple[str, ...]] = {
+    "score answers": (MISSING, "--instrument", "karas2020"),
+    "analyse table": (MISSING, *TABLE),
+    "retarget clip": (MISSING, "--to", "165cm"),
+    "retarget skeleton": ("clip.amc", "--to", "165cm", "--skeleton", MISSING),
+    "retarget joint_map": ("clip.bvh", "--to", "165cm", "--joint-map", MISSING),
+    "retarget to": ("clip.bvh", "--to", MISSING),
+    "tune capture": ("--evaluate", "--capture", MISSING),
+    "walk fit walks": (MISSING, "--out", "model.npz"),
+    "walk fit people": ("walks.csv", "--out", "model.npz", "--people", MISSING),
+    "walk fit scene": ("walks.csv", "--out", "model.npz", "--scene", MISSING),
+    "walk sample model": (MISSING, "--length", "3"),
+    "walk evaluate model": (MISSING, "walks.csv"),
+    "walk evaluate walks": ("model.npz", MISSING),
+    "walk evaluate people": ("model.npz", "walks.csv", "--people", MISSING),
+    "rehearse capture": ("--capture", MISSING),
+    "restore file": (MISSING,),
+    "restore erasures": ("whole.reembody", "--erasures", MISSING),
+    "serve certificate": ("--lan", "--certificate", MISSING, "--key", "key.pem"),
+    "serve key": ("--lan", "--certificate", "key.pem", "--key", MISSING),
+}
+"""Arguments of each command with one file that is missing, after `command parameter`."""
+ALIKE = {
+    # Read by what reads those above, behind files that would have to be whole.
+    "walk evaluate model",
+    "walk evaluate walks",
+    "walk evaluate people",
+    "restore erasures",
+}
+WRITTEN = {"export to", "backup file", "retarget out", "tune out", "walk fit out", "rehearse data"}
+"""Files and folders that a command makes."""
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Where the command is called: data and files of its own."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "data"))
+    (tmp_path / "key.pem").write_text("no key")
+    (tmp_path / "clip.bvh").write_text(BVH)
+    (tmp_path / "walks.csv").write_text("time_s,x_m,y_m,subject\n0,0,0,a\n1,1,0,a\n2,2,0,a\n")
+    return tmp_path
+
+
+BVH = """HIERARCHY
+ROOT Hips
+{
+OFFSET 0 0 0
+CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+End Site
+{
+OFFSET 0 10 0
+}
+}
+MOTION
+Frames: 1
+Frame Time: 0.01
+0 90 0 0 0 0
+"""
+
+
+@pytest.mark.parametrize("what", sorted(READ.keys() - ALIKE))
+def test_a_missing_file_is_named_in_a_sentence(what: str, folder: Path) -> None:
+    """With the folder that was looked into, without the system's numbers, ended by one stop."""
+    command, arguments = what.split()[:-1], READ[what]
+    said = Invoked(command[0]).refusal(*command[1:], *arguments)
+    assert f"there is no file {MISSING} in {folder}" in said
+    assert "Errno" not in said
+    assert ".." not in said
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments"),
+    [
+        ("retarget", ("clip.bvh", "--to", "165cm", "--out", "none/out.bvh")),
+        ("tune", ("--out", "none/out.json")),
+        ("walk", ("fit", "walks.csv", "--out", "none/out.npz")),
+    ],
+)
+def test_a_file_to_write_needs_a_folder_before_the_work(
+    command: str, arguments: tuple[str, ...], folder: Path
+) -> None:
+    """A tuning of minutes is not lost to a name that was mistyped."""
+    assert f"there is no folder {folder / 'none'}" in Invoked(command).refusal(*arguments)
+
+
+def test_every_file_that_a_command_takes_is_held_to_this() -> None:
+    """A command that gets a file later is found here."""
+    found = {
+        f"{name} {parameter}"
+        for name, command in _commands(app)
+        for parameter, hint in get_type_hints(command).items()
+        if Path in (hint, *get_args(hint))
+    }
+    assert len(found) > len(READ) / 2
+    assert found <= READ.keys() | WRITTEN
+
+
+def _commands(group: typer.Typer, name: str = "") -> Iterator[tuple[str, Callable[..., object]]]:
+    for one in group.registered_commands:
+        assert one.callback is not None
+        yield f"{name} {one.name or one.callback.__name__}".strip(), one.callback
+    for below in group.registered_groups:
+        assert below.typer_instance is not None
+        yield from _commands(below.typer_instance, f"{name} {below.name}".strip())
+
+
+def test_what_else_the_system_refuses_is_said_without_numbers(tmp_path: Path) -> None:
+    """A folder in the place of a file, a file in the place of a folder, and no permission."""
+    (tmp_path / "file").touch()
+    for path, words in (
+        (tmp_path, "is a folder, where a file is needed"),
+        (tmp_path / "file" / "below", "part of that path is a file"),
+        (tmp_path / "none" / "below", f"there is no folder {tmp_path / 'none'}"),
+    ):
+        with pytest.raises(OSError, match="Errno") as raised:
+            path.read_text()
+        assert words in file_problem(raised.value)
+        assert "Errno" not in file_problem(raised.value)
+    denied = PermissionError(13, "Permission denied", "kept.csv")
+    assert file_problem(denied).startswith("kept.csv cannot be opened")
+
+
+def test_a_command_ends_at_once_where_a_folder_was_named(folder: Path) -> None:
+    """As the words of the system would, without its number."""
+    result = Invoked("score").run(folder, "--instrument", "karas2020")
+    assert result.exit_code == UNUSABLE
+    assert "is a folder" in result.stderr
