@@ -120,9 +120,22 @@ def token(
 def rehearse(
     url: Annotated[str | None, typer.Option(help="Server; without it one is started.")] = None,
     token: Annotated[str | None, typer.Option(help="Bearer token for --url.")] = None,
+    participants: Annotated[int, typer.Option(help="How many take part, one after the other.")] = 1,
+    redo: Annotated[
+        int | None,
+        typer.Option(
+            metavar="PHASE", help="Repeat this phase of the first participant half-way through it."
+        ),
+    ] = None,
+    withdraw_during: Annotated[
+        int | None,
+        typer.Option(metavar="PHASE", help="The first participant withdraws in this phase."),
+    ] = None,
     capture: Annotated[Path | None, typer.Option(help="Capture to move by.")] = None,
     speed: Annotated[float, typer.Option(help="Seconds of study time per second.")] = 1.0,
-    seed: Annotated[int, typer.Option(help="Seed of everything that is drawn.")] = 1,
+    seed: Annotated[
+        int, typer.Option(help="Of all that is drawn; the next participant has the next.")
+    ] = 1,
     study: Annotated[str, typer.Option(help="Key of the study.")] = "reembodiment-latency",
     data: Annotated[
         Path | None, typer.Option(help="Keep the started server's data in this folder.")
@@ -131,26 +144,32 @@ def rehearse(
         bool,
         typer.Option("--physics", help="By forces, also where the study has a delayed copy."),
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the reports as JSON.")] = False,
 ) -> None:
-    """Take a simulated participant through a whole session."""
-    from app.cli.rehearsing import run_rehearsal
+    """Take simulated participants through whole sessions.
 
+    A session takes as long as its phases, divided by --speed, and some seconds: with the study that
+    ships 9 minutes, at --speed 20 half a minute. A PHASE is its number in the visit, from 1; practice
+    and free movement count.
+    """
+    from app.cli.rehearsing import run_rehearsal
+    from app.rehearsal.rehearse import RehearsalPlan
+
+    plan = RehearsalPlan(
+        url=url or "",
+        study=study,
+        speed=speed,
+        seed=seed,
+        capture=capture,
+        token=token,
+        physics=physics,
+        redo=redo,
+        withdraw_during=withdraw_during,
+    )
     with reported(ValueError, RuntimeError):
-        text, completed = run_rehearsal(
-            url=url,
-            token=token,
-            capture=capture,
-            speed=speed,
-            seed=seed,
-            study=study,
-            data=data,
-            physics=physics,
-            as_json=as_json,
-        )
-    print(text)
-    if not completed:
-        warn("the session was ended before its last step, so this was not a whole rehearsal")
+        whole = run_rehearsal(plan, print, participants=participants, data=data, as_json=as_json)
+    if not whole:
+        warn("a session was ended before its last step, so this was not a whole rehearsal")
         raise typer.Exit(INCOMPLETE)
 
 

@@ -10,67 +10,94 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Callable, Coroutine, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 from httpx2 import Client, HTTPError
 
 from app.rehearsal.body import make_person
-from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, rehearse
+from app.rehearsal.headset import WITHDRAWN
+from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, Visit, rehearse, visit_of
 
+T = TypeVar("T")
 START_TIMEOUT_S = 60.0
-COMPLETED = "completed"
+MOST_PARTICIPANTS = 500
+BESIDES_S, BESIDES_STUDY_S = 3.0, 25.0
+"""What a participant takes besides the phases: forms and looks in real time, and what the headset
+does between the phases in the time of the study."""
 
 
 def run_rehearsal(
+    plan: RehearsalPlan,
+    show: Callable[[str], None],
     *,
-    url: str | None,
-    token: str | None,
-    capture: Path | None,
-    speed: float,
-    seed: int,
-    study: str,
+    participants: int,
     data: Path | None,
-    physics: bool,
     as_json: bool,
-) -> tuple[str, bool]:
-    """Rehearse; the report as text or JSON, and whether the session was completed.
+) -> bool:
+    """Rehearse with one participant after the other; whether every session went as planned.
 
-    Raises ValueError or RuntimeError.
+    `plan` is the first participant's, its `url` empty where a server is to be started for it, with
+    its data in `data`. Those who follow have the seeds that follow and are not interrupted. `show`
+    gets each report as text once it is there, or all as JSON at the end. Raises ValueError or
+    RuntimeError.
     """
-    if url is not None and token is None:
-        raise ValueError("--url needs --token; make one with: ./run token")
-    if not 0 < speed <= 100:
-        raise ValueError(f"a speed of {speed} is not possible; give above 0 and at most 100")
+    _check(plan, participants)
     # A capture that nobody can move by is refused before a server is started.
-    make_person(np.random.default_rng(seed), capture)
-    plan = RehearsalPlan(
-        url=url or "",
-        study=study,
-        speed=speed,
-        seed=seed,
-        capture=capture,
-        token=token,
-        physics=physics,
-    )
-    if url is not None:
-        report = _run(plan)
-    else:
-        with _own_server(data) as (own_url, password):
-            report = _run(RehearsalPlan(**{**asdict(plan), "url": own_url, "password": password}))
-    text = json.dumps(asdict(report), indent=2) if as_json else _text(report)
-    return text, report.status == COMPLETED
+    make_person(np.random.default_rng(plan.seed), plan.capture)
+    reports: list[RehearsalReport] = []
+    with _server_for(plan, data) as reachable:
+        _say(_expected(_run(visit_of(reachable)), plan.speed, participants))
+        plans = _plans(reachable, participants)
+        try:
+            for number, one in enumerate(plans, start=1):
+                if participants > 1:
+                    _say(f"participant {number} of {participants}, seed {one.seed}")
+                report = _run(rehearse(one, lambda words: _say(f"  {words}")))
+                reports.append(report)
+                if not as_json:
+                    show(report_text(report))
+        finally:
+            if reports and (as_json or participants > 1):
+                show((_as_json if as_json else summary_text)(reports, participants))
+    return all(report.status == one.ends_as for report, one in zip(reports, plans, strict=True))
 
 
-def _run(plan: RehearsalPlan) -> RehearsalReport:
-    def say(words: str) -> None:
-        print(f"  {words}", file=sys.stderr, flush=True)
+def _check(plan: RehearsalPlan, participants: int) -> None:
+    if plan.url and plan.token is None:
+        raise ValueError("--url needs --token; make one with: ./run token")
+    if not 0 < plan.speed <= 100:
+        raise ValueError(f"a speed of {plan.speed} is not possible; give above 0 and at most 100")
+    if plan.seed < 0:
+        raise ValueError(f"a seed of {plan.seed} is not possible; give 0 or a greater number")
+    if not 1 <= participants <= MOST_PARTICIPANTS:
+        raise ValueError(
+            f"--participants {participants}: 1 to {MOST_PARTICIPANTS} are valid; they take part one"
+            " after the other"
+        )
+    for option, phase in (("--redo", plan.redo), ("--withdraw-during", plan.withdraw_during)):
+        if phase is not None and phase < 1:
+            raise ValueError(f"{option} {phase}: phases count from 1, in the order of the visit")
+    if plan.redo and plan.withdraw_during and plan.redo > plan.withdraw_during:
+        raise ValueError(
+            f"--redo {plan.redo} never comes: the participant withdraws during phase"
+            f" {plan.withdraw_during}. Repeat that phase or an earlier one"
+        )
 
+
+def _plans(first: RehearsalPlan, participants: int) -> list[RehearsalPlan]:
+    after = replace(first, redo=None, withdraw_during=None)
+    return [first, *(replace(after, seed=first.seed + at) for at in range(1, participants))]
+
+
+def _run(work: Coroutine[Any, Any, T]) -> T:
     try:
-        return asyncio.run(rehearse(plan, say))
+        return asyncio.run(work)
     except* (ValueError, RuntimeError) as group:
         raise RuntimeError(str(_first(group))) from group
 
@@ -79,6 +106,37 @@ def _first(error: BaseException) -> BaseException:
     while isinstance(error, BaseExceptionGroup):
         error = error.exceptions[0]
     return error
+
+
+def _say(words: str) -> None:
+    print(words, file=sys.stderr, flush=True)
+
+
+def _expected(visit: Visit, speed: float, participants: int) -> str:
+    """How long it will take, before it begins."""
+    each_s = (visit.planned_s + BESIDES_STUDY_S) / speed + BESIDES_S
+    who = "" if participants == 1 else f" for {participants} participants"
+    return (
+        f"This takes about {_length(participants * each_s)}{who}: {visit.phases} phases of together"
+        f" {_length(visit.planned_s)} at {speed:g}x, longer where this computer is too slow for it"
+    )
+
+
+def _length(time_s: float) -> str:
+    if time_s < 100.0:
+        return f"{time_s:.0f} s"
+    minutes = round(time_s / 60.0)
+    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60} min"
+
+
+@contextmanager
+def _server_for(plan: RehearsalPlan, data: Path | None) -> Iterator[RehearsalPlan]:
+    """The plan with a server that answers: the one that it names, or one of its own."""
+    if plan.url:
+        yield plan
+        return
+    with _own_server(data) as (url, password):
+        yield replace(plan, url=url, password=password)
 
 
 @contextmanager
@@ -132,15 +190,18 @@ def _free_port() -> int:
         return port
 
 
-def _text(report: RehearsalReport) -> str:
+def report_text(report: RehearsalReport) -> str:
+    """What came of one participant's session, a line for each task phase."""
     phases = [phase for phase in report.phases if phase["kind"] == "task"]
+    voided = sum(phase["status"] == "voided" for phase in phases)
     practised = sum(phase["kind"] == "practice" for phase in report.phases)
     lines = [
         f"SIMULATED session {report.session_id}: {report.duration_s:.1f} s at {report.speed:g}x",
-        *([] if report.status == COMPLETED else [f"NOT COMPLETED: it was {report.status}"]),
+        *_ended(report),
         f"avatar {report.avatar} {(report.avatar_configuration_hash or '')[:12]}".rstrip(),
         f"frames sent {report.frames_sent}, stored {report.frames_stored}",
-        f"{len(phases)} task phases, {report.questionnaires} questionnaires",
+        f"{len(phases) - voided} task phases, {report.questionnaires} questionnaires",
+        *([f"{voided} voided, which no analysis uses"] if voided else []),
         *([f"{practised} practice phases, which no analysis uses"] if practised else []),
         f"{report.completions} completions, {report.contacts} contacts",
         f"{report.side_contacts} contacts with the sides of boxes",
@@ -148,9 +209,40 @@ def _text(report: RehearsalReport) -> str:
     lines += [
         f"  {phase['limb']:4}  {_latency(phase['latency_ms'])}  {phase['active_s']:6.2f} s  "
         f"{phase['completions']:2d} completions  {phase['side_contacts']:3d} side contacts"
+        + ("  voided" if phase["status"] == "voided" else "")
         for phase in phases
     ]
     return "\n".join(lines)
+
+
+def _ended(report: RehearsalReport) -> list[str]:
+    if report.status == WITHDRAWN:
+        return ["WITHDRAWN: the participant withdrew"]
+    return [] if report.status == "completed" else [f"NOT COMPLETED: it was {report.status}"]
+
+
+def summary_text(reports: Sequence[RehearsalReport], wanted: int) -> str:
+    """All participants together, on a line or two."""
+    statuses = Counter(report.status for report in reports)
+    ended = ", ".join(f"{count} {status}" for status, count in statuses.items())
+    missing = wanted - len(reports)
+    absent = f"; {missing} did not take part" if missing else ""
+    together = (
+        f"{sum(report.completions for report in reports)} completions,"
+        f" {sum(report.contacts for report in reports)} contacts,"
+        f" {sum(report.questionnaires for report in reports)} questionnaires"
+        f" in {_length(sum(report.duration_s for report in reports))}"
+    )
+    return f"{len(reports)} of {wanted} participants: {ended}{absent}\n{together}"
+
+
+def _as_json(reports: Sequence[RehearsalReport], wanted: int) -> str:
+    """One report as it is; those of several participants in a list, with how they ended."""
+    if wanted == 1:
+        return json.dumps(asdict(reports[0]), indent=2)
+    statuses = dict(Counter(report.status for report in reports))
+    told = {"wanted": wanted, "statuses": statuses, "participants": list(map(asdict, reports))}
+    return json.dumps(told, indent=2)
 
 
 def _latency(latency_ms: float | None) -> str:

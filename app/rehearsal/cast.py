@@ -3,25 +3,44 @@
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from app.client import Operator, ServerRefusedError, Tablet
+from app.protocol import TIMED_KINDS
 from app.rehearsal.answers import agreement, fill_in
 from app.rehearsal.body import Person
-from app.rehearsal.headset import Headset
+from app.rehearsal.headset import WITHDRAWN, Headset
 
 Json = dict[str, Any]
-ENDED = ("completed", "aborted", "withdrawn")
+ENDED = ("completed", "aborted", WITHDRAWN)
 OVERTAKEN = ("stale", "not_now")
 """What the server says where somebody else, or the headset, was first."""
 LOOK_EVERY_S = 0.1
+REDO_REASON = "Rehearsal: the phase is repeated."
+WITHDRAWAL_REASON = "Rehearsal: the participant withdraws."
+SAID = {"redo": "is repeated from its beginning", "withdraw": "the participant withdraws"}
+
+
+@dataclass(frozen=True)
+class Interruption:
+    """What the operator does once, half-way through a phase: repeat it, or end by a withdrawal.
+
+    `phase`: its number in the visit, from 1; practice and free movement count.
+    """
+
+    kind: Literal["redo", "withdraw"]
+    phase: int
+
+
+class MissedInterruptionError(RuntimeError):
+    """The session was completed before the operator could interrupt it; says what to do."""
 
 
 @dataclass
 class Cast:
-    """The three devices and what they share."""
+    """The three devices and what they share. `interruptions`: those to come, the next one first."""
 
     operator: Operator
     tablet: Tablet
@@ -30,6 +49,7 @@ class Cast:
     rng: np.random.Generator
     say: Callable[[str], None] = lambda _: None
     submitted: set[str] = field(default_factory=set)
+    interruptions: list[Interruption] = field(default_factory=list)
 
 
 async def perform(cast: Cast) -> None:
@@ -46,20 +66,59 @@ async def operate(cast: Cast) -> None:
     while True:
         view = await cast.operator.view()
         if view["status"] in ENDED:
+            _require_no_interruption_missed(cast, view)
             return
         current = view["current"]
         if current is not None and current["index"] != told:
             told = current["index"]
             cast.say(f"{told + 1}/{len(view['steps'])} {view['steps'][told]['title']}")
-        action = _next_action(view, cast.person)
-        if action is not None:
-            kind, fields = action
-            try:
+        try:
+            if _is_due(view, cast):
+                await _interrupt(view, cast)
+            elif (action := _next_action(view, cast.person)) is not None:
+                kind, fields = action
                 await cast.operator.command(view, kind, **fields)
-            except ServerRefusedError as error:
-                if error.code not in OVERTAKEN:
-                    raise
+        except ServerRefusedError as error:
+            if error.code not in OVERTAKEN:
+                raise
         await asyncio.sleep(LOOK_EVERY_S)
+
+
+def _is_due(view: Json, cast: Cast) -> bool:
+    """Whether the phase of the next interruption is half over, or was left since the last look."""
+    if not cast.interruptions or view["current"] is None:
+        return False
+    step = _step_of(view, cast.interruptions[0])
+    current = view["current"]
+    if current["index"] != step["index"]:
+        return bool(current["index"] > step["index"])
+    running = current["status"] == "running"
+    return running and cast.headset.active_s >= step["duration_s"] / 2.0
+
+
+async def _interrupt(view: Json, cast: Cast) -> None:
+    """Give the order of the next interruption; refused, it stays the next one."""
+    order = cast.interruptions[0]
+    if order.kind == "redo":
+        step_index = _step_of(view, order)["index"]
+        await cast.operator.command(view, "redo", step_index=step_index, reason=REDO_REASON)
+    else:
+        await cast.operator.stop("withdraw", reason=WITHDRAWAL_REASON)
+    cast.say(f"phase {order.phase}: {SAID[order.kind]}")
+    cast.interruptions.pop(0)
+
+
+def _step_of(view: Json, order: Interruption) -> Json:
+    timed: list[Json] = [step for step in view["steps"] if step["kind"] in TIMED_KINDS]
+    return timed[order.phase - 1]
+
+
+def _require_no_interruption_missed(cast: Cast, view: Json) -> None:
+    if cast.interruptions and view["status"] == "completed":
+        phase = cast.interruptions[0].phase
+        raise MissedInterruptionError(
+            f"the session was over before phase {phase} could be interrupted; give a lower --speed"
+        )
 
 
 def _next_action(view: Json, person: Person) -> tuple[str, Json] | None:
@@ -86,7 +145,15 @@ def _next_action(view: Json, person: Person) -> tuple[str, Json] | None:
 
 
 async def answer(cast: Cast) -> None:
-    """The tablet: reads, agrees, answers."""
+    """The tablet: reads, agrees, answers, until the session is over."""
+    try:
+        await _answer_while_it_lasts(cast)
+    except ServerRefusedError as error:
+        if error.code != WITHDRAWN:
+            raise
+
+
+async def _answer_while_it_lasts(cast: Cast) -> None:
     while True:
         state = await cast.tablet.state()
         match state["screen"]:

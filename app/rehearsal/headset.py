@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from app.client import TelemetryClient
+from app.client import TelemetryClient, TelemetryError
 from app.protocol import Tasks
 from app.rehearsal.avatars import AvatarSource, DelayedCopy, RemoteAvatar
 from app.rehearsal.body import FRAME_RATE_HZ, Person
@@ -36,6 +36,8 @@ from app.wire import (
 FRAMES_PER_BATCH = 6
 T_POSE_S = 2.0
 MESSAGES_AHEAD = 100
+WITHDRAWN = "withdrawn"
+"""Status of a session, and why the server takes no more of it."""
 
 
 @dataclass
@@ -126,12 +128,30 @@ class Headset:
         """The headset's monotonic clock: the time of the present frame."""
         return self._clock.t_s
 
+    @property
+    def active_s(self) -> float:
+        """Active time used of the phase under way; 0.0 where there is none."""
+        return 0.0 if self._run is None else self._run.active_s(self.t_s)
+
     async def run(self) -> None:
-        """Draw frame after frame while the session lasts."""
+        """Draw frame after frame while the session lasts.
+
+        Once the participant has withdrawn nothing more is taken of them: what the journal still
+        holds is left, as the server says.
+        """
+        try:
+            await self._draw_while_it_lasts()
+        except TelemetryError:
+            if self.client.failure is None or self.client.failure.code != WITHDRAWN:
+                raise
+
+    async def _draw_while_it_lasts(self) -> None:
         self._clock.start()
         while True:
             state = self.client.state
-            if state is None or state.status in ("completed", "aborted", "withdrawn"):
+            if state is not None and state.status == WITHDRAWN:
+                return
+            if state is None or state.status in ("completed", "aborted"):
                 break
             await self._follow(state)
             for _ in range(FRAMES_PER_BATCH):

@@ -29,8 +29,8 @@ from app.client import (
 from app.protocol import Tasks
 from app.rehearsal.avatars import FromServer
 from app.rehearsal.body import make_person
-from app.rehearsal.cast import Cast, perform
-from app.rehearsal.headset import FrameClock, Headset
+from app.rehearsal.cast import Cast, Interruption, perform
+from app.rehearsal.headset import WITHDRAWN, FrameClock, Headset
 
 Json = dict[str, Any]
 AVATARS = ("delayed_copy", "physics")
@@ -46,6 +46,8 @@ class RehearsalPlan:
     """What to rehearse. `token` None logs in with `password`. `speed` 1 is real time.
 
     `physics`: with an avatar that is moved by physics, in a copy of the study where it has another.
+    `redo`: the phase that is repeated half-way through; `withdraw_during`: the one in which the
+    participant withdraws. Phases count from 1, in the order of the visit.
     """
 
     url: str
@@ -58,6 +60,29 @@ class RehearsalPlan:
     language: str = "en"
     participant_code: str | None = None
     physics: bool = False
+    redo: int | None = None
+    withdraw_during: int | None = None
+
+    @property
+    def interruptions(self) -> list[Interruption]:
+        """What the operator interrupts, in the order of the visit."""
+        redo = [] if self.redo is None else [Interruption("redo", self.redo)]
+        if self.withdraw_during is None:
+            return redo
+        return [*redo, Interruption("withdraw", self.withdraw_during)]
+
+    @property
+    def ends_as(self) -> str:
+        """The status of a session that went as it was planned."""
+        return "completed" if self.withdraw_during is None else WITHDRAWN
+
+
+@dataclass(frozen=True)
+class Visit:
+    """What a study sets for each visit: how many timed phases, and their time together in s."""
+
+    phases: int
+    planned_s: float
 
 
 @dataclass(frozen=True)
@@ -86,6 +111,25 @@ class RehearsalReport:
     seed: int
     speed: float
     capture: str | None
+
+
+async def visit_of(plan: RehearsalPlan) -> Visit:
+    """What the plan's study sets for each visit.
+
+    Raises ValueError where an interruption is planned for a phase that a visit does not have,
+    ServerRefusedError or UnreachableError.
+    """
+    async with _client(plan) as http:
+        await _sign_in(http, plan)
+        study: Json = await call(http, "GET", f"/api/studies/{plan.study}")
+    visit = Visit(study["phases"], 60.0 * study["planned_minutes"])
+    for option, phase in (("--redo", plan.redo), ("--withdraw-during", plan.withdraw_during)):
+        if phase is not None and phase > visit.phases:
+            raise ValueError(
+                f"{option} {phase}: a visit of {plan.study} has {visit.phases} phases; practice and"
+                f" free movement count, so 1 to {visit.phases} are valid"
+            )
+    return visit
 
 
 async def rehearse(
@@ -136,7 +180,10 @@ async def assembled(
         await stack.enter_async_context(socket)
         physics = FromServer(headset_http) if session["avatar"] == "physics" else None
         headset = Headset(socket, person, tasks_of(socket), clock, physics)
-        yield Cast(operator, Tablet(tablet_http), headset, person, rng, say)
+        tablet = Tablet(tablet_http)
+        yield Cast(
+            operator, tablet, headset, person, rng, say, interruptions=list(plan.interruptions)
+        )
 
 
 def tasks_of(socket: TelemetryClient) -> Tasks:

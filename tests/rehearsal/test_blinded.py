@@ -8,12 +8,16 @@ from collections.abc import Iterator
 import pytest
 from typer.testing import Result
 
+from app.cli.errors import UNUSABLE
+from app.cli.rehearsing import report_text, summary_text
+from app.rehearsal.rehearse import RehearsalReport
 from tests.cli.invoked import Invoked
-from tests.faults.short_study import add_short_study
+from tests.faults.short_study import TASKS, add_short_study
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 SPEED = 40
 WITHIN_S = 120.0
+PHASES = TASKS + 1
 
 
 @pytest.fixture(scope="module")
@@ -48,12 +52,30 @@ def rehearse(server: LiveServer, *more: object) -> Result:
     return Invoked("rehearse").run(*how, *study, *more)
 
 
-def test_a_blinded_operator_gets_the_report_without_latencies(server: LiveServer) -> None:
-    """The whole session runs, and its report says that the latencies are hidden."""
-    result = rehearse(server)
+def test_a_blinded_operator_rehearses_a_repeated_phase_and_a_withdrawal(server: LiveServer) -> None:
+    """The first participant repeats a phase and withdraws in the next; the second completes.
+
+    The reports hide every latency.
+    """
+    how = ("--participants", 2, "--redo", 1, "--withdraw-during", 2, "--json")
+    result = rehearse(server, *how)
     assert result.exit_code == 0, result.output
-    assert result.stdout.count(" hidden ") == 4
-    assert "NOT COMPLETED" not in result.stdout
+    told = json.loads(result.stdout)
+    assert told["statuses"] == {"withdrawn": 1, "completed": 1}
+    reports = [RehearsalReport(**one) for one in told["participants"]]
+    first, second = reports
+    assert (first.seed, second.seed) == (1, 2)
+    assert [one["status"] for one in first.phases] == ["voided", "done", "voided"]
+    assert [one["status"] for one in second.phases] == ["done"] * PHASES
+    assert report_text(first).count("WITHDRAWN") == report_text(first).count("  voided") == 1
+    assert report_text(second).count(" hidden ") == TASKS
+    assert "NOT COMPLETED" not in report_text(second)
+    assert summary_text(reports, 2).startswith("2 of 2 participants: 1 withdrawn, 1 completed\n")
+    said = result.stderr.splitlines()
+    assert said[0].startswith("This takes about ")
+    assert "for 2 participants" in said[0]
+    assert "participant 2 of 2, seed 2" in said
+    assert "  phase 1: is repeated from its beginning" in said
 
 
 def test_a_rehearsal_that_was_aborted_elsewhere_does_not_end_well(server: LiveServer) -> None:
@@ -88,3 +110,30 @@ def abort_what_runs(server: LiveServer) -> None:
                     if client.post(path, json=command).is_success:
                         return
             time.sleep(0.05)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--participants", 0), "--participants 0: 1 to 500 are valid"),
+        (("--redo", 0), "--redo 0: phases count from 1"),
+        (("--redo", 3, "--withdraw-during", 2), "--redo 3 never comes"),
+        (("--redo", 6), "--redo 6: a visit of short-latency has 5 phases"),
+        (("--withdraw-during", 9), "so 1 to 5 are valid"),
+        (("--speed", 0), "a speed of 0.0 is not possible"),
+        (("--seed", -1), "a seed of -1 is not possible"),
+        (("--study", "none"), "there is no study 'none'"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_before_a_session_is_made(
+    server: LiveServer, options: tuple[object, ...], words: str
+) -> None:
+    """In one sentence; also for an operator who must not know the conditions."""
+    with server.client() as client:
+        credentials = {"username": "admin", "password": ADMIN_PASSWORD}
+        client.post("/api/login", json=credentials).raise_for_status()
+        before = client.get("/api/studies/short-latency/sessions").json()
+        result = rehearse(server, *options)
+        assert result.exit_code == UNUSABLE, result.output
+        assert words in result.stderr
+        assert client.get("/api/studies/short-latency/sessions").json() == before

@@ -31,8 +31,8 @@ def test_a_killed_rehearsal_leaves_no_process(tmp_path: Path) -> None:
         REHEARSE, env=environment, stderr=subprocess.PIPE, text=True, start_new_session=True
     ) as rehearsal:
         assert rehearsal.stderr is not None
-        # A few steps in, so that there is movement to be stored.
-        steps = [rehearsal.stderr.readline() for _ in range(6)]
+        # How long it takes, and a few steps, so that there is movement to be stored.
+        steps = [rehearsal.stderr.readline() for _ in range(7)]
         descended = psutil.Process(rehearsal.pid).children(recursive=True)
         rehearsal.kill()
         rehearsal.stderr.close()

@@ -36,7 +36,7 @@ from app.features.people.audit import record
 from app.models import Study, StudyVersion
 from app.platform.access import Caller, add_member, is_blind, is_theirs
 from app.platform.dependencies import Context, Reading, SignedIn, Writing
-from app.protocol import visit_time
+from app.protocol import TIMED_KINDS, compile_plan, sequences, visit_time
 
 router = APIRouter(tags=["studies"])
 router.include_router(drafts)
@@ -187,6 +187,9 @@ def _view(db: Session, study: Study, caller: Caller) -> StudyView:
     return StudyView(
         **_summary(db, study, newest).model_dump(),
         languages=list(protocol.languages),
+        phases=sum(
+            step.kind in TIMED_KINDS for step in compile_plan(protocol, sequences(protocol)[0])
+        ),
         planned_minutes=visit.planned,
         minutes=visit.total,
         versions=[

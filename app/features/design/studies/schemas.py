@@ -47,11 +47,13 @@ class StudySummary(BaseModel):
 class StudyView(StudySummary):
     """A study with its newest version in full; an operator of a blinded one gets no protocol.
 
+    `phases`: how many timed phases a visit has: practice, free movement and tasks.
     `planned_minutes` is what the protocol sets for each visit; `minutes` adds our rough estimate of
     forms and texts.
     """
 
     languages: list[str]
+    phases: int
     planned_minutes: float
     minutes: float
     versions: list[VersionView]

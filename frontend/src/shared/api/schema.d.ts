@@ -7755,6 +7755,7 @@ export interface components {
          * StudyView
          * @description A study with its newest version in full; an operator of a blinded one gets no protocol.
          *
+         *     `phases`: how many timed phases a visit has: practice, free movement and tasks.
          *     `planned_minutes` is what the protocol sets for each visit; `minutes` adds our rough estimate of
          *     forms and texts.
          */
@@ -7778,6 +7779,8 @@ export interface components {
             readonly languages: readonly string[];
             /** Minutes */
             readonly minutes: number;
+            /** Phases */
+            readonly phases: number;
             /** Planned Minutes */
             readonly planned_minutes: number;
             /** Protocol */
