@@ -148,9 +148,9 @@ def rehearse(
 ) -> None:
     """Take simulated participants through whole sessions.
 
-    A session takes as long as its phases, divided by --speed, and some seconds: with the study that
-    ships 9 minutes, at --speed 20 half a minute. A PHASE is its number in the visit, from 1; practice
-    and free movement count.
+    A session takes as long as its phases, divided by --speed, and some seconds: 9 minutes with the
+    study that ships, half a minute at --speed 20. A PHASE is its number in the visit, from 1;
+    practice and free movement count.
     """
     from app.cli.rehearsing import run_rehearsal
     from app.rehearsal.rehearse import RehearsalPlan
