@@ -5,13 +5,12 @@ import sqlite3
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 
 from sqlalchemy.exc import DBAPIError
 
 from app.cli.errors import warn
+from app.cli.progress import Activity
 from app.clock import Clock
 from app.database import Database
 from app.errors import ReembodyError
@@ -50,18 +49,18 @@ from app.schema_revisions import newest_revision
 from app.settings import Settings, read_settings
 
 
-def back_up_to(to: Path, *, as_json: bool) -> str:
+def back_up_to(to: Path, activity: Activity, *, as_json: bool) -> str:
     """Write the backup and say what is in it; raises ReembodyError with nothing left of the file.
 
-    Progress goes to standard error.
+    `activity` says which table it is at.
     """
     settings = read_settings()
     with told_plainly():
         database = existing_database(settings)
         notes = Notes.of(settings)
         try:
-            with Counter("backing up") as counter:
-                done = back_up(database, to, clock=Clock(), notes=notes, progress=counter)
+            progress = activity.rows("backing up")
+            done = back_up(database, to, clock=Clock(), notes=notes, progress=progress)
             _put_on_record(database, done)
         finally:
             database.close()
@@ -94,35 +93,6 @@ def told_plainly() -> AbstractContextManager[None]:
     return plainly("nothing was changed, because the database or the disk did not take part")
 
 
-@dataclass
-class Counter:
-    """Counts rows on standard error while somebody watches."""
-
-    what: str
-    _rows: int = 0
-    _table: str = ""
-
-    def __call__(self, table: str, rows: int) -> None:
-        """Some more rows of a table are done."""
-        self._rows = self._rows + rows if table == self._table else rows
-        self._table = table
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r\033[K{self.what}: {table}, {self._rows} rows")
-            sys.stderr.flush()
-
-    def __enter__(self) -> "Counter":
-        return self
-
-    def __exit__(
-        self,
-        _type: type[BaseException] | None,
-        _error: BaseException | None,
-        _traceback: TracebackType | None,
-    ) -> None:
-        if sys.stderr.isatty():
-            sys.stderr.write("\r\033[K")
-
-
 def as_text(done: object) -> str:
     """A summary as JSON."""
     return json.dumps(vars(done), default=str, indent=2)
@@ -140,6 +110,7 @@ def _sentence(done: BackedUp) -> str:
 
 def restore_from(
     path: Path,
+    activity: Activity,
     *,
     replace: bool,
     even_though_active: bool,
@@ -160,6 +131,7 @@ def restore_from(
         return _restored(
             path,
             settings,
+            activity,
             replace=replace,
             even_though_active=even_though_active,
             even_though_altered=even_though_altered,
@@ -171,6 +143,7 @@ def restore_from(
 def _restored(
     path: Path,
     settings: Settings,
+    activity: Activity,
     *,
     replace: bool,
     even_though_active: bool,
@@ -182,10 +155,10 @@ def _restored(
 
     clock, kept = Clock(), backups_of(settings)
     with (
-        Counter("restoring") as counter,
         _no_folder_left(kept),
-        checked_backup(path, kept, counter) as backup,
+        checked_backup(path, kept, activity.rows(f"checking {path}")) as backup,
     ):
+        activity.now("looking at the database that is there")
         try:
             put_away_if_damaged(settings, clock, every_row=True)
         except Damaged as error:
@@ -194,7 +167,9 @@ def _restored(
             # Complete, but not started: what is done to sessions needs its parts.
             context: AppContext = create_app(settings, clock=clock).state.context
             with _undone_if_refused(context) as expected:
-                outliving = ErasuresKept(context, _earlier_erasures(context, backup, erasures))
+                outliving = ErasuresKept(
+                    context, _earlier_erasures(context, backup, erasures, activity)
+                )
                 done = restore(
                     context.database,
                     backup,
@@ -204,10 +179,11 @@ def _restored(
                     even_though_active=even_though_active,
                     erasures=outliving,
                     content=RestoredContent(even_though_altered),
-                    progress=counter,
+                    progress=activity.rows("restoring"),
                 )
     if expected and not done.erasures_reapplied:
         forget_erasure(settings)
+    activity.now("overwriting what had been erased")
     _overwrite(context, outliving.given)
     _stop_clocks(context)
     return as_text(done) if as_json else _sentences(done)
@@ -243,7 +219,7 @@ def _undone_if_refused(context: AppContext) -> Iterator[bool]:
 
 
 def _earlier_erasures(
-    context: AppContext, backup: Backup, given: Path | None
+    context: AppContext, backup: Backup, given: Path | None, activity: Activity
 ) -> tuple[Tombstone, ...]:
     """The erasures of a list that was given, or named on the terminal; raises ReembodyError."""
     if given is not None:
@@ -253,13 +229,14 @@ def _earlier_erasures(
     made = f"{backup.manifest.made_at:%Y-%m-%d %H:%M} UTC"
     home = home_of(context.settings)
     if sys.stdin.isatty() and sys.stderr.isatty():
-        sys.stderr.write(
-            f"\r\033[K{home} has no list of erasures. Whoever was erased after the backup was made "
-            f"({made}) comes back with it.\nFile erasures.jsonl of the earlier data folder (Enter "
-            "if nobody was erased since): "
-        )
-        sys.stderr.flush()
-        named = sys.stdin.readline().strip()
+        with activity.silent():
+            sys.stderr.write(
+                f"{home} has no list of erasures. Whoever was erased after the backup was made "
+                f"({made}) comes back with it.\nFile erasures.jsonl of the earlier data folder "
+                "(Enter if nobody was erased since): "
+            )
+            sys.stderr.flush()
+            named = sys.stdin.readline().strip()
         return read_list(Path(named)) if named else ()
     warn(
         f"{home} has no list of erasures: participants who were erased after the backup was made "

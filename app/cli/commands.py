@@ -11,6 +11,7 @@ import typer
 from app import __version__
 from app.cli.analyse.command import analyse
 from app.cli.errors import INCOMPLETE, reported, warn
+from app.cli.progress import Activity
 from app.cli.retarget.command import retarget
 from app.cli.serve.command import serve, tls
 from app.cli.tune.command import tune
@@ -67,10 +68,11 @@ def export(
     ] = None,
 ) -> None:
     """Write a study as tidy CSV with a codebook."""
-    from app.cli.record import export_to_folder
+    with reported(ValueError, OSError), Activity(f"exporting {study}: opening the database") as now:
+        from app.cli.record import export_to_folder
 
-    with reported(ValueError, OSError):
-        print(export_to_folder(study, to, kind))
+        done = export_to_folder(study, to, now, kind)
+    print(done)
 
 
 @app.command()
@@ -86,10 +88,10 @@ def verify(
     as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON.")] = False,
 ) -> None:
     """Prove what of a session is there, or that the audit trail is whole; exit code 1 if not."""
-    from app.cli.record import verify_record
+    with reported(), Activity("verifying: opening the database") as now:
+        from app.cli.record import verify_record
 
-    with reported():
-        text, holds = verify_record(session, head or (), as_json=as_json)
+        text, holds = verify_record(session, head or (), now, as_json=as_json)
     print(text)
     if not holds:
         raise typer.Exit(INCOMPLETE)
@@ -149,7 +151,8 @@ def rehearse(
     """Take simulated participants through whole sessions.
 
     A session takes as long as its phases, divided by --speed, and some seconds: 9 minutes with the
-    study that ships, half a minute at --speed 20. A PHASE is its number in the visit, from 1;
+    study that ships. Two cores reach a speed of about 6 where physics moves the avatar, so that
+    this study takes about 2 minutes at --speed 20. A PHASE is its number in the visit, from 1;
     practice and free movement count.
     """
     from app.cli.rehearsing import run_rehearsal
@@ -179,10 +182,11 @@ def backup(
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Copy everything into one file, while the server runs or not."""
-    from app.cli.backups import back_up_to
+    with reported(), Activity(f"backing up to {file}: opening the database") as now:
+        from app.cli.backups import back_up_to
 
-    with reported():
-        print(back_up_to(file, as_json=as_json))
+        done = back_up_to(file, now, as_json=as_json)
+    print(done)
 
 
 @app.command()
@@ -204,16 +208,16 @@ def restore(
     as_json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> None:
     """Put a backup in the place of everything that is there."""
-    from app.cli.backups import restore_from
+    with reported(), Activity(f"restoring {file}: opening it") as now:
+        from app.cli.backups import restore_from
 
-    with reported():
-        print(
-            restore_from(
-                file,
-                replace=replace,
-                even_though_active=even_though_active,
-                even_though_altered=even_though_altered,
-                erasures=erasures,
-                as_json=as_json,
-            )
+        done = restore_from(
+            file,
+            now,
+            replace=replace,
+            even_though_active=even_though_active,
+            even_though_altered=even_though_altered,
+            erasures=erasures,
+            as_json=as_json,
         )
+    print(done)

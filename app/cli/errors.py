@@ -16,6 +16,9 @@ from app.errors import ReembodyError, as_sentences, file_problem
 INCOMPLETE, UNUSABLE = 1, 2
 """Exit codes: something of a session is missing; the input or the installation cannot be used."""
 
+ERASE_LINE = "\r\033[K"
+"""Takes back what stands on the present line of a terminal."""
+
 
 def fail(message: str) -> NoReturn:
     """Say what is wrong and leave with the status for unusable input."""
@@ -25,7 +28,8 @@ def fail(message: str) -> NoReturn:
 
 def warn(message: str) -> None:
     """Say what went wrong where the command can go on all the same."""
-    print(f"reembody: {message}", file=sys.stderr)
+    # Behind what a long command says of itself on the same line of a terminal.
+    print(f"{ERASE_LINE if sys.stderr.isatty() else ''}reembody: {message}", file=sys.stderr)
 
 
 def require_folder_of(out: Path | None) -> None:

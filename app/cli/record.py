@@ -2,10 +2,8 @@
 
 import json
 import sqlite3
-import sys
-import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +12,7 @@ from sqlalchemy.orm import Session
 
 from app.cli.errors import warn
 from app.cli.installation import opened_database
+from app.cli.progress import Activity
 from app.clock import Clock
 from app.database import Database
 from app.errors import NotFound
@@ -33,30 +32,32 @@ from app.features.results.exports.writing import Exported, export_study, usual_k
 from app.models import Study
 from app.platform.access import hidden_sessions, session_by_id
 from app.platform.half_made import Notes
+from app.platform.trouble import in_plain_words
 from app.settings import read_settings
 
-SAID_EVERY_S = 5.0
 
-
-def export_to_folder(study: str, to: Path, kind: str | None = None) -> str:
+def export_to_folder(study: str, to: Path, activity: Activity, kind: str | None = None) -> str:
     """Export a study of this installation to a folder; one sentence on what was written.
 
-    Without a `kind`: people's sessions, or what there is if there are none of people. Says on
-    standard error which file it is at. Raises ValueError for an unknown kind, ReembodyError for an
-    unknown study or a folder that is not ours to replace, OSError where it cannot be written.
+    Without a `kind`: people's sessions, or what there is if there are none of people. `activity`
+    says which file it is at. Raises ValueError for an unknown kind, ReembodyError for an
+    unknown study or a folder that is not ours to replace, and for what cannot be written.
     """
     notes = Notes.of(read_settings())
     with opened_database("export") as database, database.reading() as db:
         chosen = usual_kind(db, study) if kind is None else _known(kind)
-        done = export_study(
-            db,
-            study,
-            chosen,
-            to,
-            now=Clock().utc_now(),
-            notes=notes,
-            progress=_Progress(),
-        )
+        try:
+            done = export_study(
+                db,
+                study,
+                chosen,
+                to,
+                now=Clock().utc_now(),
+                notes=notes,
+                progress=lambda path: activity.now(f"exporting {study}: writing {path}"),
+            )
+        except OSError as error:
+            raise in_plain_words(f"the export to {to} could not be written", error) from error
         _put_on_record(database, study, done)
     return (
         f"{done.sessions} session(s) of kind {done.kind} in {done.files} files: {to}\n"
@@ -101,27 +102,8 @@ def _known(kind: str) -> Kind:
     raise ValueError(f"unknown kind {kind!r}; valid are {', '.join(KINDS)}")
 
 
-@dataclass
-class _Progress:
-    """Says on standard error which file is written: always on a terminal, else now and then.
-
-    Until it is whole an export lies in a hidden folder beside its place, so that somebody without
-    a terminal sees nothing of one that takes minutes.
-    """
-
-    _said_s: float = field(default_factory=time.monotonic)
-
-    def __call__(self, path: str) -> None:
-        if sys.stderr.isatty():
-            sys.stderr.write(f"\r\033[Kwriting {path}" if path != "README.txt" else "\r\033[K")
-            sys.stderr.flush()
-        elif time.monotonic() - self._said_s >= SAID_EVERY_S:
-            self._said_s = time.monotonic()
-            print(f"reembody: writing {path}", file=sys.stderr, flush=True)
-
-
 def verify_record(
-    session_id: str | None, heads: Sequence[str], *, as_json: bool
+    session_id: str | None, heads: Sequence[str], activity: Activity, *, as_json: bool
 ) -> tuple[str, bool]:
     """Check a session, the audit trail or both; the findings as text or JSON, and whether all hold.
 
@@ -135,10 +117,12 @@ def verify_record(
     holds = True
     with opened_database("verify") as database, database.reading() as db:
         if session_id is not None:
+            activity.now(f"verifying: reading session {session_id}")
             receipt = _receipt(db, session_id)
             found, holds = receipt.as_json(), receipt.complete
             parts.append(receipt_text(receipt))
         if session_id is None or wanted:
+            activity.now("verifying: reading the audit trail")
             trail = _check_trail(db, wanted)
             holds = holds and trail.holds
             parts.append(trail.text())

@@ -79,10 +79,14 @@ class RehearsalPlan:
 
 @dataclass(frozen=True)
 class Visit:
-    """What a study sets for each visit: how many timed phases, and their time together in s."""
+    """What a study sets for each visit: how many timed phases, and their time together in s.
+
+    `physics`: whether physics moves the avatar; taken for granted where an operator is not told.
+    """
 
     phases: int
     planned_s: float
+    physics: bool
 
 
 @dataclass(frozen=True)
@@ -122,7 +126,9 @@ async def visit_of(plan: RehearsalPlan) -> Visit:
     async with _client(plan) as http:
         await _sign_in(http, plan)
         study: Json = await call(http, "GET", f"/api/studies/{plan.study}")
-    visit = Visit(study["phases"], 60.0 * study["planned_minutes"])
+    avatar = (study["protocol"] or {}).get("avatar", "physics")
+    physics = plan.physics or avatar == "physics"
+    visit = Visit(study["phases"], 60.0 * study["planned_minutes"], physics)
     for option, phase in (("--redo", plan.redo), ("--withdraw-during", plan.withdraw_during)):
         if phase is not None and phase > visit.phases:
             raise ValueError(

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import select
 
+from app.cli import progress
 from app.database import open_database
 from app.features.care.backups import back_up
 from app.models import Erasure, Participant
@@ -20,6 +21,12 @@ from tests.features.lab import STUDY, Lab, ok, running_lab
 from tests.support.sqlite import fresh_sqlite
 
 RESTORE = Invoked("restore")
+
+
+@pytest.fixture(autouse=True)
+def soon_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a slow machine says of its progress is no warning."""
+    monkeypatch.setattr(progress, "SAID_AFTER_S", 600.0)
 
 
 @dataclass(frozen=True)

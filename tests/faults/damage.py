@@ -18,6 +18,7 @@ import numpy as np
 from fastapi.testclient import TestClient
 
 from app.cli.backups import restore_from
+from app.cli.progress import Activity
 from app.cli.serve.run import why_not
 from app.clock import Clock
 from app.errors import ReembodyError
@@ -138,6 +139,7 @@ def _restored(folder: Folder, settings: Settings) -> Iterator[str]:
     with patch("app.cli.backups.read_settings", lambda: settings):
         restore_from(
             folder.backup,
+            Activity(""),
             replace=False,
             even_though_active=True,
             even_though_altered=False,

@@ -30,6 +30,7 @@ from fastapi.testclient import TestClient
 
 from app.cli.backups import back_up_to, restore_from
 from app.cli.errors import reported
+from app.cli.progress import Activity
 from app.cli.record import export_to_folder
 from app.cli.serve.run import why_not
 from app.clock import Clock
@@ -154,13 +155,13 @@ def start(folder: Path, _: Source) -> None:
 def back_up(folder: Path, _: Source) -> None:
     """To a file outside of the data folder."""
     begin(folder)
-    back_up_to(folder / "out" / "made.reembody", as_json=True)
+    back_up_to(folder / "out" / "made.reembody", Activity(""), as_json=True)
 
 
 def export(folder: Path, _: Source) -> None:
     """To a folder outside of the data folder."""
     begin(folder)
-    export_to_folder(STUDY, folder / "out" / "export", "all")
+    export_to_folder(STUDY, folder / "out" / "export", Activity(""), "all")
 
 
 def restore(folder: Path, _: Source, *, replace: bool = False) -> None:
@@ -168,6 +169,7 @@ def restore(folder: Path, _: Source, *, replace: bool = False) -> None:
     begin(folder)
     restore_from(
         folder / "all.reembody",
+        Activity(""),
         replace=replace,
         even_though_active=True,
         even_though_altered=False,

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy import delete, update
 
+from app.cli.progress import Activity
 from app.cli.record import export_to_folder
 from app.database import Database, open_database
 from app.errors import InvalidInput
@@ -93,7 +94,7 @@ def test_an_entry_that_was_changed_is_named_without_a_session(database: Database
 def test_backup_and_export_print_the_head(database: Database, tmp_path: Path) -> None:
     """Each as it was when it was made, though to put them on record may lengthen the trail."""
     head = append(database, 0)
-    assert export_to_folder(STUDY, tmp_path / "out").endswith(f"audit head {head}")
+    assert export_to_folder(STUDY, tmp_path / "out", Activity("")).endswith(f"audit head {head}")
     made = Invoked("backup").run(tmp_path / "a.reembody")
     assert f"audit head {head}" in made.stdout
     made = Invoked("backup").run(tmp_path / "b.reembody", "--json")

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from app.cli.progress import Activity
 from app.cli.record import export_to_folder
 from app.database import open_database
 from app.errors import NotFound
@@ -24,7 +25,7 @@ def installation(database_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("installation")
 def test_the_command_writes_a_folder_and_says_what(tmp_path: Path) -> None:
     """Without a kind it takes what there is, and names it."""
-    said = export_to_folder(STUDY, tmp_path / "out")
+    said = export_to_folder(STUDY, tmp_path / "out", Activity(""))
     files = sum(path.is_file() for path in (tmp_path / "out").rglob("*"))
     counts, head = said.splitlines()
     assert counts == f"1 session(s) of kind simulated in {files} files: {tmp_path / 'out'}"
@@ -36,7 +37,7 @@ def test_the_command_writes_a_folder_and_says_what(tmp_path: Path) -> None:
 def test_the_command_refuses_what_it_does_not_know(tmp_path: Path) -> None:
     """An unknown kind and an unknown study are told apart, and nothing is written."""
     with pytest.raises(ValueError, match="valid are people, simulated, test, all"):
-        export_to_folder(STUDY, tmp_path / "out", kind="robots")
+        export_to_folder(STUDY, tmp_path / "out", Activity(""), kind="robots")
     with pytest.raises(NotFound):
-        export_to_folder("nothing", tmp_path / "out")
+        export_to_folder("nothing", tmp_path / "out", Activity(""))
     assert not (tmp_path / "out").exists()

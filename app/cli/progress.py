@@ -1,0 +1,86 @@
+"""What a long command is doing, on standard error: within a second, and then as it goes on.
+
+On a terminal it is one line that is written over. Elsewhere (a log, a pipe, a service) it is a line
+now and then, and none for a command that is done within a second. A thread of its own writes them,
+so that they also come while one step takes minutes and reports nothing.
+"""
+
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import TracebackType
+
+from app.cli.errors import ERASE_LINE
+
+SAID_AFTER_S = 0.7
+SAID_EVERY_S, DRAWN_EVERY_S = 5.0, 0.2
+"""How often there may be news: in a log, and on a terminal."""
+
+
+class Activity:
+    """Says what a command does, while the block lasts.
+
+    with Activity("backing up: opening the database") as activity:
+        activity.now("backing up: copying")
+    """
+
+    def __init__(self, what: str) -> None:
+        self._what, self._said = what, ""
+        self._ended, self._speaking = threading.Event(), threading.Lock()
+        self._thread = threading.Thread(target=self._speak, daemon=True)
+        self._live = sys.stderr.isatty()
+
+    def now(self, what: str) -> None:
+        """What it does from now on."""
+        self._what = what
+
+    def rows(self, what: str) -> Callable[[str, int], None]:
+        """Takes how many more rows of a table are done, and says how many that makes."""
+        done = {"table": "", "rows": 0}
+
+        def count(table: str, rows: int) -> None:
+            done.update(table=table, rows=rows + (done["rows"] if table == done["table"] else 0))
+            self.now(f"{what}: {table}, {done['rows']} rows")
+
+        return count
+
+    @contextmanager
+    def silent(self) -> Iterator[None]:
+        """Say nothing while somebody is asked a question."""
+        with self._speaking:
+            self._erase()
+            yield
+
+    def __enter__(self) -> "Activity":
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        _type: type[BaseException] | None,
+        _error: BaseException | None,
+        _traceback: TracebackType | None,
+    ) -> None:
+        self._ended.set()
+        self._thread.join()
+        self._erase()
+
+    def _erase(self) -> None:
+        if self._live and self._said:
+            sys.stderr.write(ERASE_LINE)
+            sys.stderr.flush()
+
+    def _speak(self) -> None:
+        wait_s = SAID_AFTER_S
+        while not self._ended.wait(wait_s):
+            wait_s = DRAWN_EVERY_S if self._live else SAID_EVERY_S
+            with self._speaking:
+                if self._what == self._said or self._ended.is_set():
+                    continue
+                self._said = self._what
+                if self._live:
+                    sys.stderr.write(f"{ERASE_LINE}{self._said}")
+                else:
+                    sys.stderr.write(f"reembody: {self._said}\n")
+                sys.stderr.flush()

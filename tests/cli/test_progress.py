@@ -1,0 +1,96 @@
+"""A long command says what it does, also where nobody sits at a terminal."""
+
+import time
+from pathlib import Path
+
+import pytest
+
+from app.cli import progress
+from app.cli.errors import ERASE_LINE
+from app.cli.progress import Activity
+from tests.cli.invoked import Invoked
+from tests.features.lab import STUDY
+
+GENEROUS_S = 60.0
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a big folder would after the first second."""
+    monkeypatch.setattr(progress, "SAID_AFTER_S", 0.0)
+    monkeypatch.setattr(progress, "SAID_EVERY_S", 0.01)
+    monkeypatch.setattr(progress, "DRAWN_EVERY_S", 0.01)
+
+
+def said_within(capsys: pytest.CaptureFixture[str], words: str) -> str:
+    """What standard error got until it has these words."""
+    said, give_up_s = "", time.monotonic() + GENEROUS_S
+    while words not in said:
+        assert time.monotonic() < give_up_s, said
+        said += capsys.readouterr().err
+        time.sleep(0.01)
+    return said
+
+
+def test_news_come_while_the_step_goes_on_and_none_twice(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Each on a line of its own; rows add up within their table."""
+    with Activity("exporting: opening the database") as activity:
+        said = said_within(capsys, "opening the database")
+        count = activity.rows("restoring")
+        count("events", 2)
+        count("events", 3)
+        said += said_within(capsys, "events, 5 rows")
+    assert said.splitlines()[0] == "reembody: exporting: opening the database"
+    assert said.splitlines()[-1] == "reembody: restoring: events, 5 rows"
+    assert said.count("opening") == 1
+
+
+def test_on_a_terminal_the_line_is_written_over_and_taken_away(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing of it is left beside what the command prints, nor in a question's answer."""
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    with Activity("first") as activity:
+        said = said_within(capsys, "first")
+        with activity.silent():
+            activity.now("second")
+            time.sleep(0.05)
+            asked = capsys.readouterr().err
+        said_within(capsys, "second")
+    assert said == f"{ERASE_LINE}first"
+    assert asked == ERASE_LINE
+    assert capsys.readouterr().err == ERASE_LINE
+
+
+def test_a_command_that_is_done_at_once_says_nothing(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A script's standard error stays empty."""
+    monkeypatch.setattr(progress, "SAID_AFTER_S", GENEROUS_S)
+    with Activity("nothing of it"):
+        pass
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments", "words"),
+    [
+        ("export", ("--study", STUDY, "--to", "out"), f"exporting {STUDY}: opening the database"),
+        ("verify", (), "verifying: opening the database"),
+        ("backup", ("out.reembody",), "backing up to out.reembody: opening the database"),
+        ("restore", ("out.reembody",), "restoring out.reembody: opening it"),
+    ],
+)
+def test_every_command_over_all_data_says_what_it_does(
+    command: str,
+    arguments: tuple[str, ...],
+    words: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Before it has opened anything, however it ends."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("REEMBODY_DATA_DIR", str(tmp_path / "data"))
+    assert f"reembody: {words}\n" in Invoked(command).run(*arguments).stderr
