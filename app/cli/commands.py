@@ -150,10 +150,10 @@ def rehearse(
 ) -> None:
     """Take simulated participants through whole sessions.
 
-    A session takes as long as its phases, divided by --speed, and some seconds: 9 minutes with the
-    study that ships. Two cores reach a speed of about 6 where physics moves the avatar, so that
-    this study takes about 2 minutes at --speed 20. A PHASE is its number in the visit, from 1;
-    practice and free movement count.
+    A session takes the time of its phases, divided by --speed: 9 minutes
+    with the study that ships. Where physics moves the avatar, two cores
+    reach a speed of about 6, so 2 minutes at best. A PHASE is its number
+    in the visit, from 1; practice and free movement count.
     """
     from app.cli.rehearsing import run_rehearsal
     from app.rehearsal.rehearse import RehearsalPlan

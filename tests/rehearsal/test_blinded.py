@@ -137,3 +137,9 @@ def test_what_makes_no_sense_is_refused_before_a_session_is_made(
         assert result.exit_code == UNUSABLE, result.output
         assert words in result.stderr
         assert client.get("/api/studies/short-latency/sessions").json() == before
+
+
+def test_the_help_says_how_long_a_rehearsal_takes() -> None:
+    """Before anybody waits for one."""
+    said = " ".join(Invoked("rehearse").run("--help").output.split())
+    assert "divided by --speed: 9 minutes with the study that ships" in said
