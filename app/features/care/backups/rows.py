@@ -1,6 +1,7 @@
 """Rows in one form that is the same on both engines, read and written a few at a time."""
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 from typing import Any
 
 from sqlalchemy import (
@@ -15,6 +16,7 @@ from sqlalchemy import (
     Integer,
     LargeBinary,
     MetaData,
+    Result,
     Select,
     String,
     Table,
@@ -35,6 +37,7 @@ from app.features.care.backups.shapes import ColumnShape, Kind, TableShape
 Row = tuple[Any, ...]
 SHORT_ROWS, LONG_ROWS = 2000, 64
 """How many rows are in memory at once."""
+KEPT_QUERIES = 256
 _MOMENT = "YYYY-MM-DD HH24:MI:SS.US"
 Progress = Callable[[str, int], None]
 """Called with a table's name and how many more of its rows are done."""
@@ -43,9 +46,13 @@ Progress = Callable[[str, int], None]
 def read_rows(connection: Connection, shape: TableShape) -> Iterator[list[Row]]:
     """All rows in the order of the primary key, texts ordered by code point, in portions."""
     size = LONG_ROWS if shape.has_bytes else SHORT_ROWS
-    query = _query(shape, postgresql=connection.dialect.name == "postgresql")
-    result = connection.execute(query, execution_options={"yield_per": size})
-    for portion in result.partitions():
+    if connection.dialect.name == "sqlite":
+        # Each file is an engine of its own, which would compile every one of these again.
+        result: Result[Any] = connection.exec_driver_sql(_sqlite_query(shape))
+    else:
+        query = _postgresql_query(shape)
+        result = connection.execute(query, execution_options={"yield_per": size})
+    for portion in result.partitions(size):
         yield [tuple(row) for row in portion]
 
 
@@ -65,35 +72,42 @@ def write_rows(connection: Connection, shape: TableShape, rows: Sequence[Row]) -
 
 def sqlite_insert(shape: TableShape) -> str:
     """The statement that stores such a row in SQLite, with a `?` for each column."""
-    # The words are the schema's own, from our migrations.
-    quoted = ", ".join(f'"{one.name}"' for one in shape.columns)
+    names = ", ".join(_quoted(one.name) for one in shape.columns)
     marks = ", ".join("?" * len(shape.columns))
-    return f'INSERT INTO "{shape.name}" ({quoted}) VALUES ({marks})'  # noqa: S608 - names of our schema
+    return f"INSERT INTO {_quoted(shape.name)} ({names}) VALUES ({marks})"  # noqa: S608 - names, quoted
 
 
-def _query(shape: TableShape, *, postgresql: bool) -> Select[Any]:
-    convert = _from_postgresql if postgresql else _from_sqlite
+@lru_cache(maxsize=KEPT_QUERIES)
+def _sqlite_query(shape: TableShape) -> str:
+    # SQLite makes a number of JSON that looks like one.
+    selected = ", ".join(
+        f"CAST({_quoted(one.name)} AS TEXT)" if one.kind is Kind.JSON else _quoted(one.name)
+        for one in shape.columns
+    )
+    order = f" ORDER BY {', '.join(map(_quoted, shape.key))}" if shape.key else ""
+    return f"SELECT {selected} FROM {_quoted(shape.name)}{order}"  # noqa: S608 - names, quoted
+
+
+def _quoted(name: str) -> str:
+    # Whoever made the file chose its names.
+    return '"' + name.replace('"', '""') + '"'
+
+
+@lru_cache(maxsize=KEPT_QUERIES)
+def _postgresql_query(shape: TableShape) -> Select[Any]:
     by_name = {one.name: one for one in shape.columns}
     return (
-        select(*(convert(one).label(f"v{at}") for at, one in enumerate(shape.columns)))
+        select(*(_from_postgresql(one).label(f"v{at}") for at, one in enumerate(shape.columns)))
         .select_from(table(shape.name))
-        .order_by(*(_ordered(by_name[name], postgresql=postgresql) for name in shape.key))
+        .order_by(*(_ordered(by_name[name]) for name in shape.key))
     )
 
 
-def _ordered(one: ColumnShape, *, postgresql: bool) -> ColumnElement[Any]:
-    plain: ColumnElement[Any] = column(one.name, String) if _is_text(one) else column(one.name)
+def _ordered(one: ColumnShape) -> ColumnElement[Any]:
     # PostgreSQL sorts texts as its locale likes; SQLite sorts their bytes.
-    return plain.collate("C") if postgresql and _is_text(one) else plain
-
-
-def _is_text(one: ColumnShape) -> bool:
-    return one.kind is Kind.TEXT
-
-
-def _from_sqlite(one: ColumnShape) -> ColumnElement[Any]:
-    # SQLite makes a number of JSON that looks like one.
-    return cast(column(one.name), Text) if one.kind is Kind.JSON else column(one.name)
+    if one.kind is Kind.TEXT:
+        return column(one.name, String).collate("C")
+    return column(one.name)
 
 
 def _from_postgresql(one: ColumnShape) -> ColumnElement[Any]:

@@ -47,6 +47,10 @@ def forged(path: Path, *statements: str) -> Path:
     [
         ("CREATE TABLE more (x INTEGER PRIMARY KEY)", "the table more is not of this program"),
         ("ALTER TABLE accounts ADD COLUMN more TEXT", "column accounts.more is not of this"),
+        (
+            """ALTER TABLE accounts ADD COLUMN "id"", ""role" TEXT""",
+            'column accounts.id", "role is not of this',
+        ),
         ("ALTER TABLE accounts RENAME COLUMN role TO rolf", "no column accounts.role"),
         ("CREATE VIEW seen AS SELECT 1", "there is a view seen"),
         (
