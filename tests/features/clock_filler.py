@@ -3,6 +3,7 @@
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
+from sqlalchemy import insert
 from sqlalchemy.orm import Session
 
 from app.models import ClockProbe
@@ -16,20 +17,22 @@ def store_probes(
 ) -> None:
     """Store probes as the server would; `server_utc_s` is in seconds since 1970."""
     assert probes.server_utc_s is not None
+    rows = []
     for at, answered in enumerate(probes.answered):
         back_s = float(probes.client_received_s[at]) * time_scale
-        db.add(
-            ClockProbe(
-                session_id=session_id,
-                epoch=epoch,
-                client_sent_s=float(probes.client_sent_s[at]) * time_scale,
-                server_received_ns=_ns(probes.server_received_s[at]) if answered else None,
-                server_sent_ns=_ns(probes.server_sent_s[at]) if answered else None,
-                client_received_s=back_s if answered else None,
-                server_utc=EPOCH_UTC + timedelta(seconds=float(probes.server_utc_s[at])),
-            )
+        rows.append(
+            {
+                "session_id": session_id,
+                "epoch": epoch,
+                "client_sent_s": float(probes.client_sent_s[at]) * time_scale,
+                "server_received_ns": _ns(probes.server_received_s[at]) if answered else None,
+                "server_sent_ns": _ns(probes.server_sent_s[at]) if answered else None,
+                "client_received_s": back_s if answered else None,
+                "server_utc": EPOCH_UTC + timedelta(seconds=float(probes.server_utc_s[at])),
+            }
         )
-    db.flush()
+    if rows:
+        db.execute(insert(ClockProbe), rows)
 
 
 def steady_probes(begin: datetime) -> ClockProbes:

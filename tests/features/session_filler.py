@@ -1,14 +1,21 @@
-"""What happens in a built session: its phases with what they came to, and its forms."""
+"""What happens in a built session: its phases with what they came to, and its forms.
+
+A session is some two thousand rows and most tests of results build a few, so its rows are inserted
+table by table, without an object for each.
+"""
 
 import hashlib
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
+from typing import Any
 
 import numpy as np
+from sqlalchemy import insert
 from sqlalchemy.orm import Session
 
+from app.database import Base
 from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for
 from app.models import (
@@ -54,6 +61,8 @@ class Filler:
     session: StudySession
     spec: SessionSpec
     phase_id: int = 0
+    rows: dict[type[Base], list[dict[str, Any]]] = field(default_factory=dict)
+    """What is to be inserted, those tables first that others refer to."""
 
     def fill(self, plan: Sequence[Step]) -> None:
         """Add the rows of every step, and the readings of the one client run's clock."""
@@ -66,11 +75,17 @@ class Filler:
                     self._phase(step, attempt, "voided" if voided else "done")
                 elif step.instrument is not None and step.key not in self.spec.skipped:
                     self._form(step, attempt)
+        for model, rows in self.rows.items():
+            self.db.execute(insert(model), rows)
+
+    def _add(self, model: type[Base], **columns: Any) -> None:
+        self.rows.setdefault(model, []).append(columns)
 
     def _phase(self, step: Step, attempt: int, status: str) -> None:
         self.phase_id += 1
         begin_s = 100.0 * self.phase_id
-        phase = Phase(
+        self._add(
+            Phase,
             session_id=self.session.id,
             phase_id=self.phase_id,
             step_index=step.index,
@@ -91,8 +106,6 @@ class Filler:
             started_at=NOW,
             ended_at=NOW,
         )
-        self.db.add(phase)
-        self.db.flush()
         if step.kind == "task":
             self._task_rows(step)
         self._joint_errors(step)
@@ -105,35 +118,33 @@ class Filler:
             (f"{step.limb}/2/left", "side", "left", "LeftLowerArm", 2.0, 4.0),
             (f"{step.limb}/1/panel", "panel", None, "RightHand", 5.0, 5.5),
         ):
-            self.db.add(
-                Contact(
-                    id=stable_id(self.session.id, self.phase_id, surface, part),
-                    session_id=self.session.id,
-                    phase_id=self.phase_id,
-                    surface=surface,
-                    surface_kind=kind,
-                    box=int(surface.split("/")[1]),
-                    side=side,
-                    body_part=part,
-                    begin_s=begin_s,
-                    end_s=end_s,
-                    begin_active_s=begin_s,
-                    end_active_s=end_s,
-                    effect="side" if side else "green",
-                )
+            self._add(
+                Contact,
+                id=stable_id(self.session.id, self.phase_id, surface, part),
+                session_id=self.session.id,
+                phase_id=self.phase_id,
+                surface=surface,
+                surface_kind=kind,
+                box=int(surface.split("/")[1]),
+                side=side,
+                body_part=part,
+                begin_s=begin_s,
+                end_s=end_s,
+                begin_active_s=begin_s,
+                end_active_s=end_s,
+                effect="side" if side else "green",
             )
         for number in range(1, self.spec.completions(step) + 1):
-            self.db.add(
-                Completion(
-                    session_id=self.session.id,
-                    phase_id=self.phase_id,
-                    number=number,
-                    at_s=10.0 * number,
-                    active_s=10.0 * number,
-                    duration_s=10.0,
-                    order=[4, 3, 2, 1],
-                    out_of_order_touches=0,
-                )
+            self._add(
+                Completion,
+                session_id=self.session.id,
+                phase_id=self.phase_id,
+                number=number,
+                at_s=10.0 * number,
+                active_s=10.0 * number,
+                duration_s=10.0,
+                order=[4, 3, 2, 1],
+                out_of_order_touches=0,
             )
 
     def _joint_errors(self, step: Step) -> None:
@@ -141,20 +152,19 @@ class Filler:
             for joint in ERROR_JOINTS:
                 for axis in ERROR_AXES:
                     value = self.spec.joint_error_rad(step, joint) if reference == "present" else 0
-                    self.db.add(
-                        JointErrorRow(
-                            session_id=self.session.id,
-                            phase_id=self.phase_id,
-                            reference=reference,
-                            joint=joint,
-                            axis=axis,
-                            mean_rad=value,
-                            rms_rad=value,
-                            p95_rad=value,
-                            max_rad=value,
-                            samples=5400,
-                            excluded=0,
-                        )
+                    self._add(
+                        JointErrorRow,
+                        session_id=self.session.id,
+                        phase_id=self.phase_id,
+                        reference=reference,
+                        joint=joint,
+                        axis=axis,
+                        mean_rad=value,
+                        rms_rad=value,
+                        p95_rad=value,
+                        max_rad=value,
+                        samples=5400,
+                        excluded=0,
                     )
 
     def _joint_error_courses(self, step: Step) -> None:
@@ -162,15 +172,14 @@ class Filler:
         bins = math.ceil((step.duration_s or 0.0) / COURSE_BIN_S)
         mean = float(np.mean([self.spec.joint_error_rad(step, joint) for joint in ERROR_JOINTS]))
         for reference in ("present", "command"):
-            self.db.add(
-                JointErrorCourseRow(
-                    session_id=self.session.id,
-                    phase_id=self.phase_id,
-                    reference=reference,
-                    bin_s=COURSE_BIN_S,
-                    mean_rad=[mean if reference == "present" else 0.0] * bins,
-                    samples=[5400 * len(ERROR_JOINTS) // bins] * bins,
-                )
+            self._add(
+                JointErrorCourseRow,
+                session_id=self.session.id,
+                phase_id=self.phase_id,
+                reference=reference,
+                bin_s=COURSE_BIN_S,
+                mean_rad=[mean if reference == "present" else 0.0] * bins,
+                samples=[5400 * len(ERROR_JOINTS) // bins] * bins,
             )
 
     def _form(self, step: Step, attempt: int) -> None:
@@ -180,8 +189,10 @@ class Filler:
         answers = self._answers(instrument, step)
         shown = list(item_order(instrument, 7))
         administration = f"{step.key}#{attempt}"
-        submission = Submission(
-            id=stable_id(self.session.id, administration),
+        submission_id = stable_id(self.session.id, administration)
+        self._add(
+            Submission,
+            id=submission_id,
             session_id=self.session.id,
             administration=administration,
             step_index=step.index,
@@ -200,21 +211,18 @@ class Filler:
             started_at=NOW,
             submitted_at=NOW + timedelta(minutes=step.index, seconds=attempt),
         )
-        self.db.add(submission)
-        self.db.flush()
         for item in instrument.items:
             value = answers[item.key]
-            self.db.add(
-                Answer(
-                    submission_id=submission.id,
-                    item=item.key,
-                    position=shown.index(item.key),
-                    value_number=None if isinstance(value, str) else value,
-                    value_text=value if isinstance(value, str) else None,
-                )
+            self._add(
+                Answer,
+                submission_id=submission_id,
+                item=item.key,
+                position=shown.index(item.key),
+                value_number=None if isinstance(value, str) else value,
+                value_text=value if isinstance(value, str) else None,
             )
         for key, score in score_answers(instrument, answers).items():
-            self.db.add(ScoreValue(submission_id=submission.id, score=key, value=score))
+            self._add(ScoreValue, submission_id=submission_id, score=key, value=score)
 
     def _answers(self, instrument: Instrument, step: Step) -> dict[str, float | str | None]:
         rng = np.random.default_rng([*self.spec.code.encode(), step.index])
