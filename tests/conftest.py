@@ -23,6 +23,7 @@ from tests.support.server import LiveServer
 from tests.support.shared_data import SHARED_DATA_VARIABLE, shared_data_folder
 from tests.support.shipped_studies import delayed_copies
 from tests.support.sqlite import fresh_sqlite
+from tests.support.statement_cache import share_statement_caches
 
 # How long an example takes says something about the machine, nothing about the code.
 settings.register_profile("untimed", deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -55,6 +56,12 @@ def _cheap_passwords() -> None:
     """
     make_passwords_cheap()
     os.environ[CHEAP_PASSWORDS] = "1"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _compiled_once() -> None:
+    """Each test has a database of its own, and most of what is asked of it is the same."""
+    share_statement_caches()
 
 
 @pytest.fixture(scope="session", autouse=True)

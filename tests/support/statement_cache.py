@@ -1,0 +1,49 @@
+"""SQL that was compiled once in a test process is not compiled again for its next database.
+
+SQLAlchemy keeps what it compiled with the engine, and for the object that speaks the engine's
+dialect. Almost every test has a database and so an engine of its own, which would compile the same
+hundred statements again: for longer than the database takes to answer them. Here all engines of a
+process share one cache, and two dialects are the same key where they write the same SQL.
+"""
+
+from typing import Any
+
+from sqlalchemy import Engine
+from sqlalchemy.dialects.postgresql.psycopg import PGDialect_psycopg
+from sqlalchemy.dialects.sqlite.pysqlite import SQLiteDialect_pysqlite
+from sqlalchemy.engine.interfaces import Dialect
+from sqlalchemy.util import LRUCache
+
+MOST_STATEMENTS = 2000
+SETTINGS = (
+    "server_version_info",
+    "default_schema_name",
+    "paramstyle",
+    "_json_serializer",
+    "_json_deserializer",
+)
+"""What may differ between two dialects of one class, and would change what is compiled."""
+_compiled: LRUCache[Any, Any] = LRUCache(MOST_STATEMENTS)
+
+
+def share_statement_caches() -> None:
+    """Engines that this process makes from now on share what was compiled."""
+    for dialect in (SQLiteDialect_pysqlite, PGDialect_psycopg):
+        methods = {"engine_created": classmethod(_use), "__eq__": _alike, "__hash__": _hash}
+        for name, method in methods.items():
+            setattr(dialect, name, method)
+
+
+def _use(_dialect: type[Dialect], engine: Engine) -> None:
+    engine.update_execution_options(compiled_cache=_compiled)
+
+
+def _alike(one: Dialect, other: object) -> bool:
+    return type(one) is type(other) and all(
+        getattr(one, name, None) == getattr(other, name, None) for name in SETTINGS
+    )
+
+
+def _hash(dialect: Dialect) -> int:
+    # Not by its settings: the version is only known once it has connected.
+    return hash(type(dialect))
