@@ -19,6 +19,7 @@ from tests.support.nursery import (
     nursery,
     ship_studies_from,
 )
+from tests.support.repetitions import repeat_at_length
 from tests.support.server import LiveServer
 from tests.support.shared_data import SHARED_DATA_VARIABLE, shared_data_folder
 from tests.support.shipped_studies import delayed_copies
@@ -37,6 +38,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Open what the processes of the run share; xdist's workers find it already there."""
+    if config.getoption("--long"):
+        repeat_at_length()
     if not _is_worker(config):
         shared_run.open_run()
 

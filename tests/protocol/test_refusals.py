@@ -14,6 +14,7 @@ from app.protocol import ConfigError, ConfigProblem, load_instrument
 from app.protocol.source import Path, Plain, read_source
 from tests.protocol.editing.test_edit import paths
 from tests.protocol.helpers import CONFIGS, loaded
+from tests.support.repetitions import usually
 
 STUDIES = tuple(file.read_text(encoding="utf-8") for file in sorted(CONFIGS.glob("**/*.yaml"))
                 if file.parent.name != "instruments")  # fmt: skip
@@ -72,7 +73,11 @@ def check(problems: tuple[ConfigProblem, ...]) -> None:
         assert problem.path or problem.line >= 1, problem
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(
+    max_examples=usually(40, at_length=120),
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
 @given(broken_files(STUDIES))
 def test_a_broken_study_is_refused_with_place_and_remedy(text: str) -> None:
     """Nothing but ConfigError, and each problem with a place and a remedy."""
@@ -82,7 +87,11 @@ def test_a_broken_study_is_refused_with_place_and_remedy(text: str) -> None:
         check(error.problems)
 
 
-@settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(
+    max_examples=usually(40, at_length=120),
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
 @given(broken_files(INSTRUMENTS))
 def test_a_broken_instrument_is_refused_with_place_and_remedy(text: str) -> None:
     """The same for instruments."""
@@ -92,7 +101,7 @@ def test_a_broken_instrument_is_refused_with_place_and_remedy(text: str) -> None
         check(error.problems)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=usually(50, at_length=150), deadline=None)
 @given(st.text(max_size=300))
 def test_any_text_at_all_is_read_or_refused(text: str) -> None:
     """What is no study at all is refused in the same way."""

@@ -13,6 +13,7 @@ from app.adapters.humanoids import HumanoidFileError, Limits, read_humanoid
 from app.science.avatar.body import HumanoidError, figure_of
 from tests.support.humanoid_files import glb, humanoid_file, taken_apart
 from tests.support.humanoid_model import Model, without
+from tests.support.repetitions import usually
 
 _LIMITS = Limits(bytes=400_000, vertices=20_000, values=400_000)
 _SEEDS = [
@@ -73,7 +74,7 @@ def damaged(draw: st.DrawFn) -> bytes:
 
 
 _BOUNDED = settings(
-    max_examples=150,
+    max_examples=usually(50, at_length=150),
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],

@@ -11,6 +11,7 @@ from app.protocol.editing import Change, edit_text
 from app.protocol.editing.change import applied, same
 from app.protocol.source import Path, Plain, read_source
 from tests.protocol.helpers import CONFIGS, STUDY, loaded
+from tests.support.repetitions import usually
 
 FILES = tuple(
     file.read_text(encoding="utf-8")
@@ -69,7 +70,7 @@ def changes(draw: st.DrawFn) -> tuple[str, Change]:
     return text, Change(path, action, draw(values), to)  # type: ignore[arg-type]  # drawn
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=usually(25, at_length=100), deadline=None)
 @given(changes())
 def test_a_change_does_just_what_it_says(case: tuple[str, Change]) -> None:
     """The edited text says what the changed tree says, or it is refused with a remedy."""
@@ -85,7 +86,7 @@ def test_a_change_does_just_what_it_says(case: tuple[str, Change]) -> None:
     assert same(read_source(after).tree, wanted)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=usually(15, at_length=60), deadline=None)
 @given(st.data())
 def test_a_change_of_one_word_touches_one_line(data: st.DataObject) -> None:
     """Every other line stays as it was, comments included, wherever a number stands."""

@@ -27,6 +27,7 @@ from app.features.record.sessions.engine import (
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine.state import PhaseStatus
 from tests.features.record.sessions.engine_run import PLAN, REPORTS, WORDS, Run
+from tests.support.repetitions import usually
 
 STEPS = st.none() | st.integers(-1, len(PLAN))
 TIMES = st.one_of(
@@ -203,7 +204,9 @@ class AnySession(RuleBasedStateMachine):
 
 
 TestAnySession = AnySession.TestCase
-TestAnySession.settings = settings(max_examples=40, stateful_step_count=50, deadline=None)
+TestAnySession.settings = settings(
+    max_examples=usually(15, at_length=40), stateful_step_count=50, deadline=None
+)
 
 
 def events(kind: type[Event]) -> st.SearchStrategy[Event]:

@@ -21,6 +21,7 @@ from app.features.record.telemetry.encodings.unit_quaternions import choose
 from app.wire import VALUES_PER_FRAME
 from tests.features.record.telemetry.followed_movement import followed, made_movement
 from tests.features.record.telemetry.plain_decoder import decode_plainly
+from tests.support.repetitions import usually
 from tests.wire.samples import bits, every_odd_float, standing
 
 Words = NDArray[np.uint32]
@@ -82,7 +83,7 @@ def chunks(draw: st.DrawFn) -> tuple[NDArray[np.float64], NDArray[np.uint8], Wor
 
 
 @given(chunk=chunks())
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=usually(50, at_length=150), deadline=None)
 def test_every_bit_comes_back(
     chunk: tuple[NDArray[np.float64], NDArray[np.uint8], Words],
 ) -> None:
@@ -105,7 +106,7 @@ def test_a_chunk_may_have_any_length(count: int) -> None:
 
 
 @given(chunk=chunks())
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=usually(10, at_length=30), deadline=None)
 def test_the_document_is_enough_to_read_a_chunk(
     chunk: tuple[NDArray[np.float64], NDArray[np.uint8], Words],
 ) -> None:

@@ -28,6 +28,7 @@ from tests.science.avatar.figures import EMPTY, STATURE_M, figure, model
 from tests.science.avatar.simulated import angles, target_angles
 from tests.support.humanoid_files import humanoid_file
 from tests.support.humanoid_model import Model
+from tests.support.repetitions import usually
 
 STEP_S = 0.002
 WALL = Scene((SceneBox("wall", (-0.8, 1.4, -0.31), (0.5, 0.6, 0.01)),), floor=False)
@@ -197,7 +198,7 @@ def test_models_that_lack_parts_follow(lacking: tuple[str, ...], kind: ColliderK
     assert body.time_s == pytest.approx(2.0)
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=usually(8, at_length=25), deadline=None, derandomize=True)
 @given(st.integers(0, 10_000))
 def test_odd_bodies_stand(seed: int) -> None:
     """Bones between half and one and a half times as long: refused by name, or a body that holds.
