@@ -21,6 +21,7 @@ def routes(lab: Lab) -> list[tuple[str, str]]:
     return sorted((method, path) for path, methods in paths.items() for method in methods)
 
 
+@pytest.mark.one_engine
 def test_every_route_but_the_public_ones_asks_who_is_there(lab: Lab) -> None:
     """Without login, pairing or token each one answers 401 in the common shape."""
     closed = [route for route in routes(lab) if route not in PUBLIC]
@@ -32,6 +33,7 @@ def test_every_route_but_the_public_ones_asks_who_is_there(lab: Lab) -> None:
         assert refusal["remedy"], path
 
 
+@pytest.mark.one_engine
 def test_what_is_meant_to_be_public_exists(lab: Lab) -> None:
     """The list of open routes has no name that went away."""
     assert set(routes(lab)) >= PUBLIC
@@ -50,6 +52,7 @@ def test_a_tablet_is_no_operator(lab: Lab) -> None:
         )
 
 
+@pytest.mark.one_engine
 def test_a_headset_is_neither_operator_nor_tablet(lab: Lab) -> None:
     """A headset's token opens the headset's route and no other."""
     session_id = lab.join()["id"]
@@ -64,11 +67,13 @@ def test_a_headset_is_neither_operator_nor_tablet(lab: Lab) -> None:
         )
 
 
+@pytest.mark.one_engine
 def test_an_operator_is_no_tablet(lab: Lab) -> None:
     """A login does not answer a participant's form."""
     error(lab.operator.get("/api/tablet/state"), 401, "not_signed_in")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "headers",
     [
@@ -91,6 +96,7 @@ def test_another_sites_page_cannot_change_anything(
     assert refusal["message"] == "this request comes from another site"
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "headers",
     [
@@ -105,12 +111,14 @@ def test_our_own_pages_and_scripts_get_through(lab: Lab, headers: dict[str, str]
     assert answer.status_code == 200
 
 
+@pytest.mark.one_engine
 def test_reading_is_left_to_the_browsers_own_rules(lab: Lab) -> None:
     """A link from another site may open a page; it changes nothing."""
     answer = lab.operator.get("/api/health", headers={"sec-fetch-site": "cross-site"})
     assert answer.status_code == 200
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("host", "status"),
     [
@@ -132,6 +140,7 @@ def test_a_name_of_the_internet_does_not_lead_here(lab: Lab, host: str, status: 
     assert lab.stranger().get("/api/health", headers={"host": host}).status_code == status
 
 
+@pytest.mark.one_engine
 def test_no_foreign_page_gets_anything_changed_anywhere(lab: Lab) -> None:
     """Every changing route, with an operator's login, asked by three kinds of foreign pages."""
     foreign = (
@@ -154,6 +163,7 @@ def test_no_foreign_page_gets_anything_changed_anywhere(lab: Lab) -> None:
     assert passes == []
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("origin", ["https://elsewhere.example", "null", "http://testserver:99"])
 def test_a_foreign_page_opens_no_socket(lab: Lab, origin: str) -> None:
     """A WebSocket's handshake from another origin is refused, whatever token it brings."""

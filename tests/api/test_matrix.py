@@ -128,6 +128,7 @@ def test_lists_hold_own_studies_only(bench: Bench) -> None:
         assert [study["key"] for study in listed] == [STUDY], role
 
 
+@pytest.mark.one_engine
 def test_an_unlisted_route_is_closed(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is not in the table is refused for everybody, admins included."""
     monkeypatch.delitem(POLICY, "GET /api/studies")

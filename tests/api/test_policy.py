@@ -1,11 +1,14 @@
 """The policy table and the routes are the same list."""
 
+import pytest
+
 from app.platform.policy import ANYONE, HEADSET, LAB, POLICY, TABLET
 from tests.features.lab import Lab
 
 NOT_OVER_HTTP = {"WEBSOCKET /api/vr/stream", "WEBSOCKET /api/sessions/{session_id}/pose"}
 
 
+@pytest.mark.one_engine
 def test_the_table_lists_every_route_and_nothing_else(lab: Lab) -> None:
     """Whoever adds a route must say who may call it."""
     documented = {
@@ -47,6 +50,7 @@ def test_what_changes_something_is_closed_to_analysts() -> None:
     assert changing == trying
 
 
+@pytest.mark.one_engine
 def test_no_two_shapes_share_a_name(lab: Lab) -> None:
     """A second one would rename the first for every generated client."""
     shapes = lab.app.openapi()["components"]["schemas"]

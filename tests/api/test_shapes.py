@@ -28,6 +28,7 @@ def test_every_error_has_the_same_shape(
     assert set(error(lab.operator.request(method, path), status, code)) == SHAPE
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("body", [b"{", b"\xff\xfe", b'"text"', b"[" * 5000, b"", b"NaN"])
 def test_a_body_that_is_no_json_is_refused(lab: Lab, body: bytes) -> None:
     """Broken JSON is the sender's fault and is told so."""
@@ -45,6 +46,7 @@ def test_odd_names_are_not_found(lab: Lab, name: str) -> None:
     assert set(answer.json()["error"]) == SHAPE
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("raised", "status", "code"),
     [
@@ -74,12 +76,14 @@ def test_what_breaks_inside_is_told_in_the_same_shape(
     assert "INSERT" not in answer.text
 
 
+@pytest.mark.one_engine
 def test_a_body_that_says_it_is_too_large_is_refused(lab: Lab) -> None:
     """More than 2 MiB are not even read."""
     answer = lab.operator.post("/api/studies/check", json={"yaml": "x" * (2 * 1024 * 1024)})
     assert error(answer, 413, "too_large")["valid"] == "at most 2097152 bytes"
 
 
+@pytest.mark.one_engine
 def test_a_body_that_does_not_say_its_length_is_counted(lab: Lab) -> None:
     """A stream is cut off at the same limit with the same answer."""
 
@@ -93,6 +97,7 @@ def test_a_body_that_does_not_say_its_length_is_counted(lab: Lab) -> None:
     error(answer, 413, "too_large")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("method", "path", "headers"),
     [
@@ -115,6 +120,7 @@ def test_every_answer_carries_the_security_headers(
     assert answer.headers["referrer-policy"] == "no-referrer"
 
 
+@pytest.mark.one_engine
 def test_nothing_of_the_interface_is_kept_by_caches(lab: Lab) -> None:
     """Answers under /api are no-store."""
     assert lab.operator.get("/api/studies").headers["cache-control"] == "no-store"

@@ -48,6 +48,7 @@ def spend_all(lab: Lab, client: TestClient | None = None) -> Response:
     raise AssertionError("a stranger may ask for ever")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(("method", "path"), WITH_A_BODY)
 @pytest.mark.parametrize("sent", ["declared", "in chunks"])
 def test_a_stranger_may_send_little(lab: Lab, method: str, path: str, sent: str) -> None:
@@ -59,6 +60,7 @@ def test_a_stranger_may_send_little(lab: Lab, method: str, path: str, sent: str)
     assert refusal["valid"] == f"at most {STRANGERS_BODY_BYTES} bytes"
 
 
+@pytest.mark.one_engine
 def test_too_much_is_refused_while_it_comes(lab: Lab) -> None:
     """The rest of a body that is too large is not waited for."""
     taken: list[int] = []
@@ -66,6 +68,7 @@ def test_too_much_is_refused_while_it_comes(lab: Lab) -> None:
     error(answer, 413, "too_large")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("path", ["/api/studies", "/api/captures?name=a.bvh"])
 def test_a_closed_route_takes_no_more_from_a_stranger(lab: Lab, path: str) -> None:
     """The larger limits are for those who are in."""
@@ -76,6 +79,7 @@ def test_a_closed_route_takes_no_more_from_a_stranger(lab: Lab, path: str) -> No
     error(refusal, 401, "not_signed_in")
 
 
+@pytest.mark.one_engine
 def test_an_ended_login_hears_that_it_has_ended(lab: Lab) -> None:
     """Whoever saves a large study after their login has ended is asked to log in."""
     client = lab.stranger()
@@ -84,6 +88,7 @@ def test_an_ended_login_hears_that_it_has_ended(lab: Lab) -> None:
     error(answer, 401, "not_signed_in")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "body",
     [
@@ -105,6 +110,7 @@ def test_no_answer_repeats_a_secret(lab: Lab, method: str, path: str, body: obje
     assert SECRET not in lab.operator.request(method, path, json=body).text
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("filling", ["\x01", "é", '"', "x"])
 def test_an_answer_is_small_however_much_was_sent(lab: Lab, filling: str) -> None:
     """No route gives back what it did not understand, neither values nor names of fields."""
@@ -159,6 +165,7 @@ def test_an_address_that_is_no_text_is_refused(lab: Lab, bad: str) -> None:
         error(lab.stranger().get(f"{page}?{bad}"), 422, "invalid_input")
 
 
+@pytest.mark.one_engine
 def test_a_header_that_is_no_text_is_refused(lab: Lab) -> None:
     """Whichever it is; Latin-1 is what old clients write."""
     for name in (b"authorization", b"cookie", b"user-agent", b"accept-language", b"x-any"):
@@ -169,6 +176,7 @@ def test_a_header_that_is_no_text_is_refused(lab: Lab) -> None:
         require_text_in_head(b"/", b"", [(name, b"M\xfcller"), (name, "Müller".encode())])
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("name", ["host", "origin"])
 def test_a_broken_address_in_a_header_is_refused(lab: Lab, name: str) -> None:
     """Half an IPv6 address is nobody's name, and no trouble of the server's."""

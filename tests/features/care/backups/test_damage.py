@@ -143,6 +143,7 @@ def test_a_file_of_another_kind_is_refused(sqlite: Database, tmp_path: Path) -> 
     assert refused(tmp_path / "reembody.sqlite")
 
 
+@pytest.mark.one_engine
 def test_nothing_is_touched_by_a_damaged_one(
     backup: Path, database: Database, tmp_path: Path
 ) -> None:

@@ -4,6 +4,7 @@ import csv
 import io
 import zipfile
 
+import pytest
 from sqlalchemy import select
 
 from app.features.record.headset import participant_info
@@ -85,6 +86,7 @@ def test_scores_are_those_of_the_answers_that_count(site: Site) -> None:
     assert after["scores"] != form["scores"]
 
 
+@pytest.mark.one_engine
 def test_the_headset_uses_corrected_demographics(site: Site) -> None:
     """A left-hander who was taken for a right-hander gets the mirrored boxes."""
     visit = make_visit(site, "corrected-3")
@@ -98,6 +100,7 @@ def test_the_headset_uses_corrected_demographics(site: Site) -> None:
     assert (before.handedness, after.handedness) == (form["answers"]["handedness"], other)
 
 
+@pytest.mark.one_engine
 def test_the_log_holds_only_a_salted_hash(site: Site) -> None:
     """Value and reason stand beside it, and the hash is theirs."""
     visit = make_visit(site, "corrected-4")
@@ -114,6 +117,7 @@ def test_the_log_holds_only_a_salted_hash(site: Site) -> None:
     assert events[-1]["data"]["content_hash"] == expected
 
 
+@pytest.mark.one_engine
 def test_what_is_not_an_answer_is_refused(site: Site) -> None:
     """Out of range, of another kind, of no such item, without a reason, or no change at all."""
     visit = make_visit(site, "corrected-5")
@@ -136,6 +140,7 @@ def test_what_is_not_an_answer_is_refused(site: Site) -> None:
     assert forms(site, visit)["karas2020"] == form
 
 
+@pytest.mark.one_engine
 def test_an_answer_can_be_taken_out(site: Site) -> None:
     """Then it counts as left out, and scores that need it have no value."""
     visit = make_visit(site, "corrected-7")

@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Iterator
 
+import pytest
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
@@ -69,6 +70,7 @@ def test_nothing_of_the_person_is_left_in_any_table(site: Site) -> None:
     assert events[-1]["data"]["reason_code"] == "withdrawn"
 
 
+@pytest.mark.one_engine
 def test_no_hash_can_be_tried_out(site: Site) -> None:
     """A few answers on a scale of seven could be guessed from a bare hash; salts are gone."""
     visit = make_visit(site, mine("salt"))
@@ -140,6 +142,7 @@ def _hash(salt: str, answers: Json) -> str:
     return hashlib.sha256(f"{salt}{canonical(answers)}".encode()).hexdigest()
 
 
+@pytest.mark.one_engine
 def test_it_is_refused_while_a_session_runs_and_for_another_code(site: Site) -> None:
     """Nothing has changed then; afterwards it can be done once."""
     visit = make_visit(site, mine("rules"))
@@ -182,6 +185,7 @@ def test_nothing_comes_back_afterwards(site: Site) -> None:
     assert in_tables(visit, site.database.engine) == {}
 
 
+@pytest.mark.one_engine
 def test_a_session_that_was_only_planned_is_over_with_it(site: Site) -> None:
     """Its slot is free again, and nobody can start it under a tombstone."""
     session_id = site.join(kind="people", participant_code=mine("planned"))

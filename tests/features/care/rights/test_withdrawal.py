@@ -2,6 +2,7 @@
 
 import json
 
+import pytest
 from sqlalchemy import func, select
 
 from app.models import TelemetryBatch, TelemetryChunk, TelemetryStream
@@ -50,6 +51,7 @@ def test_movement_that_comes_after_it_is_refused_and_not_stored(site: Site) -> N
     assert frames_of(site, other.session_id) == (2 * FRAMES + 9, 2 * FRAMES + 9)
 
 
+@pytest.mark.one_engine
 def test_a_headset_that_comes_back_is_told_at_its_hello(site: Site) -> None:
     """What it kept in its journal is not taken either."""
     visit = make_visit(site, "gone-2")
@@ -59,6 +61,7 @@ def test_a_headset_that_comes_back_is_told_at_its_hello(site: Site) -> None:
         assert json.loads(socket.recv(timeout=10.0))["code"] == "withdrawn"
 
 
+@pytest.mark.one_engine
 def test_an_aborted_session_still_takes_what_its_headset_kept(site: Site) -> None:
     """The lab broke it off, not the participant: nothing is lost."""
     visit = make_visit(site, "aborted-1")
@@ -68,6 +71,7 @@ def test_an_aborted_session_still_takes_what_its_headset_kept(site: Site) -> Non
         headset.acknowledged("target", 9)
 
 
+@pytest.mark.one_engine
 def test_the_tablet_shows_the_last_screen_and_is_asked_nothing_more(site: Site) -> None:
     """A form that was under way is not taken any more."""
     visit = make_visit(site, "gone-3")

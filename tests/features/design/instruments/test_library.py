@@ -44,6 +44,7 @@ def test_the_library_tells_source_licence_and_use(lab: Lab) -> None:
     assert all(one["provenance"]["licence"] for one in library.values())
 
 
+@pytest.mark.one_engine
 def test_an_instrument_in_full_can_be_drawn(lab: Lab) -> None:
     """Items, formulas and a form in the shape in which tablets get theirs."""
     detail = ok(lab.operator.get("/api/instruments/karas2020"))
@@ -55,6 +56,7 @@ def test_an_instrument_in_full_can_be_drawn(lab: Lab) -> None:
     assert "ssq" in refusal["valid"]
 
 
+@pytest.mark.one_engine
 def test_a_check_previews_or_tells_every_problem(lab: Lab) -> None:
     """A formula with an unknown name is told with its path and line."""
     fine = ok(lab.operator.post("/api/instruments/check", json={"yaml": OWN}))
@@ -69,6 +71,7 @@ def test_a_check_previews_or_tells_every_problem(lab: Lab) -> None:
     assert bad["preview"] is None
 
 
+@pytest.mark.one_engine
 def test_the_experts_answers_score_as_printed(lab: Lab) -> None:
     """Table 7.2 of Karas (2020): 8, 7, 4 and 1.04, with the recoded values on the way."""
     result = score(lab, key="karas2020", answers=EXPERT)
@@ -81,6 +84,7 @@ def test_the_experts_answers_score_as_printed(lab: Lab) -> None:
     assert ownership["filled_in"] == "((-2) - (-3)) - (-3) + (1 - (-3))"
 
 
+@pytest.mark.one_engine
 def test_a_half_filled_form_says_what_is_missing(lab: Lab) -> None:
     """A score without value names its items, through other scores too; a bad answer is told."""
     result = score(lab, yaml=OWN, answers={"calm": 5, "tense": 9, "note": "because"})

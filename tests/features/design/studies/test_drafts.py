@@ -12,6 +12,7 @@ def yaml(lab: Lab) -> str:
     return str(ok(lab.operator.get(f"/api/studies/{STUDY}"))["yaml"])
 
 
+@pytest.mark.one_engine
 def test_templates_are_offered_and_not_studies(lab: Lab) -> None:
     """Four beginnings, each of which checks out; only the shipped study is stored."""
     templates = ok(lab.operator.get("/api/templates"))
@@ -23,6 +24,7 @@ def test_templates_are_offered_and_not_studies(lab: Lab) -> None:
     assert [one["key"] for one in ok(lab.operator.get("/api/studies"))] == [STUDY]
 
 
+@pytest.mark.one_engine
 def test_a_check_tells_what_a_study_asks_for(lab: Lab, yaml: str) -> None:
     """Three latencies in all 3! orders, twice: 12 people, 7 forms each, 9 minutes set."""
     summary = ok(lab.operator.post("/api/studies/check", json={"yaml": yaml}))["summary"]
@@ -36,6 +38,7 @@ def test_a_check_tells_what_a_study_asks_for(lab: Lab, yaml: str) -> None:
     assert summary["minutes"] > summary["planned_minutes"]
 
 
+@pytest.mark.one_engine
 def test_a_visit_takes_as_long_wherever_one_asks(lab: Lab, yaml: str) -> None:
     """The study's overview, the editor and the dry run give one figure."""
     study = ok(lab.operator.get(f"/api/studies/{STUDY}"))
@@ -46,6 +49,7 @@ def test_a_visit_takes_as_long_wherever_one_asks(lab: Lab, yaml: str) -> None:
         assert study[name] == summary[name] == pytest.approx(minutes, abs=0.05)
 
 
+@pytest.mark.one_engine
 def test_a_broken_file_still_has_its_values(lab: Lab, yaml: str) -> None:
     """A form can show what is there while there are problems, and where each value stands."""
     broken = edit(yaml, ("latency_ms: 125", "latency_ms: -125"))
@@ -57,6 +61,7 @@ def test_a_broken_file_still_has_its_values(lab: Lab, yaml: str) -> None:
     assert ok(lab.operator.post("/api/studies/check", json={"yaml": "a: ["}))["tree"] is None
 
 
+@pytest.mark.one_engine
 def test_a_form_changes_a_text_and_nothing_else(lab: Lab, yaml: str) -> None:
     """One line differs; a change that does not fit is refused with its path."""
     path = ["conditions", 1, "latency_ms"]
@@ -82,6 +87,7 @@ def test_a_dry_run_is_the_slot_that_is_given_out(fresh_lab: Lab) -> None:
     assert dry["steps"][-1]["start_s"] + dry["steps"][-1]["length_s"] == dry["total_s"]
 
 
+@pytest.mark.one_engine
 def test_a_dry_run_of_any_slot_and_order(lab: Lab, yaml: str) -> None:
     """Slots beyond the first ledger are those it would grow by; an order is found by its place."""
 

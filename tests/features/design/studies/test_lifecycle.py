@@ -1,5 +1,7 @@
 """Versions compared, studies copied, put away and taken out again."""
 
+import pytest
+
 from tests.features.design.studies.test_studies import edit
 from tests.features.lab import STUDY, Json, Lab, error, ok
 
@@ -24,6 +26,7 @@ def diff(lab: Lab, source: int, target: int) -> Json:
     return found
 
 
+@pytest.mark.one_engine
 def test_a_diff_says_whether_balance_is_affected(fresh_lab: Lab) -> None:
     """Another wording keeps the ledger; another latency begins a new one."""
     add(fresh_lab, ("Acting through", "Living through"))
@@ -40,6 +43,7 @@ def test_a_diff_says_whether_balance_is_affected(fresh_lab: Lab) -> None:
     error(fresh_lab.operator.get(f"{PATH}/diff?from=1&to=9"), 404, "not_found")
 
 
+@pytest.mark.one_engine
 def test_a_draft_is_compared_with_the_newest_version(fresh_lab: Lab) -> None:
     """A comment changes nothing; sessions that keep their version are counted."""
     fresh_lab.join()

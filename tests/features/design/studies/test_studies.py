@@ -32,6 +32,7 @@ def rows(lab: Lab) -> tuple[int, int]:
         return db.query(Study).count(), db.query(StudyVersion).count()
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("old", "new", "path"),
     [
@@ -56,6 +57,7 @@ def test_a_problem_is_told_with_its_place(
     assert problem["remedy"]
 
 
+@pytest.mark.one_engine
 def test_all_problems_are_told_at_once(lab: Lab, yaml: str) -> None:
     """Nobody has to mend a file line by line."""
     file = edit(yaml, ("latency_ms: 125", "latency_ms: -1"), ("seed: 20200415", "seed: -1"))
@@ -63,6 +65,7 @@ def test_all_problems_are_told_at_once(lab: Lab, yaml: str) -> None:
     assert len(refusal["details"]) == 2
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("file", [BOMB, "[" * 1000, "a: !!python/object:os.system x", ""])
 def test_a_hostile_file_is_refused_before_it_grows(lab: Lab, file: str) -> None:
     """Aliases, depth and tags are limited while reading."""
@@ -72,6 +75,7 @@ def test_a_hostile_file_is_refused_before_it_grows(lab: Lab, file: str) -> None:
     assert rows(lab) == before
 
 
+@pytest.mark.one_engine
 def test_a_file_that_is_no_text_is_refused(lab: Lab) -> None:
     """A NUL character is refused before the file is read, and nothing is stored."""
     before = rows(lab)
@@ -80,6 +84,7 @@ def test_a_file_that_is_no_text_is_refused(lab: Lab) -> None:
     assert rows(lab) == before
 
 
+@pytest.mark.one_engine
 def test_checking_stores_nothing(lab: Lab, yaml: str) -> None:
     """A good file gets its hash, a bad one its problems, and nothing is kept of either."""
     before = rows(lab)
@@ -116,6 +121,7 @@ def test_a_version_is_frozen_from_its_first_start(fresh_lab: Lab) -> None:
     assert versions[1]["frozen_at"] is None
 
 
+@pytest.mark.one_engine
 def test_a_session_keeps_the_version_it_joined(fresh_lab: Lab) -> None:
     """A new version does not change a session that is under way."""
     view = fresh_lab.join()
@@ -136,6 +142,7 @@ def test_a_study_is_created_once(fresh_lab: Lab) -> None:
     assert keys == ["another", STUDY]
 
 
+@pytest.mark.one_engine
 def test_a_version_belongs_to_its_study(lab: Lab, yaml: str) -> None:
     """A file of another study is refused with both keys."""
     file = edit(yaml, (f"key: {STUDY}", "key: stray"))
@@ -144,6 +151,7 @@ def test_a_version_belongs_to_its_study(lab: Lab, yaml: str) -> None:
     assert (refusal["value"], refusal["valid"]) == ("stray", STUDY)
 
 
+@pytest.mark.one_engine
 def test_an_unknown_study_is_not_found_and_the_known_are_named(lab: Lab) -> None:
     """The refusal lists the keys there are."""
     refusal = error(lab.operator.get("/api/studies/nothing"), 404, "not_found")

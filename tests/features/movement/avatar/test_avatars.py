@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from app.clock import Clock
 from app.features.movement.avatar.schemas import NewAvatarVersion
 from app.features.movement.avatar.service import (
@@ -58,6 +60,7 @@ def save(
     return view
 
 
+@pytest.mark.one_engine
 def test_a_lab_begins_with_the_standard_avatar(fresh_lab: Lab) -> None:
     """It drives the whole body, and nobody has used it yet."""
     (listed,) = ok(fresh_lab.operator.get(PATH))
@@ -93,6 +96,7 @@ def test_versions_are_appended_and_stay(fresh_lab: Lab) -> None:
     assert trail[1]["details"]["origin"] == "tuned"
 
 
+@pytest.mark.one_engine
 def test_the_same_content_is_not_saved_twice_in_a_row(fresh_lab: Lab) -> None:
     """Also by somebody who saw an older version: what they want is there."""
     new(fresh_lab, "soft")
@@ -110,6 +114,7 @@ def test_two_people_do_not_overwrite_each_other(fresh_lab: Lab) -> None:
     assert (refusal["value"], refusal["valid"]) == (1, 2)
 
 
+@pytest.mark.one_engine
 def test_a_key_is_given_once(fresh_lab: Lab) -> None:
     """The other avatar is not touched."""
     new(fresh_lab, "soft")
@@ -118,6 +123,7 @@ def test_a_key_is_given_once(fresh_lab: Lab) -> None:
     assert ok(fresh_lab.operator.get(f"{PATH}/soft"))["title"] == "Soft neck"
 
 
+@pytest.mark.one_engine
 def test_what_is_not_there_is_named(fresh_lab: Lab) -> None:
     """With what there is."""
     refusal = error(fresh_lab.operator.get(f"{PATH}/nobody"), 404, "not_found")
@@ -125,6 +131,7 @@ def test_what_is_not_there_is_named(fresh_lab: Lab) -> None:
     error(fresh_lab.operator.get(f"{PATH}/standard/versions/9"), 404, "not_found")
 
 
+@pytest.mark.one_engine
 def test_a_contradiction_is_refused_with_its_place(fresh_lab: Lab) -> None:
     """What no single key can know: crossed limits, a missing axis. Nothing is saved."""
     wrong = as_json(SHIPPED)
@@ -143,6 +150,7 @@ def test_a_contradiction_is_refused_with_its_place(fresh_lab: Lab) -> None:
     error(fresh_lab.operator.get(f"{PATH}/wrong"), 404, "not_found")
 
 
+@pytest.mark.one_engine
 def test_a_file_goes_out_and_comes_in_again(fresh_lab: Lab) -> None:
     """The same content under the same hash, and known by its places."""
     new(fresh_lab, "soft")
@@ -164,6 +172,7 @@ def test_a_file_goes_out_and_comes_in_again(fresh_lab: Lab) -> None:
     assert copy["newest"]["content_hash"] == told["content_hash"]
 
 
+@pytest.mark.one_engine
 def test_a_wrong_file_tells_its_lines(fresh_lab: Lab) -> None:
     """Checking stores nothing and is no error."""
     text = avatar_text(SOFT).replace('"carried"', '"loose"')
@@ -173,6 +182,7 @@ def test_a_wrong_file_tells_its_lines(fresh_lab: Lab) -> None:
     assert (problem["path"], problem["line"]) == ("hips", 8)
 
 
+@pytest.mark.one_engine
 def test_the_lab_reads_and_designers_change(fresh_lab: Lab) -> None:
     """Operators and analysts get the configuration, but nothing of theirs is stored."""
     body = {"key": "own", "title": "Own", "origin": "by_hand", "configuration": as_json(SOFT)}

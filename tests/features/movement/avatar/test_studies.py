@@ -1,5 +1,7 @@
 """Which avatar a study's sessions use: named by the study, kept on the session by its hash."""
 
+import pytest
+
 from tests.features.lab import Lab, error, ok
 from tests.features.movement.avatar.test_avatars import CAST, PATH, as_json, new, save
 from tests.protocol.helpers import edited
@@ -31,6 +33,7 @@ def test_a_session_keeps_the_content_that_its_study_named(fresh_lab: Lab) -> Non
     assert ok(fresh_lab.operator.get(f"{PATH}/soft/versions/1"))["sessions"] == 1
 
 
+@pytest.mark.one_engine
 def test_a_study_cannot_name_an_avatar_that_is_not_there(fresh_lab: Lab) -> None:
     """Neither while it is written nor when it is stored."""
     body = {"yaml": study("{key: hard, version: 1}")}
@@ -41,6 +44,7 @@ def test_a_study_cannot_name_an_avatar_that_is_not_there(fresh_lab: Lab) -> None
     assert refusal["details"][0]["path"] == "avatar_configuration.key"
 
 
+@pytest.mark.one_engine
 def test_a_tuned_cast_is_what_its_file_says(fresh_lab: Lab) -> None:
     """Locked groups are part of the content that a session records."""
     view = new(fresh_lab, "cast", CAST)

@@ -1,5 +1,7 @@
 """Joint maps: proposed, saved for a skeleton as versions, and refused with every problem."""
 
+import pytest
+
 from app.models import SavedJointMap
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.movement.captures.files import uploaded, walk_bvh
@@ -10,6 +12,7 @@ def joint_map_path(view: Json) -> str:
     return f"/api/captures/{view['id']}/joint-map"
 
 
+@pytest.mark.one_engine
 def test_a_map_is_proposed(fresh_lab: Lab) -> None:
     """From names, with what is left open on both sides."""
     view = uploaded(fresh_lab.operator, walk_bvh())
@@ -60,6 +63,7 @@ def test_two_people_do_not_overwrite_each_other(fresh_lab: Lab) -> None:
     error(fresh_lab.operator.delete(f"{joint_map_path(view)}?version=0"), 409, "stale")
 
 
+@pytest.mark.one_engine
 def test_a_map_that_does_not_fit_is_refused(fresh_lab: Lab) -> None:
     """With every problem at its joint: unknown joints, one used twice, no hips."""
     view = uploaded(fresh_lab.operator, walk_bvh())

@@ -2,6 +2,7 @@
 
 import hashlib
 
+import pytest
 from sqlalchemy import func, select
 
 from app.models import CaptureContent, CapturePiece, CaptureRow
@@ -53,6 +54,7 @@ def test_the_same_content_is_stored_once(fresh_lab: Lab) -> None:
     assert counted(fresh_lab)[0] == 1
 
 
+@pytest.mark.one_engine
 def test_what_cannot_be_read_is_not_kept(fresh_lab: Lab) -> None:
     """The refusal names file, line and reason."""
     broken = WALK.replace(b"Frame Time", b"Frome Time")
@@ -66,6 +68,7 @@ def test_what_cannot_be_read_is_not_kept(fresh_lab: Lab) -> None:
     assert counted(fresh_lab) == (0, 0, 0)
 
 
+@pytest.mark.one_engine
 def test_another_reading_reads_the_file_anew(fresh_lab: Lab) -> None:
     """Lengths follow the unit that somebody chose, and the convention says that it was chosen."""
     view = uploaded(fresh_lab.operator, WALK)
@@ -102,6 +105,7 @@ def test_a_deleted_capture_takes_its_content_along(fresh_lab: Lab) -> None:
     assert "walk" not in str(trail)
 
 
+@pytest.mark.one_engine
 def test_a_companion_needs_name_and_size(fresh_lab: Lab) -> None:
     """One without the other is refused, and so is a companion that leaves no file."""
     operator = fresh_lab.operator
@@ -112,6 +116,7 @@ def test_a_companion_needs_name_and_size(fresh_lab: Lab) -> None:
     assert counted(fresh_lab) == (0, 0, 0)
 
 
+@pytest.mark.one_engine
 def test_operators_look_and_change_nothing(lab: Lab) -> None:
     """Everybody of the lab may see a capture, designers of studies may bring one in."""
     view = uploaded(lab.operator, WALK)

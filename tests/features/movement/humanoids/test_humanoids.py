@@ -77,6 +77,7 @@ def test_the_same_file_is_stored_once(fresh_lab: Lab) -> None:
     assert counted(fresh_lab) == (1, 1)
 
 
+@pytest.mark.one_engine
 def test_what_is_no_humanoid_is_not_kept(fresh_lab: Lab) -> None:
     """The missing parts are named, or the place in the file."""
     dog = error(upload(fresh_lab, dog_file(), "dog.glb"), 422, "invalid_input")
@@ -95,6 +96,7 @@ def test_what_is_no_humanoid_is_not_kept(fresh_lab: Lab) -> None:
     error(fresh_lab.operator.get(f"{PATH}/{HASH}/file"), 404, "not_found")
 
 
+@pytest.mark.one_engine
 def test_an_avatar_has_the_body_of_its_model(fresh_lab: Lab) -> None:
     """Four fingers from a configuration of five, pieces of skin, the same text as built here."""
     four = upload(fresh_lab, FOUR).json()
@@ -112,6 +114,7 @@ def test_an_avatar_has_the_body_of_its_model(fresh_lab: Lab) -> None:
     assert not [one for one in root.iter("body") if "Little" in one.get("name", "")]
 
 
+@pytest.mark.one_engine
 def test_pieces_need_a_model_that_is_here(fresh_lab: Lab) -> None:
     """A configuration without one, or with one that nobody uploaded, is not saved."""
     for configuration, path in (
@@ -130,6 +133,7 @@ def test_pieces_need_a_model_that_is_here(fresh_lab: Lab) -> None:
         assert "pload" in refusal["details"][0]["remedy"]
 
 
+@pytest.mark.one_engine
 def test_a_file_of_another_lab_is_told_what_it_lacks(fresh_lab: Lab) -> None:
     """A check before saving says that the model is missing, and is content once it is here."""
     text = avatar_text(replace(SHIPPED, humanoid=HASH, colliders="mesh"))
@@ -177,6 +181,7 @@ def test_a_restored_model_is_the_file_that_was_uploaded(fresh_lab: Lab, tmp_path
     other.close()
 
 
+@pytest.mark.one_engine
 def test_designers_bring_models_in_and_everybody_sees_them(fresh_lab: Lab) -> None:
     """An analyst may look, not upload."""
     upload(fresh_lab)

@@ -44,6 +44,7 @@ def test_a_captured_person_walks(database_url: str, tmp_path: Path) -> None:
     assert found.summary["dependencies"]["stature_m"]["low"] == 1.7
 
 
+@pytest.mark.one_engine
 def test_a_capture_that_is_gone_is_said(database_url: str) -> None:
     """Nothing is made up in place of a deleted file."""
     walk = CapturedWalk("walk.bvh", "0" * 64, None, None, None, None, None, 10**7)

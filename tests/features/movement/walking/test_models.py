@@ -116,6 +116,7 @@ def test_tracks_of_people_are_fitted(walking_lab: Lab) -> None:
     assert {"walking.model_ordered", "walking.model_removed", "walking.walks_removed"} <= set(acts)
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("data", "told"),
     [
@@ -132,6 +133,7 @@ def test_bad_tables_leave_nothing(walking_lab: Lab, data: bytes, told: str) -> N
     assert counted(walking_lab) == before
 
 
+@pytest.mark.one_engine
 def test_one_person_is_too_few(walking_lab: Lab) -> None:
     """The fit fails with the reason, and can still be looked at and deleted."""
     walks = ok(bring_in(walking_lab, table(people=1)))

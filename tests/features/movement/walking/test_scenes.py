@@ -1,5 +1,7 @@
 """Scenes are listed, brought in with every problem named, and deleted."""
 
+import pytest
+
 from tests.features.lab import Lab, error, ok
 
 HALL = """key: hall
@@ -37,6 +39,7 @@ def test_a_scene_comes_in_once_and_goes(walking_lab: Lab) -> None:
     error(calls.get("/api/walking/scenes/hall"), 404, "not_found")
 
 
+@pytest.mark.one_engine
 def test_every_problem_of_a_scene_is_named(walking_lab: Lab) -> None:
     """A goal inside an obstacle and an unknown place, each with its line; nothing is stored."""
     broken = HALL.replace("goal: [0, 3]", "goal: [0, 1]").replace("from: start", "from: nowhere")

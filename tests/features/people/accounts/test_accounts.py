@@ -33,11 +33,13 @@ def test_a_login_opens_the_console(lab: Lab) -> None:
     assert ok(client.get("/api/studies"))
 
 
+@pytest.mark.one_engine
 def test_nobody_is_signed_in_at_first(lab: Lab) -> None:
     """Asking who is there is no error."""
     assert ok(lab.stranger().get("/api/me")) == {"account": None}
 
 
+@pytest.mark.one_engine
 def test_a_wrong_password_and_an_unknown_user_get_the_same_answer(lab: Lab) -> None:
     """Nobody can find out which names exist."""
     wrong = log_in(lab.stranger(), password="not this one")
@@ -47,6 +49,7 @@ def test_a_wrong_password_and_an_unknown_user_get_the_same_answer(lab: Lab) -> N
     assert "set-cookie" not in wrong.headers
 
 
+@pytest.mark.one_engine
 def test_the_cookie_is_out_of_reach_of_scripts_and_other_sites(lab: Lab) -> None:
     """HttpOnly and SameSite=Strict."""
     cookie = log_in(lab.stranger()).headers["set-cookie"].lower()
@@ -66,6 +69,7 @@ def test_logging_out_ends_the_login_at_once(lab: Lab) -> None:
     error(client.get("/api/studies"), 401, "not_signed_in")
 
 
+@pytest.mark.one_engine
 def test_a_script_can_log_its_token_out(lab: Lab) -> None:
     """A bearer token is revoked like a cookie."""
     script = lab.stranger()
@@ -75,6 +79,7 @@ def test_a_script_can_log_its_token_out(lab: Lab) -> None:
     error(script.get("/api/studies"), 401, "not_signed_in")
 
 
+@pytest.mark.one_engine
 def test_a_new_login_ends_the_one_before(lab: Lab) -> None:
     """Logging in again on the same browser makes a new token and revokes the old."""
     client, thief = lab.stranger(), lab.stranger()
@@ -106,6 +111,7 @@ def test_no_token_and_no_password_is_stored_in_clear(lab: Lab) -> None:
     assert "$argon2id$" in stored
 
 
+@pytest.mark.one_engine
 def test_guessing_is_slowed_down(fresh_lab: Lab) -> None:
     """After ten wrong passwords even the right one has to wait."""
     client = fresh_lab.stranger()
@@ -115,6 +121,7 @@ def test_guessing_is_slowed_down(fresh_lab: Lab) -> None:
     assert refusal["remedy"].startswith("Wait ")
 
 
+@pytest.mark.one_engine
 def test_getting_it_right_forgets_the_wrong_ones(fresh_lab: Lab) -> None:
     """Nine slips, a login, and nine slips more do not shut anybody out."""
     client = fresh_lab.stranger()
@@ -124,6 +131,7 @@ def test_getting_it_right_forgets_the_wrong_ones(fresh_lab: Lab) -> None:
         ok(log_in(client))
 
 
+@pytest.mark.one_engine
 def test_a_first_start_makes_a_random_password_and_tells_it_once(
     database_url: str, tmp_path: Path
 ) -> None:
@@ -137,6 +145,7 @@ def test_a_first_start_makes_a_random_password_and_tells_it_once(
     assert len(told[0]) >= 16
 
 
+@pytest.mark.one_engine
 def test_a_given_password_is_not_told(
     database_url: str, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -46,6 +46,7 @@ def test_a_flood_of_refusals_costs_two_rows(fresh_lab: Lab) -> None:
         assert verify_trail(db).ok
 
 
+@pytest.mark.one_engine
 def test_the_names_that_were_typed_are_nowhere(fresh_lab: Lab) -> None:
     """Somebody may have typed a password in the wrong field."""
     for _ in range(3):
@@ -55,6 +56,7 @@ def test_the_names_that_were_typed_are_nowhere(fresh_lab: Lab) -> None:
     assert [one.get("count") for one in refusals_of(fresh_lab)] == [None, 2]
 
 
+@pytest.mark.one_engine
 def test_each_window_has_a_row(fresh_lab: Lab, desk: RefusedSignIns) -> None:
     """What goes on is a row a window; a quiet window ends it, and the next refusal is a first."""
     for at in range(4):
@@ -66,6 +68,7 @@ def test_each_window_has_a_row(fresh_lab: Lab, desk: RefusedSignIns) -> None:
     assert [one.get("count", 1) for one in refusals_of(fresh_lab)] == [1, 9, 10, 10, 10, 1]
 
 
+@pytest.mark.one_engine
 def test_a_window_that_has_not_ended_stays_open(fresh_lab: Lab, desk: RefusedSignIns) -> None:
     """Nothing is put on record before its time."""
     for _ in range(5):
@@ -74,6 +77,7 @@ def test_a_window_that_has_not_ended_stays_open(fresh_lab: Lab, desk: RefusedSig
     assert len(refusals_of(fresh_lab)) == 1
 
 
+@pytest.mark.one_engine
 def test_refusals_from_everywhere_are_counted_together(
     fresh_lab: Lab, desk: RefusedSignIns
 ) -> None:

@@ -101,6 +101,7 @@ def test_backup_and_export_print_the_head(database: Database, tmp_path: Path) ->
     assert VERIFY.figures("--head", json.loads(made.stdout)["audit_head"])["audit"]["ok"]
 
 
+@pytest.mark.one_engine
 @pytest.mark.usefixtures("database")
 @pytest.mark.parametrize("text", ["", "3", "3:", "3:abc", "x:" + 64 * "0", "3:" + 65 * "0"])
 def test_what_is_no_head_is_refused_with_how_one_looks(text: str) -> None:

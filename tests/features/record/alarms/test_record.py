@@ -130,6 +130,7 @@ def test_what_is_no_number_is_stored_as_nothing(
     assert (alarm.value, len(alarm.message)) == (None, 400)
 
 
+@pytest.mark.one_engine
 def test_the_history_is_told_over_http(lab: Lab, session: StudySession) -> None:
     """To whoever is signed in."""
     with lab.database.writing() as db:

@@ -56,6 +56,7 @@ def test_the_newest_measurement_of_each_equipment_holds(fresh_lab: Lab) -> None:
     ]
 
 
+@pytest.mark.one_engine
 def test_a_mistake_is_retired_and_stays(fresh_lab: Lab) -> None:
     """The one before it holds again; a second reason is refused."""
     before = add(fresh_lab, measured_on="2026-01-01")
@@ -72,6 +73,7 @@ def test_a_mistake_is_retired_and_stays(fresh_lab: Lab) -> None:
     error(missing, 404, "not_found")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "change",
     [
@@ -93,6 +95,7 @@ def test_what_cannot_have_been_measured_is_refused(lab: Lab, change: Json) -> No
     assert answer.status_code == 422
 
 
+@pytest.mark.one_engine
 def test_every_export_carries_the_measurements(fresh_lab: Lab, tmp_path: Path) -> None:
     """Whatever the study: latency is added on top of them."""
     add(fresh_lab, note="after the driver's update")

@@ -69,6 +69,7 @@ def test_a_new_code_replaces_the_old_tablet(lab: Lab) -> None:
     assert new.get("/api/tablet/state").status_code == 200
 
 
+@pytest.mark.one_engine
 def test_showing_a_code_alone_replaces_nobody(lab: Lab) -> None:
     """The old tablet goes on until the new code is used."""
     session_id = lab.join()["id"]
@@ -77,6 +78,7 @@ def test_showing_a_code_alone_replaces_nobody(lab: Lab) -> None:
     assert tablet.get("/api/tablet/state").status_code == 200
 
 
+@pytest.mark.one_engine
 def test_a_newer_code_ends_an_older_one(lab: Lab) -> None:
     """Only the code on the screen works."""
     session_id = lab.join()["id"]
@@ -85,6 +87,7 @@ def test_a_newer_code_ends_an_older_one(lab: Lab) -> None:
     ok(use(lab.stranger(), newer))
 
 
+@pytest.mark.one_engine
 def test_a_headset_and_a_tablet_do_not_replace_each_other(lab: Lab) -> None:
     """A session has one of each."""
     session_id = lab.join()["id"]
@@ -94,6 +97,7 @@ def test_a_headset_and_a_tablet_do_not_replace_each_other(lab: Lab) -> None:
     assert {device["kind"] for device in lab.view(session_id)["devices"]} == {"tablet", "headset"}
 
 
+@pytest.mark.one_engine
 def test_a_headsets_token_is_no_tablets(lab: Lab) -> None:
     """Neither as a bearer token nor as a cookie."""
     token = lab.headset_token(lab.join()["id"])
@@ -107,6 +111,7 @@ def test_a_headsets_token_is_no_tablets(lab: Lab) -> None:
     error(device.get("/api/tablet/state"), 401, "not_signed_in")
 
 
+@pytest.mark.one_engine
 def test_a_tablet_sees_its_own_session_only(lab: Lab) -> None:
     """Each cookie leads to the session it was paired with, whatever is asked for."""
     ids = [lab.join()["id"] for _ in range(2)]
@@ -115,6 +120,7 @@ def test_a_tablet_sees_its_own_session_only(lab: Lab) -> None:
     assert seen == ids
 
 
+@pytest.mark.one_engine
 def test_a_revoked_device_is_out_at_once(lab: Lab) -> None:
     """The operator unpairs it and its cookie opens nothing."""
     session_id = lab.join()["id"]
@@ -124,6 +130,7 @@ def test_a_revoked_device_is_out_at_once(lab: Lab) -> None:
     error(tablet.get("/api/tablet/state"), 401, "not_signed_in")
 
 
+@pytest.mark.one_engine
 def test_a_device_is_revoked_in_its_own_session_only(lab: Lab) -> None:
     """Another session's device is not found there."""
     session_id, other = lab.join()["id"], lab.join()["id"]
@@ -134,11 +141,13 @@ def test_a_device_is_revoked_in_its_own_session_only(lab: Lab) -> None:
     assert tablet.get("/api/tablet/state").status_code == 200
 
 
+@pytest.mark.one_engine
 def test_an_unknown_code_is_not_found(lab: Lab) -> None:
     """No session waits for it."""
     error(use(lab.stranger(), "XXX-XXX"), 404, "not_found")
 
 
+@pytest.mark.one_engine
 def test_a_code_may_be_typed_carelessly(lab: Lab) -> None:
     """Lower case, spaces and dashes do not matter."""
     code = lab.show_code(lab.join()["id"], "tablet")
@@ -154,6 +163,7 @@ def test_a_code_expires(database_url: str) -> None:
         error(use(lab.stranger(), code), 410, "gone")
 
 
+@pytest.mark.one_engine
 def test_guessing_codes_is_slowed_down(fresh_lab: Lab) -> None:
     """After twenty tries even a good code has to wait."""
     code = fresh_lab.show_code(fresh_lab.join()["id"], "tablet")
@@ -181,6 +191,7 @@ def test_codes_and_tokens_are_stored_as_hashes_only(fresh_lab: Lab) -> None:
     assert [secret for secret in secrets if secret in stored] == []
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("device", ["phone", "", None])
 def test_only_tablets_and_headsets_pair(lab: Lab, device: str | None) -> None:
     """Any other device is refused by field."""
@@ -188,6 +199,7 @@ def test_only_tablets_and_headsets_pair(lab: Lab, device: str | None) -> None:
     error(lab.operator.post(path, json={"device": device}), 422, "invalid_input")
 
 
+@pytest.mark.one_engine
 def test_the_link_opens_the_tablets_page_with_the_code(lab: Lab) -> None:
     """What the QR code holds is the address and the code, drawn as SVG."""
     path = f"/api/sessions/{lab.join()['id']}/pairings"
@@ -196,6 +208,7 @@ def test_the_link_opens_the_tablets_page_with_the_code(lab: Lab) -> None:
     assert shown["qr_svg"].startswith("<svg")
 
 
+@pytest.mark.one_engine
 def test_no_device_is_sent_to_its_own_localhost(lab: Lab) -> None:
     """Where only this machine reaches the server there is a code, but no address and no QR code."""
     path = f"/api/sessions/{lab.join()['id']}/pairings"

@@ -38,6 +38,7 @@ def ask(lab: Lab, token: str, body: Json) -> Response:
     return lab.stranger().post("/api/vr/avatar", json=body, headers=bearer)
 
 
+@pytest.mark.one_engine
 def test_the_model_is_the_configuration_at_the_stature_in_the_studys_boxes(
     fresh_lab: Lab, session: Json
 ) -> None:
@@ -73,6 +74,7 @@ def test_asking_again_records_nothing_new(fresh_lab: Lab, session: Json) -> None
     assert types == ["avatar_built", "avatar_built"]
 
 
+@pytest.mark.one_engine
 def test_measured_segments_count(fresh_lab: Lab, session: Json) -> None:
     """A longer thigh is another model; a length that no body has is refused with its reason."""
     token = fresh_lab.headset_token(session["id"])
@@ -85,6 +87,7 @@ def test_measured_segments_count(fresh_lab: Lab, session: Json) -> None:
     assert refusal["value"] == {"stature_m": 1.7, "thigh": 2.9}
 
 
+@pytest.mark.one_engine
 def test_a_delayed_copy_needs_no_model(lab: Lab) -> None:
     """It is said so, and nothing is recorded."""
     view = lab.join(kind="test")
@@ -93,6 +96,7 @@ def test_a_delayed_copy_needs_no_model(lab: Lab) -> None:
     assert lab.events(view["id"]) == []
 
 
+@pytest.mark.one_engine
 def test_a_client_that_cannot_show_the_avatar_is_refused(fresh_lab: Lab, session: Json) -> None:
     """Nothing is recorded as physics that was not; one that can is welcome."""
     token = fresh_lab.headset_token(session["id"])
@@ -112,6 +116,7 @@ def greet(client: TestClient, token: str, fields: Json) -> Json:
     return answer
 
 
+@pytest.mark.one_engine
 def test_a_humanoid_model_lends_its_body(fresh_lab: Lab) -> None:
     """Its pieces of skin, its four fingers and its own legs, scaled to the stature."""
     file = humanoid_file(Model(parts=without("LeftLittle", "RightLittle")))

@@ -76,6 +76,7 @@ def test_contacts_and_completions_of_a_phase_are_counted(site: Site) -> None:
     assert phase["completions"] == 1
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("body", [CONTACT, COMPLETION])
 def test_nothing_is_counted_for_a_phase_that_is_not_there(site: Site, body: Json) -> None:
     """A contact or completion of an unknown phase is refused and kept as a report."""
@@ -111,6 +112,7 @@ def test_the_same_report_sent_again_is_acknowledged_and_nothing_else(site: Site)
     assert site.view(session_id)["phases"][0]["side_contacts"] == 1
 
 
+@pytest.mark.one_engine
 def test_losing_the_headset_pauses_at_the_last_time_on_disk(site: Site) -> None:
     """The clock stops where the telemetry ends."""
     session_id, token = running(site)

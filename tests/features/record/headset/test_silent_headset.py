@@ -96,6 +96,7 @@ def quality_of(site: Site, session_id: str) -> PhaseQuality:
     raise AssertionError("the phase's quality was not judged")
 
 
+@pytest.mark.one_engine
 def test_a_headset_that_falls_asleep_stops_its_phase(
     quick_site: Site, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -121,6 +122,7 @@ def test_a_headset_that_falls_asleep_stops_its_phase(
     assert quality.longest_gap_s == pytest.approx(slept_s, abs=0.1)
 
 
+@pytest.mark.one_engine
 def test_a_study_that_goes_on_alone_is_only_told(
     quick_site: Site,
 ) -> None:
@@ -159,6 +161,7 @@ def test_a_headset_that_goes_away_is_an_alarm_until_it_is_back(quick_site: Site)
     wait_until_clear(quick_site, session_id)
 
 
+@pytest.mark.one_engine
 def test_the_end_of_a_session_clears_its_alarms(quick_site: Site) -> None:
     """Nobody is left to look at them."""
     session_id = materialised(quick_site)

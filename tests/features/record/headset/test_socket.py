@@ -27,6 +27,7 @@ def running(site: Site) -> tuple[str, str]:
     return session_id, site.token(session_id)
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("token", [None, "", "wrong", "x" * 500])
 def test_a_wrong_token_is_refused_with_the_reason(site: Site, token: str | None) -> None:
     """The socket says what is wrong and closes with 4401."""
@@ -36,12 +37,14 @@ def test_a_wrong_token_is_refused_with_the_reason(site: Site, token: str | None)
     assert "new code" in last["remedy"]
 
 
+@pytest.mark.one_engine
 def test_an_operators_token_opens_no_headset(site: Site) -> None:
     """A login is no pairing."""
     with site.socket(site.operator.cookies["reembody_login"]) as socket:
         assert closing(socket)[1] == 4401
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "first",
     [
@@ -64,6 +67,7 @@ def test_whoever_does_not_say_hello_first_is_refused(site: Site, first: str | by
     assert "Traceback" not in site.server.log
 
 
+@pytest.mark.one_engine
 def test_hello_comes_once(site: Site) -> None:
     """A second hello on the same socket closes it."""
     with site.headset(site.token(site.join())) as headset:
@@ -71,6 +75,7 @@ def test_hello_comes_once(site: Site) -> None:
         assert headset.hear("error")["message"] == "hello came twice"
 
 
+@pytest.mark.one_engine
 def test_another_sites_page_cannot_open_the_socket(site: Site) -> None:
     """A foreign Origin is refused before anything is said."""
     token = site.token(site.join())
@@ -82,6 +87,7 @@ def test_another_sites_page_cannot_open_the_socket(site: Site) -> None:
     assert refused.value.response.status_code == 403
 
 
+@pytest.mark.one_engine
 def test_an_oversized_message_closes_the_socket(site: Site) -> None:
     """More than 256 KiB at once is answered with 1009."""
     with site.headset(site.token(site.join())) as headset:
@@ -89,6 +95,7 @@ def test_an_oversized_message_closes_the_socket(site: Site) -> None:
         assert closing(headset.socket)[1] == 1009
 
 
+@pytest.mark.one_engine
 def test_the_welcome_tells_the_task_and_no_condition(site: Site) -> None:
     """The headset hears boxes, texts and state; conditions and their order stay here."""
     with site.headset(site.token(site.join(language="de"))) as headset:

@@ -78,6 +78,7 @@ def test_the_first_content_of_a_seq_stands(site: Site) -> None:
     assert stored(site, session_id).values[:, 1].tolist() == list(range(10))
 
 
+@pytest.mark.one_engine
 def test_a_skipped_seq_is_asked_for_again(site: Site) -> None:
     """Nothing behind a hole is stored until the hole is filled."""
     session_id = site.join()
@@ -106,6 +107,7 @@ def test_broken_numbers_are_stored_bit_by_bit_and_flagged(site: Site) -> None:
     assert (stream["frames_stored"], stream["frames_flagged"]) == (len(sent), len(sent))
 
 
+@pytest.mark.one_engine
 def test_a_rotation_of_another_length_is_flagged_at_its_seq(site: Site) -> None:
     """The notice names the first bad frame, and the others count as sound."""
     session_id = site.join()
@@ -155,6 +157,7 @@ def test_each_run_of_the_client_has_an_epoch_of_its_own(site: Site) -> None:
     assert stored(site, session_id, epoch=2).values[0, 1] == 100
 
 
+@pytest.mark.one_engine
 def test_late_frames_of_an_earlier_run_are_taken(site: Site) -> None:
     """What the journal of the run before still held can be sent by the next one."""
     session_id = site.join()
@@ -167,6 +170,7 @@ def test_late_frames_of_an_earlier_run_are_taken(site: Site) -> None:
     assert len(stored(site, session_id, epoch=1)) == 5
 
 
+@pytest.mark.one_engine
 def test_an_epoch_that_was_not_given_out_is_refused(site: Site) -> None:
     """A batch of the future closes the connection with the reason."""
     session_id = site.join()
@@ -175,6 +179,7 @@ def test_an_epoch_that_was_not_given_out_is_refused(site: Site) -> None:
         assert "epoch 9 was not given out" in headset.hear("error")["message"]
 
 
+@pytest.mark.one_engine
 def test_a_session_that_sends_nonsense_does_not_hold_up_another(site: Site) -> None:
     """A malformed batch closes its own connection; the other session goes on."""
     good, bad = site.join(), site.join()
@@ -218,6 +223,7 @@ def test_the_clocks_are_probed(site: Site) -> None:
     assert row.server_received_ns == answer["server_received_ns"]
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("epoch", [0, -1, 2**31, "one"])
 def test_a_hello_with_an_unusable_epoch_is_refused(site: Site, epoch: object) -> None:
     """The first message is checked like any other."""

@@ -52,6 +52,7 @@ def test_a_full_ledger_grows_by_a_whole_block(fresh_lab: Lab) -> None:
     assert views[12]["slot"] == {"index": 12, "block": 2, "replicate": 3}
 
 
+@pytest.mark.one_engine
 def test_a_closed_ledger_takes_nobody_more(fresh_lab: Lab) -> None:
     """The thirteenth is refused with the way out, and gets in once a slot is free."""
     change_study(fresh_lab, "when_full: grow", "when_full: closed")
@@ -75,6 +76,7 @@ def test_a_freed_slot_is_the_next_to_be_taken(fresh_lab: Lab, end: str, outcome:
     assert slot["attempts"][0]["reason"] == "headset broke"
 
 
+@pytest.mark.one_engine
 def test_people_simulated_and_test_sessions_have_ledgers_of_their_own(fresh_lab: Lab) -> None:
     """Joins of one kind do not move the others."""
     first = {kind: fresh_lab.join(kind=kind) for kind in ("people", "simulated", "test")}
@@ -87,6 +89,7 @@ def test_people_simulated_and_test_sessions_have_ledgers_of_their_own(fresh_lab:
     assert len(ok(fresh_lab.operator.get(f"/api/studies/{STUDY}/sessions?kind=people"))) == 1
 
 
+@pytest.mark.one_engine
 def test_versions_of_one_design_share_their_ledger(fresh_lab: Lab) -> None:
     """New wording goes on where the old version stood; new orders begin anew."""
     fresh_lab.join()
@@ -97,6 +100,7 @@ def test_versions_of_one_design_share_their_ledger(fresh_lab: Lab) -> None:
     assert fresh_lab.join()["slot"]["index"] == 0
 
 
+@pytest.mark.one_engine
 def test_generated_codes_pass_over_those_in_use(fresh_lab: Lab) -> None:
     """A code that somebody typed is not given out again."""
     fresh_lab.join(participant_code="P-0002")
@@ -104,6 +108,7 @@ def test_generated_codes_pass_over_those_in_use(fresh_lab: Lab) -> None:
     assert len({*codes, "P-0002"}) == 4
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("code", ["Anna Müller", "-x", "a/b", "x" * 41, "=1+1"])
 def test_an_unusable_code_is_refused(lab: Lab, code: str) -> None:
     """The refusal says what a code is made of, and takes no slot."""
@@ -131,6 +136,7 @@ def test_a_busy_participant_is_refused(lab: Lab) -> None:
     assert lab.join(participant_code="busy-1")["id"] != view["id"]
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("fields", "status"),
     [

@@ -94,6 +94,7 @@ def test_both_figures_and_the_touches_reach_an_open_console(lab: Lab) -> None:
         assert touches["touches"][0]["surface"] == "hand/1/panel"
 
 
+@pytest.mark.one_engine
 def test_a_blinded_console_gets_one_figure_until_the_condition_is_shown(fresh_lab: Lab) -> None:
     """Neither the avatar nor a contact passes before; both do after."""
     session_id = blinded_session(fresh_lab)
@@ -111,6 +112,7 @@ def test_a_blinded_console_gets_one_figure_until_the_condition_is_shown(fresh_la
         assert seq_of(socket.receive_bytes()) == 3
 
 
+@pytest.mark.one_engine
 def test_a_console_that_does_not_draw_gets_the_newest_afterwards(lab: Lab) -> None:
     """No more than a few are on the way; what lies between is never sent."""
     session_id = lab.join()["id"]
@@ -128,6 +130,7 @@ def test_a_console_that_does_not_draw_gets_the_newest_afterwards(lab: Lab) -> No
         assert seq_of(socket.receive_bytes()) == 199
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("client", "code"), [("stranger", 4401), ("elsewhere", 4403), ("unknown", 4403)]
 )

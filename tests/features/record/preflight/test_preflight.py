@@ -63,6 +63,7 @@ def test_the_list_of_a_session_that_nobody_has_prepared(lab: Lab) -> None:
     assert any(one.startswith("karas2020 v") for one in checks["instruments"]["details"])
 
 
+@pytest.mark.one_engine
 def test_sound_devices_make_the_list_clear(lab: Lab) -> None:
     """A tablet that was seen, a headset whose figures keep to the limits."""
     session_id = lab.join()["id"]
@@ -77,6 +78,7 @@ def test_sound_devices_make_the_list_clear(lab: Lab) -> None:
     assert checks["trackers"]["value"] == 22
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("signal", "key", "status", "code"),
     [
@@ -100,6 +102,7 @@ def test_what_the_headset_tells_is_judged(
     assert code is None or check["code"] == code
 
 
+@pytest.mark.one_engine
 def test_a_headset_that_has_gone_leaves_no_figures(lab: Lab) -> None:
     """Else the list would go on praising the one that was taken off."""
     session_id = lab.join()["id"]
@@ -156,6 +159,7 @@ def _compare_with(database: Any, row_id: str, words: str) -> None:
             raise DiffersError
 
 
+@pytest.mark.one_engine
 def test_a_study_that_was_changed_behind_the_products_back_is_told(fresh_lab: Lab) -> None:
     """Its content has another hash than the record, and so has an instrument's."""
     session_id = fresh_lab.join()["id"]
@@ -196,6 +200,7 @@ def test_an_override_goes_on_record_with_its_reason_and_the_finding(lab: Lab) ->
     assert acts[0]["subject"] == session_id
 
 
+@pytest.mark.one_engine
 def test_words_about_one_finding_do_not_cover_another(lab: Lab) -> None:
     """A headset that was not there is another thing than one that has gone."""
     session_id = lab.join()["id"]
@@ -206,6 +211,7 @@ def test_words_about_one_finding_do_not_cover_another(lab: Lab) -> None:
     assert check["override"]["found"] == "headset.unpaired"
 
 
+@pytest.mark.one_engine
 def test_all_overridden_is_clear_and_the_session_starts_either_way(lab: Lab) -> None:
     """The server tells and records; it does not refuse the start."""
     view = lab.join()
@@ -217,6 +223,7 @@ def test_all_overridden_is_clear_and_the_session_starts_either_way(lab: Lab) -> 
     assert lab.command(unasked, "start")["status"] == "active"
 
 
+@pytest.mark.one_engine
 def test_a_check_that_has_turned_green_is_told_and_nothing_is_recorded(lab: Lab) -> None:
     """Somebody writes a reason while the headset connects: it is needed no more."""
     view = lab.join()
@@ -225,6 +232,7 @@ def test_a_check_that_has_turned_green_is_told_and_nothing_is_recorded(lab: Lab)
     assert [one["type"] for one in lab.events(view["id"])].count("check_overridden") == 0
 
 
+@pytest.mark.one_engine
 def test_what_cannot_be_overridden(lab: Lab) -> None:
     """No reason, an unknown check, a session that is over."""
     view = lab.join()
@@ -236,6 +244,7 @@ def test_what_cannot_be_overridden(lab: Lab) -> None:
     error(lab.operator.get("/api/sessions/nobody/preflight"), 404, "not_found")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("kind", ["simulated", "test", "expert"])
 def test_sessions_without_participants_are_never_in_the_way(lab: Lab, kind: str) -> None:
     """They show the same list."""

@@ -41,6 +41,7 @@ def test_an_ordinary_form_has_no_hint(lab: Lab, session_id: str, tablet: TestCli
     assert hints(lab, session_id) == []
 
 
+@pytest.mark.one_engine
 def test_answers_all_alike_are_told_to_the_operator_alone(
     lab: Lab, session_id: str, tablet: TestClient
 ) -> None:
@@ -53,6 +54,7 @@ def test_answers_all_alike_are_told_to_the_operator_alone(
     assert "alike" not in told
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("times_s", "kinds"),
     [
@@ -70,6 +72,7 @@ def test_half_of_the_ratings_below_a_second_are_implausibly_fast(
     assert hints(lab, session_id) == [{"kind": kind, "items": 14, "seconds": 1.0} for kind in kinds]
 
 
+@pytest.mark.one_engine
 def test_what_an_operator_enters_is_not_fast_but_may_be_incomplete(
     lab: Lab, session_id: str
 ) -> None:
@@ -87,6 +90,7 @@ def hints_on(instrument: Instrument, value: float) -> list[str]:
     return [hint.kind for hint in hints_of(instrument, submission, answers)]
 
 
+@pytest.mark.one_engine
 def test_no_symptom_at_all_is_no_straight_line(lab: Lab) -> None:
     """The lowest step throughout: usual in a list of symptoms, a contradiction in Karas 2020."""
     with lab.database.reading() as db:

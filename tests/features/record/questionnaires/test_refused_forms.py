@@ -6,6 +6,8 @@ from fastapi.testclient import TestClient
 from tests.features.lab import Json, Lab, error
 from tests.features.record.questionnaires.forms import ANSWERS, FORM, due, filled, rows, send
 
+pytestmark = pytest.mark.one_engine
+
 
 @pytest.mark.parametrize(
     ("item", "value"),

@@ -47,6 +47,7 @@ def test_answers_are_stored_as_given(lab: Lab, session_id: str, tablet: TestClie
     assert (form["mode"], form["administration"]) == ("tablet", f"{FORM}#1")
 
 
+@pytest.mark.one_engine
 def test_a_form_moves_the_session_on(lab: Lab, session_id: str, tablet: TestClient) -> None:
     """After the receipt the next step is current."""
     receipt = ok(send(tablet, filled(due(tablet))))
@@ -55,6 +56,7 @@ def test_a_form_moves_the_session_on(lab: Lab, session_id: str, tablet: TestClie
     assert view["steps"][view["current"]["index"]]["key"] == "block1.foot"
 
 
+@pytest.mark.one_engine
 def test_items_are_shown_in_the_order_of_the_seed(lab: Lab, tablet: TestClient) -> None:
     """The order can be made again from the seed; the open prompt comes last."""
     administration = due(tablet)
@@ -112,6 +114,7 @@ def test_other_answers_to_a_stored_form_are_refused(
     assert kept.id == event["data"]["content_id"]
 
 
+@pytest.mark.one_engine
 def test_the_operator_may_leave_answers_out(lab: Lab, session_id: str) -> None:
     """Without Q3 ownership and what builds on it are null; agency and location are not."""
     spoken = {item: value for item, value in ANSWERS.items() if item != "q3"}
@@ -127,6 +130,7 @@ def test_the_operator_may_leave_answers_out(lab: Lab, session_id: str) -> None:
     }
 
 
+@pytest.mark.one_engine
 def test_the_operators_entry_is_told_apart(lab: Lab, session_id: str) -> None:
     """Mode and account are stored with the answers."""
     ok(enter(lab, session_id, ANSWERS))
@@ -136,6 +140,7 @@ def test_the_operators_entry_is_told_apart(lab: Lab, session_id: str) -> None:
     assert row.entered_by == "account:admin"
 
 
+@pytest.mark.one_engine
 def test_the_operator_cannot_enter_the_impossible(lab: Lab, session_id: str) -> None:
     """An 8 is refused from the console too."""
     error(enter(lab, session_id, {**ANSWERS, "q1": 8}), 422, "invalid_input")
@@ -154,6 +159,7 @@ def test_a_reopened_form_is_answered_anew(lab: Lab, session_id: str, tablet: Tes
     assert [form["answers"]["q1"] for form in stored(lab, session_id)] == [2, 5]
 
 
+@pytest.mark.one_engine
 def test_a_late_copy_of_a_stored_form_still_gets_its_receipt(
     lab: Lab, session_id: str, tablet: TestClient
 ) -> None:

@@ -2,6 +2,7 @@
 
 import json
 
+import pytest
 from sqlalchemy import delete, update
 
 from app.features.record.receipts.service import receipt_text
@@ -33,6 +34,7 @@ def test_a_phase_without_movement_is_told(kept: Kept) -> None:
     assert not any("no frames" in problem for problem in kept.receipt().problems)
 
 
+@pytest.mark.one_engine
 def test_a_receipt_is_json_and_text(kept: Kept) -> None:
     """Both tell the verdict and every stream."""
     kept.change(lambda db: db.execute(delete(TelemetryChunk).where(TelemetryChunk.epoch == 2)))
@@ -47,6 +49,7 @@ def test_a_receipt_is_json_and_text(kept: Kept) -> None:
     assert "target         2       100         0      100" in text
 
 
+@pytest.mark.one_engine
 def test_a_new_session_has_an_empty_receipt(lab: Lab) -> None:
     """Nothing was promised, nothing is missing."""
     session = lab.join()
@@ -54,6 +57,7 @@ def test_a_new_session_has_an_empty_receipt(lab: Lab) -> None:
     assert (receipt["complete"], receipt["streams"], receipt["problems"]) == (True, [], [])
 
 
+@pytest.mark.one_engine
 def test_only_who_is_signed_in_gets_a_receipt(lab: Lab) -> None:
     """A stranger is refused, an unknown session is not found."""
     session = lab.join()

@@ -35,6 +35,7 @@ def test_a_whole_record_misses_nothing(kept: Kept) -> None:
     assert all(one.gaps == () for one in streams)
 
 
+@pytest.mark.one_engine
 def test_a_chunk_that_is_gone_leaves_a_named_hole(kept: Kept) -> None:
     """Although every counter still says that all is there."""
     kept.change(
@@ -50,6 +51,7 @@ def test_a_chunk_that_is_gone_leaves_a_named_hole(kept: Kept) -> None:
     assert "target, epoch 1: 90 of 400 are missing (seq 90 to 179)" in receipt.problems
 
 
+@pytest.mark.one_engine
 def test_what_the_client_made_and_never_sent_is_missing(kept: Kept) -> None:
     """The client told how far it had come; its journal was lost with it."""
     kept.change(
@@ -63,6 +65,7 @@ def test_what_the_client_made_and_never_sent_is_missing(kept: Kept) -> None:
     assert (found.sent, found.stored, found.missing, found.gaps) == (130, 100, 30, ((100, 130),))
 
 
+@pytest.mark.one_engine
 def test_a_chunk_that_cannot_be_read_counts_as_missing(kept: Kept) -> None:
     """One flipped bit in a chunk is noticed, and the rest is still counted."""
 
@@ -116,6 +119,7 @@ def test_the_digest_does_not_depend_on_how_frames_were_cut(kept: Kept) -> None:
     assert kept.stream("actual").sha256 != before
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("epoch", [2])
 def test_an_empty_stream_is_not_a_hole(kept: Kept, epoch: int) -> None:
     """A run of the client that sent nothing misses nothing."""

@@ -52,6 +52,7 @@ def test_folding_the_stored_events_gives_the_stored_snapshot(lab: Lab, logged: s
         assert (state.version, str(state.status)) == (session.version, session.status)
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("column", "changed"),
     [
@@ -75,6 +76,7 @@ def test_an_edited_column_breaks_the_chain(
     assert check(lab, logged).broken_at == 4
 
 
+@pytest.mark.one_engine
 def test_a_row_put_under_another_session_is_found(lab: Lab, logged: str) -> None:
     """A hash covers the session it belongs to."""
     other = str(lab.join()["id"])
@@ -85,6 +87,7 @@ def test_a_row_put_under_another_session_is_found(lab: Lab, logged: str) -> None
         assert verify_chain(events_of(db, other)).broken_at == 1
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("seq", [1, 4])
 def test_a_removed_row_is_found(lab: Lab, logged: str, seq: int) -> None:
     """The check names the seq that is missing."""
@@ -101,6 +104,7 @@ def test_a_removed_end_is_found(lab: Lab, logged: str) -> None:
     assert check(lab, logged).broken_at == last
 
 
+@pytest.mark.one_engine
 def test_a_removed_row_is_found_though_the_rest_moved_up(lab: Lab, logged: str) -> None:
     """Renumbering what follows does not hide the gap."""
     with lab.database.writing() as db:
@@ -110,6 +114,7 @@ def test_a_removed_row_is_found_though_the_rest_moved_up(lab: Lab, logged: str) 
     assert check(lab, logged).broken_at == 4
 
 
+@pytest.mark.one_engine
 def test_an_inserted_row_is_found(lab: Lab, logged: str) -> None:
     """A row put in between breaks the chain at its place."""
     with lab.database.writing() as db:
@@ -124,6 +129,7 @@ def test_an_inserted_row_is_found(lab: Lab, logged: str) -> None:
     assert check(lab, logged).broken_at == 4
 
 
+@pytest.mark.one_engine
 def test_swapped_rows_are_found(lab: Lab, logged: str) -> None:
     """The order of events is part of the chain."""
     with lab.database.writing() as db:
@@ -133,6 +139,7 @@ def test_swapped_rows_are_found(lab: Lab, logged: str) -> None:
     assert check(lab, logged).broken_at == 4
 
 
+@pytest.mark.one_engine
 def test_an_edit_with_its_own_hash_mended_is_found_in_the_next_row(lab: Lab, logged: str) -> None:
     """Who mends one hash has to mend all that follow."""
     with lab.database.writing() as db:

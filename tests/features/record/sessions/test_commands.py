@@ -54,6 +54,7 @@ def test_of_two_operators_pressing_start_one_wins(lab: Lab, planned: Json) -> No
     assert len(started(lab, planned["id"])) == 1
 
 
+@pytest.mark.one_engine
 def test_a_version_from_the_future_is_stale_too(lab: Lab, planned: Json) -> None:
     """Whoever decides on a state that is not the present one has to look again."""
     error(lab.try_command({**planned, "version": 5}, "start"), 409, "stale")
@@ -91,6 +92,7 @@ def test_notes_never_clash(lab: Lab, planned: Json) -> None:
     assert view["notes"][0]["by"] == "account:admin"
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("kind", ["redo", "skip", "abort", "withdraw"])
 @pytest.mark.parametrize("reason", [None, "", "   "])
 def test_what_changes_the_record_needs_a_reason(lab: Lab, kind: str, reason: str | None) -> None:
@@ -102,11 +104,13 @@ def test_what_changes_the_record_needs_a_reason(lab: Lab, kind: str, reason: str
     assert contents(lab, view["id"], "reason") == 0
 
 
+@pytest.mark.one_engine
 def test_an_empty_note_is_refused(lab: Lab, planned: Json) -> None:
     """A note needs some text."""
     error(lab.try_command(planned, "note", text=" "), 422, "invalid_input")
 
 
+@pytest.mark.one_engine
 def test_a_phase_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
     """The operator hears to pair or wake the headset, or to skip."""
     view = lab.skip_to(lab.join(), "free_roam")
@@ -115,6 +119,7 @@ def test_a_phase_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
     assert "Pair or wake the headset" in refusal["remedy"]
 
 
+@pytest.mark.one_engine
 def test_a_body_without_headset_is_refused_with_the_way_out(lab: Lab) -> None:
     """Nobody would see it, and the log would say that it had appeared."""
     view = lab.skip_to(lab.join(), "materialise")
@@ -130,6 +135,7 @@ def test_a_refused_command_leaves_no_words_behind(lab: Lab, planned: Json) -> No
     assert contents(lab, planned["id"], "reason") == 0
 
 
+@pytest.mark.one_engine
 def test_a_pause_that_was_asked_for_already_stores_no_second_reason(lab: Lab) -> None:
     """Words are kept only where an event points at them."""
     view = lab.skip_to(lab.join(), "free_roam")
@@ -142,6 +148,7 @@ def test_a_pause_that_was_asked_for_already_stores_no_second_reason(lab: Lab) ->
     assert contents(lab, view["id"], "reason") == before + 1
 
 
+@pytest.mark.one_engine
 def test_the_view_offers_what_can_be_done(lab: Lab, planned: Json) -> None:
     """`allowed` leads with the next action of the present state."""
     assert planned["allowed"] == ["start", "note"]
@@ -151,6 +158,7 @@ def test_the_view_offers_what_can_be_done(lab: Lab, planned: Json) -> None:
     assert (view["allowed"], view["status"]) == (["note"], "aborted")
 
 
+@pytest.mark.one_engine
 def test_a_reason_is_shown_at_its_step(lab: Lab, planned: Json) -> None:
     """A skipped step tells why it was skipped."""
     view = lab.command(lab.command(planned, "start"), "skip", reason="consent on paper")
@@ -160,11 +168,13 @@ def test_a_reason_is_shown_at_its_step(lab: Lab, planned: Json) -> None:
     )
 
 
+@pytest.mark.one_engine
 def test_an_unknown_session_is_not_found(lab: Lab, planned: Json) -> None:
     """A command to nobody is answered with 404."""
     error(lab.try_command({**planned, "id": "nobody"}, "start"), 404, "not_found")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "fields",
     [
@@ -217,6 +227,7 @@ def test_nothing_is_published_when_the_transaction_fails(
     assert heard == []
 
 
+@pytest.mark.one_engine
 def test_a_blinded_operator_sees_no_latency_anywhere(fresh_lab: Lab) -> None:
     """Neither order, step, phase, event nor ledger tells the condition."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]

@@ -35,6 +35,7 @@ def record(lab: Lab, view: Json) -> Json:
     return told
 
 
+@pytest.mark.one_engine
 def test_the_tablet_is_told_what_to_ask_for(tablet: TestClient) -> None:
     """Lines to tick in the participant's language, and how to sign."""
     state = ok(tablet.get("/api/tablet/state"))
@@ -45,6 +46,7 @@ def test_the_tablet_is_told_what_to_ask_for(tablet: TestClient) -> None:
     assert german["consent"]["statements"][0]["text"] == "Ich habe die Seite oben gelesen."
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("change", "said"),
     [
@@ -105,6 +107,7 @@ def test_the_log_holds_its_hash_and_no_word_of_it(lab: Lab, view: Json, tablet: 
     assert "Ada" not in str(lab.events(view["id"]))
 
 
+@pytest.mark.one_engine
 def test_a_typed_name_stands_for_a_drawing(lab: Lab, view: Json, tablet: TestClient) -> None:
     """Whoever cannot draw types; the language of what was read is part of the record."""
     ok(tablet.put("/api/tablet/language", json={"language": "de"}))
@@ -114,6 +117,7 @@ def test_a_typed_name_stands_for_a_drawing(lab: Lab, view: Json, tablet: TestCli
     assert told["text"].startswith("Danke, dass Sie")
 
 
+@pytest.mark.one_engine
 def test_one_press_is_not_enough_where_a_signature_is_wanted(
     lab: Lab, view: Json, tablet: TestClient
 ) -> None:
@@ -124,6 +128,7 @@ def test_one_press_is_not_enough_where_a_signature_is_wanted(
     assert "signed on paper" in refusal["remedy"]
 
 
+@pytest.mark.one_engine
 def test_a_consent_on_paper_says_where_the_sheet_is(lab: Lab, view: Json) -> None:
     """The operator records it; the lines are on the sheet."""
     sheet = {"place": "Folder A, sheet 12", "reason": "The tablet was empty"}
@@ -137,6 +142,7 @@ def test_a_consent_on_paper_says_where_the_sheet_is(lab: Lab, view: Json) -> Non
     assert {one["ticked"] for one in told["statements"]} == {None}
 
 
+@pytest.mark.one_engine
 def test_a_plain_consent_has_a_record_too(lab: Lab) -> None:
     """Of the shipped study, which wants no signature: one press, and it is the participant's."""
     pressed = lab.command(lab.join(), "start")
@@ -144,6 +150,7 @@ def test_a_plain_consent_has_a_record_too(lab: Lab) -> None:
     assert record(lab, pressed)["mode"] == "tablet"
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "sheet", [None, {"place": "  ", "reason": "no tablet"}, {"place": "Folder A", "reason": " "}]
 )
@@ -171,6 +178,7 @@ def test_an_erased_consent_leaves_its_time_only(lab: Lab, view: Json, tablet: Te
     assert (told["erased"], told["signature"], told["name"]) == (True, None, None)
 
 
+@pytest.mark.one_engine
 def test_no_export_holds_a_name_or_a_signature(
     lab: Lab, view: Json, tablet: TestClient, tmp_path: Path
 ) -> None:

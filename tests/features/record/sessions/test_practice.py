@@ -74,6 +74,7 @@ def test_a_task_never_ends_early() -> None:
         decide(PLAN, state, early)
 
 
+@pytest.mark.one_engine
 def test_the_server_counts_the_completions_itself(lab: Lab) -> None:
     """What the headset is told and what is on record: a marked phase, in no figure."""
     if lab.operator.get(f"/api/studies/{KEY}").status_code == 404:

@@ -22,6 +22,7 @@ def session(lab: Lab) -> Json:
     return view
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("start", "later", "codes"),
     [

@@ -1,5 +1,7 @@
 """Stop rules on both engines: what a form leads to, on the console, the tablet and the record."""
 
+import pytest
+
 from app.features.record.telemetry.recovery import stop_running_clocks
 from tests.features.lab import Json, Lab, error, ok
 from tests.features.record.sessions.options_lab import FMS, answer_fms, joined
@@ -17,6 +19,7 @@ def alarms(view: Json) -> dict[str, str]:
     return {one["code"]: one["severity"] for one in view["alarms"]}
 
 
+@pytest.mark.one_engine
 def test_below_every_limit_nothing_happens(lab: Lab) -> None:
     """The session goes on."""
     view = answered(lab, 9)
@@ -24,6 +27,7 @@ def test_below_every_limit_nothing_happens(lab: Lab) -> None:
     assert "begin_phase" in view["allowed"]
 
 
+@pytest.mark.one_engine
 def test_at_the_warning_the_operator_is_told_and_it_goes_on(lab: Lab) -> None:
     """At or above: 10 is enough. A later form below it clears the warning."""
     view = answered(lab, 10)
@@ -51,6 +55,7 @@ def test_at_the_limit_the_session_is_held(lab: Lab) -> None:
     assert tablet["administration"] is None
 
 
+@pytest.mark.one_engine
 def test_a_held_session_refuses_to_go_on_and_says_what_to_do(lab: Lab) -> None:
     """Begin, complete, resume and skip wait for the operator's decision."""
     view = answered(lab, 20)
@@ -80,6 +85,7 @@ def test_going_on_needs_a_reason_and_is_on_record(lab: Lab) -> None:
     ]
 
 
+@pytest.mark.one_engine
 def test_ending_a_held_session_frees_its_slot(lab: Lab) -> None:
     """As any session that was aborted."""
     view = answered(lab, 15)
@@ -87,6 +93,7 @@ def test_ending_a_held_session_frees_its_slot(lab: Lab) -> None:
     assert (ended["status"], ended["held"], alarms(ended)) == ("aborted", None, {})
 
 
+@pytest.mark.one_engine
 def test_a_missing_score_never_passes_silently(lab: Lab) -> None:
     """The operator left the item out: a warning, until a later form tells."""
     view = answered(lab, None)
@@ -96,6 +103,7 @@ def test_a_missing_score_never_passes_silently(lab: Lab) -> None:
     assert alarms(lab.view(view["id"])) == {"stop_rule_met": "critical"}
 
 
+@pytest.mark.one_engine
 def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
     """Alarms of the equipment are cleared then; those of the participant stay."""
     view = answered(fresh_lab, 15)
@@ -105,6 +113,7 @@ def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
     assert alarms(after) == {"stop_rule_met": "critical"}
 
 
+@pytest.mark.one_engine
 def test_no_alarm_tells_the_answer(lab: Lab) -> None:
     """The value stays with the answers, where it can be erased."""
     view = answered(lab, 19)

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import pytest
 from sqlalchemy import delete
 from sqlalchemy.orm import Session
 
@@ -160,6 +161,7 @@ def test_a_redone_task_counts_by_its_last_run() -> None:
     assert TASKS[0].key not in [one.step for one in found]
 
 
+@pytest.mark.one_engine
 def test_a_session_whose_every_task_was_skipped_gives_its_slot_back(fresh_lab: Lab) -> None:
     """It is completed and does not count, view and ledger say why, and the next one takes over."""
     lab = fresh_lab
@@ -174,6 +176,7 @@ def test_a_session_whose_every_task_was_skipped_gives_its_slot_back(fresh_lab: L
     assert lab.join()["slot"]["index"] == 0
 
 
+@pytest.mark.one_engine
 def test_a_study_without_rules_keeps_the_slot(fresh_lab: Lab) -> None:
     """Completed is completed, as before there were rules."""
     lab = fresh_lab

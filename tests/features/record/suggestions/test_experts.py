@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from app.features.results.analysis.tables import KINDS, sessions_table
 from app.features.results.exports.writing import export_study, usual_kind
 from tests.features.lab import STUDY, Lab, ok
@@ -16,6 +18,7 @@ def test_experts_have_a_ledger_of_their_own(fresh_lab: Lab) -> None:
     assert [slot["state"] for slot in slots].count("open") == 1
 
 
+@pytest.mark.one_engine
 def test_an_expert_is_in_the_list_of_sessions(fresh_lab: Lab) -> None:
     """With a kind of its own, and not simulated."""
     fresh_lab.join(kind="expert")
@@ -23,6 +26,7 @@ def test_an_expert_is_in_the_list_of_sessions(fresh_lab: Lab) -> None:
     assert (told["kind"], told["simulated"]) == ("expert", False)
 
 
+@pytest.mark.one_engine
 def test_an_expert_runs_no_faster_than_life(lab: Lab) -> None:
     """Only simulations may."""
     assert lab.try_join(kind="expert", time_scale=2.0).status_code == 422

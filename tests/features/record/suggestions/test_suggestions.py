@@ -45,6 +45,7 @@ def test_an_expert_advises_at_the_step_they_are_in(fresh_lab: Lab) -> None:
     assert all_of(fresh_lab) == [stored]
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("wish", "status", "code"),
     [
@@ -64,6 +65,7 @@ def test_advice_about_nothing_is_refused(lab: Lab, wish: Json, status: int, code
     assert answer.json()["error"]["code"].startswith(code)
 
 
+@pytest.mark.one_engine
 def test_a_suggestion_is_decided_once(fresh_lab: Lab) -> None:
     """Adopted in a later version, or declined; afterwards it stands."""
     first, second = advise(fresh_lab), advise(fresh_lab, body="Shorter")
@@ -77,6 +79,7 @@ def test_a_suggestion_is_decided_once(fresh_lab: Lab) -> None:
     assert error(again, 409, "conflict")["value"] == "adopted"
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("number", [1, 99])
 def test_only_a_later_version_can_have_adopted_it(fresh_lab: Lab, number: int) -> None:
     """Not the one it was made about, and none that is not there."""

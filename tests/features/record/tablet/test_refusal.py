@@ -3,6 +3,8 @@
 import uuid
 from typing import Any
 
+import pytest
+
 from app.features.record.telemetry.recovery import stop_running_clocks
 from tests.features.lab import STUDY, Json, Lab, error, ok
 
@@ -52,6 +54,7 @@ def test_a_refusal_reaches_the_operator_and_holds_the_session(lab: Lab) -> None:
     assert event["data"] == {"step": 0, "by": "tablet"}
 
 
+@pytest.mark.one_engine
 def test_nobody_goes_on_as_if_nothing_had_happened(lab: Lab) -> None:
     """Neither the operator with a sheet of paper, nor a second page of the tablet that agrees."""
     view, tablet = at_consent(lab)
@@ -71,6 +74,7 @@ def test_nobody_goes_on_as_if_nothing_had_happened(lab: Lab) -> None:
     assert ok(lab.operator.get(f"/api/sessions/{view['id']}/consent")) is None
 
 
+@pytest.mark.one_engine
 def test_ending_the_session_frees_its_slot(fresh_lab: Lab) -> None:
     """The next participant takes it; the tablet thanks, and does not debrief."""
     view, tablet = at_consent(fresh_lab)
@@ -95,6 +99,7 @@ def test_the_same_press_counts_once_however_often_it_comes(lab: Lab) -> None:
     assert codes(lab.view(view["id"])) == {"refusal_retracted": "warning"}
 
 
+@pytest.mark.one_engine
 def test_who_changes_their_mind_sees_the_consent_again_and_may_agree(lab: Lab) -> None:
     """On record with its times; the operator's warning ends with the decision."""
     view, tablet = at_consent(lab)
@@ -112,6 +117,7 @@ def test_who_changes_their_mind_sees_the_consent_again_and_may_agree(lab: Lab) -
     }
 
 
+@pytest.mark.one_engine
 def test_the_operator_shows_the_consent_again_for_a_reason(lab: Lab) -> None:
     """Nothing is agreed to by that, and without a refusal there is nothing to show again."""
     view, tablet = at_consent(lab)
@@ -127,6 +133,7 @@ def test_the_operator_shows_the_consent_again_for_a_reason(lab: Lab) -> None:
     assert event["data"]["content_id"]
 
 
+@pytest.mark.one_engine
 def test_another_tablet_shows_the_refusal_too(lab: Lab) -> None:
     """It may also be refused there, and taken back there: it is the same participant."""
     view, tablet = at_consent(lab)
@@ -138,6 +145,7 @@ def test_another_tablet_shows_the_refusal_too(lab: Lab) -> None:
     assert types(lab, view).count("consent_refused") == 1
 
 
+@pytest.mark.one_engine
 def test_a_refusal_that_arrives_late_holds_the_session_where_it_is(lab: Lab) -> None:
     """The tablet was offline while the operator recorded a sheet of paper."""
     view, tablet = at_consent(lab)
@@ -171,6 +179,7 @@ def test_a_restart_of_the_server_lifts_nothing(fresh_lab: Lab) -> None:
     assert codes(after) == {"consent_refused": "critical", "question_asked": "critical"}
 
 
+@pytest.mark.one_engine
 def test_an_operator_who_is_blind_sees_it_as_well(fresh_lab: Lab) -> None:
     """It tells nothing about the condition."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
@@ -183,6 +192,7 @@ def test_an_operator_who_is_blind_sees_it_as_well(fresh_lab: Lab) -> None:
     assert now["refusal"]["step"] == 0
 
 
+@pytest.mark.one_engine
 def test_a_session_that_is_over_has_nobody_to_tell(lab: Lab) -> None:
     """The tablet hears so, and shows the end."""
     view, tablet = at_consent(lab)
@@ -191,6 +201,7 @@ def test_a_session_that_is_over_has_nobody_to_tell(lab: Lab) -> None:
     assert ok(tablet.get("/api/tablet/state"))["screen"] == "finished"
 
 
+@pytest.mark.one_engine
 def test_a_wish_about_something_else_is_refused(lab: Lab) -> None:
     """Forms and steps that lie ahead are no consents."""
     view, tablet = at_consent(lab)
@@ -199,6 +210,7 @@ def test_a_wish_about_something_else_is_refused(lab: Lab) -> None:
     assert lab.view(view["id"])["version"] == view["version"]
 
 
+@pytest.mark.one_engine
 def test_a_question_is_an_alarm_and_an_event_until_somebody_comes(lab: Lab) -> None:
     """Answered like a call, by the same button; asking twice does no harm."""
     view, tablet = at_consent(lab)
@@ -219,6 +231,7 @@ def test_a_question_is_an_alarm_and_an_event_until_somebody_comes(lab: Lab) -> N
     assert record["outcome"] == "The experimenter went to the participant."
 
 
+@pytest.mark.one_engine
 def test_a_question_can_be_taken_back(lab: Lab) -> None:
     """And an ended session has nobody to ask."""
     view, tablet = at_consent(lab)
@@ -232,6 +245,7 @@ def test_a_question_can_be_taken_back(lab: Lab) -> None:
     assert types(lab, view)[-1] == "session_ended"
 
 
+@pytest.mark.one_engine
 def test_a_steps_own_text_has_its_own_title(lab: Lab) -> None:
     """Only the study's waiting text stands under the tablet's words that nothing is to be done."""
     view = lab.join()

@@ -28,6 +28,7 @@ def test_the_screen_follows_the_session(lab: Lab) -> None:
     assert screens == ["waiting", "consent", "form", "instructions", "waiting", "finished"]
 
 
+@pytest.mark.one_engine
 def test_acknowledging_twice_does_no_harm(lab: Lab) -> None:
     """Consent sent again after a lost answer leaves the session where it is."""
     view = lab.command(lab.join(), "start")
@@ -39,6 +40,7 @@ def test_acknowledging_twice_does_no_harm(lab: Lab) -> None:
     assert events == ["session_started", "step_completed"]
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("step_index", [1, 3, 6, 500])
 def test_a_tablet_completes_only_what_is_its_own(lab: Lab, step_index: int) -> None:
     """Forms, heights and phases cannot be acknowledged."""
@@ -48,12 +50,14 @@ def test_a_tablet_completes_only_what_is_its_own(lab: Lab, step_index: int) -> N
     assert refusal["valid"] == [0, 2]
 
 
+@pytest.mark.one_engine
 def test_a_tablet_cannot_run_ahead(lab: Lab) -> None:
     """Instructions are acknowledged when they are due, not before."""
     tablet = lab.tablet(lab.command(lab.join(), "start")["id"])
     error(tablet.post("/api/tablet/acknowledge", json={"step_index": 2}), 409, "not_now")
 
 
+@pytest.mark.one_engine
 def test_the_language_can_be_chosen(lab: Lab) -> None:
     """The screen answers in it; a language without texts is refused."""
     view = lab.command(lab.join(), "start")
@@ -66,6 +70,7 @@ def test_the_language_can_be_chosen(lab: Lab) -> None:
     assert refusal["valid"] == ["en", "de"]
 
 
+@pytest.mark.one_engine
 def test_no_screen_tells_the_condition(lab: Lab) -> None:
     """Neither latency nor order reaches the participant before the debriefing."""
     view = lab.command(lab.join(), "start")
@@ -96,6 +101,7 @@ def test_a_call_stands_until_it_is_answered(lab: Lab) -> None:
     assert record["outcome"] == "The experimenter went to the participant."
 
 
+@pytest.mark.one_engine
 def test_a_call_can_be_taken_back(lab: Lab) -> None:
     """Both are on record; an ended session has nobody to call."""
     view = lab.join()
@@ -109,6 +115,7 @@ def test_a_call_can_be_taken_back(lab: Lab) -> None:
     assert len(ok(lab.operator.get(f"/api/sessions/{view['id']}/alarms"))) == 1
 
 
+@pytest.mark.one_engine
 def test_an_unpaired_tablet_may_ask_whether_it_is_paired(lab: Lab) -> None:
     """No error, no screen; a paired one gets its screen at once, an unpaired one none again."""
     view = lab.join()

@@ -45,6 +45,7 @@ def test_the_process_gives_the_chunks_that_a_thread_would(
     assert encoder.due_chunks(now - timedelta(days=1)) == []
 
 
+@pytest.mark.one_engine
 def test_a_process_that_was_killed_is_started_anew(
     lab: Lab, session_id: str, encoder: Encoder
 ) -> None:
@@ -71,6 +72,7 @@ def test_what_goes_wrong_there_is_told_here(tmp_path: Path) -> None:
         encoder.end()
 
 
+@pytest.mark.one_engine
 def test_it_ends_when_nobody_asks_any_more(lab: Lab, encoder: Encoder) -> None:
     """The end of the line is the end of the process, also of a server that was killed."""
     encoder.due_chunks(lab.context.clock.utc_now())

@@ -125,6 +125,7 @@ def test_a_physics_avatar_is_measured_by_what_its_hinges_are_asked_for(
         assert (shoulder.samples, shoulder.excluded) == (0, 0)
 
 
+@pytest.mark.one_engine
 def test_a_delayed_copy_has_no_limits_and_no_shares(lab: Lab, session_id: str) -> None:
     """Its rows are those of the raw rotations, to the bit."""
     phase = _phase(lab, session_id)

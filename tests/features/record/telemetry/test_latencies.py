@@ -62,6 +62,7 @@ def view_of(lab: Lab, phase: Phase) -> Json:
     return dict(own)
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("latency_ms", [0.0, 125.0, 350.0])
 def test_the_stored_frames_tell_the_latency(lab: Lab, session_id: str, latency_ms: float) -> None:
     """What the avatar's buffer delayed is found again in what was stored of it."""
@@ -98,6 +99,7 @@ def test_catching_up_stores_a_row_for_every_phase_that_ended(lab: Lab, session_i
     assert list(summarise(lab, good)) == list(rows)
 
 
+@pytest.mark.one_engine
 def test_runs_of_the_client_are_measured_together(lab: Lab, session_id: str) -> None:
     """Four seconds before and four after a restart of the headset are eight of movement."""
     phase = phases(lab, session_id)[125.0]
@@ -110,6 +112,7 @@ def test_runs_of_the_client_are_measured_together(lab: Lab, session_id: str) -> 
     assert row.samples == 720
 
 
+@pytest.mark.one_engine
 def test_a_body_that_stands_has_no_latency_but_a_reason(lab: Lab, session_id: str) -> None:
     """The row says how little movement there was."""
     phase = phases(lab, session_id)[125.0]
@@ -126,6 +129,7 @@ def test_a_body_that_stands_has_no_latency_but_a_reason(lab: Lab, session_id: st
     assert row.reason == "2.0 s of movement above 20 deg/s; 5 s are needed."
 
 
+@pytest.mark.one_engine
 def test_the_cockpit_shows_the_achieved_beside_the_ordered(lab: Lab, session_id: str) -> None:
     """In ms with the interval; whether it is off; and why there is none."""
     by_latency = phases(lab, session_id)
@@ -143,6 +147,7 @@ def test_the_cockpit_shows_the_achieved_beside_the_ordered(lab: Lab, session_id:
     assert (shown["latency_reason"], shown["movement_s"]) == ("3.2 s of movement.", 3.25)
 
 
+@pytest.mark.one_engine
 def test_a_blinded_operator_is_told_only_whether_it_is_off(fresh_lab: Lab) -> None:
     """In or out of tolerance, and nothing that would tell the condition."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
@@ -163,6 +168,7 @@ def test_a_blinded_operator_is_told_only_whether_it_is_off(fresh_lab: Lab) -> No
     assert view_of(fresh_lab, still)["latency_off"] is None
 
 
+@pytest.mark.one_engine
 def test_news_are_told_when_a_latency_is_there(
     lab: Lab, session_id: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

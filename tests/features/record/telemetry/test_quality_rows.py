@@ -59,6 +59,7 @@ def quality(lab: Lab, session_id: str) -> dict[str, PhaseQuality]:
         return {row.stream: row for row in phase_quality(db, session_id, PHASE)}
 
 
+@pytest.mark.one_engine
 def test_sound_frames_have_no_fault(lab: Lab, session_id: str) -> None:
     """One row a stream, with how many there were."""
     with lab.database.writing() as db:
@@ -72,6 +73,7 @@ def test_sound_frames_have_no_fault(lab: Lab, session_id: str) -> None:
         assert (row.frozen_s, row.frozen_joints) == (0.0, [])
 
 
+@pytest.mark.one_engine
 def test_each_stream_has_its_own_faults(lab: Lab, session_id: str) -> None:
     """A head that froze in the target, a value that is none in the actual body."""
     frozen, broken = generated().copy(), generated().copy()
@@ -89,6 +91,7 @@ def test_each_stream_has_its_own_faults(lab: Lab, session_id: str) -> None:
     assert rows["actual"].frozen_joints == []
 
 
+@pytest.mark.one_engine
 def test_a_gap_in_the_frames_is_counted(lab: Lab, session_id: str) -> None:
     """Seqs go on, time does not: the headset drew nothing for two seconds."""
     values = values_of(generated())
@@ -101,6 +104,7 @@ def test_a_gap_in_the_frames_is_counted(lab: Lab, session_id: str) -> None:
         assert row.gap_s == row.longest_gap_s
 
 
+@pytest.mark.one_engine
 def test_frames_of_other_phases_are_known_and_not_counted(lab: Lab, session_id: str) -> None:
     """A head that froze before the phase began is frozen in it; other faults are not its own."""
     before, own = generated().part(slice(0, 900)).copy(), generated().part(slice(900, 1800)).copy()
@@ -126,6 +130,7 @@ def test_frames_that_are_not_folded_yet_count_too(lab: Lab, session_id: str) -> 
     assert {row.frames for row in quality(lab, session_id).values()} == {990}
 
 
+@pytest.mark.one_engine
 def test_runs_of_the_client_add_up(lab: Lab, session_id: str) -> None:
     """Two runs with clocks of their own; what lies between them is not known."""
     values = values_of(generated())
@@ -136,6 +141,7 @@ def test_runs_of_the_client_add_up(lab: Lab, session_id: str) -> None:
         assert (row.frames, row.gaps, row.jumps) == (1350, 0, 0)
 
 
+@pytest.mark.one_engine
 def test_a_phase_without_frames_has_rows_too(lab: Lab, session_id: str) -> None:
     """They say that there is nothing."""
     rows = quality(lab, session_id)

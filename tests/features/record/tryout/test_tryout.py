@@ -2,6 +2,8 @@
 
 import time
 
+import pytest
+
 from app.features.record.tryout.desk import TryoutDesk
 from app.models import Account, LoginToken
 from app.platform.access import Caller
@@ -23,6 +25,7 @@ def _until_over(desk: TryoutDesk, caller: Caller) -> Json:
         time.sleep(0.05)
 
 
+@pytest.mark.one_engine
 def test_it_fails_in_words_and_leaves_nothing_behind(fresh_lab: Lab) -> None:
     """With nobody at the address: why, what to do; its login is revoked, a new one may begin."""
     lab = fresh_lab

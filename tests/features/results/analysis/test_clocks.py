@@ -65,6 +65,7 @@ def _errors_s(database: Database, session_id: str, simulated: Simulated, epoch: 
     return float(np.percentile(error_s, 95))
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "scenario",
     [
@@ -83,6 +84,7 @@ def test_events_are_where_they_were(database: Database, scenario: Scenario) -> N
     assert _errors_s(database, session_id, simulated) < 0.005
 
 
+@pytest.mark.one_engine
 def test_a_wall_clock_set_in_mid_session_bends_no_time(database: Database) -> None:
     """UTC stays that of the first probes; the mapping's rows tell by how much the clock was set."""
     session_id = _session(database)
@@ -113,6 +115,7 @@ def _later(probes: ClockProbes, client_s: float, server_s: float, utc_s: float) 
     )
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("server_s", "utc_s", "passed_s"),
     [
@@ -143,6 +146,7 @@ def test_utc_is_kept_from_run_to_run(
     assert (second - first)[0] / np.timedelta64(1, "s") == pytest.approx(passed_s, abs=0.001)
 
 
+@pytest.mark.one_engine
 def test_a_run_after_a_restart_within_a_run_keeps_utc(database: Database) -> None:
     """What undid the jump of the server's clock counts for the next run as well."""
     session_id = _session(database)
@@ -207,6 +211,7 @@ def test_without_probes_there_is_no_utc(database: Database) -> None:
     assert set(contacts["epoch"]) == {1, 2}
 
 
+@pytest.mark.one_engine
 def test_a_faster_simulation_is_mapped_in_its_own_seconds(database: Database) -> None:
     """At ten seconds of the client's clock a second, a minute of it is six seconds of UTC."""
     session_id = _session(database, "simulated")

@@ -73,6 +73,7 @@ def _axes(figure: dict[str, Any]) -> list[dict[str, Any]]:
     return [value for name, value in layout.items() if name[:5] in ("xaxis", "yaxis")]
 
 
+@pytest.mark.one_engine
 def test_every_figure_is_valid_and_travels_as_plain_json(database: Database) -> None:
     """plotly's own validation takes each; no packed arrays, no NaN."""
     _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
@@ -85,7 +86,6 @@ def test_every_figure_is_valid_and_travels_as_plain_json(database: Database) -> 
     assert list(_figures(view)) == [key for key in KEYS if key not in NEEDS_MOVEMENT]
 
 
-@pytest.mark.one_engine
 @pytest.mark.one_engine
 def test_every_figure_says_what_it_shows(database: Database) -> None:
     """Title, caption, units on the axes, hover texts, a clear background, and how many people."""
@@ -136,7 +136,6 @@ def test_nobody_gives_a_sentence_instead_of_a_plot(database: Database) -> None:
         assert entry.empty.startswith("No ")
 
 
-@pytest.mark.one_engine
 @pytest.mark.one_engine
 def test_one_participant_is_drawn_without_an_interval(database: Database) -> None:
     """The first participant is shown, and the caption says that an interval is missing."""
@@ -210,7 +209,6 @@ def test_a_filter_leaves_only_what_was_chosen_and_says_so(database: Database) ->
     assert all((one.empty or "").startswith("Among what was chosen: ") for one in none.figures)
 
 
-@pytest.mark.one_engine
 @pytest.mark.one_engine
 def test_rows_that_do_not_count_are_drawn_only_when_asked_for(database: Database) -> None:
     """A withdrawn session is in the figures of all rows, and the captions say so."""

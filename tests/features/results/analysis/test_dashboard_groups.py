@@ -18,6 +18,7 @@ def _build(database: Database, *specs: SessionSpec) -> None:
             build_session(db, spec)
 
 
+@pytest.mark.one_engine
 def test_a_group_has_the_figures_that_all_have_and_reads_no_other_table(
     database: Database,
 ) -> None:

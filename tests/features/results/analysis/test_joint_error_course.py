@@ -139,6 +139,7 @@ def _drawing(database: Database, chosen: FigureFilter = NO_FILTER) -> tuple[Draw
         return drawing, sheet_of(drawing, material).decode()
 
 
+@pytest.mark.one_engine
 def test_the_figure_of_a_study_is_filtered_and_its_rows_are_those_drawn(
     database: Database,
 ) -> None:

@@ -52,6 +52,7 @@ def test_what_is_unknown_is_missing_and_not_false(table: pd.DataFrame) -> None:
     assert roam["latency_reason"] is None
 
 
+@pytest.mark.one_engine
 def test_a_missing_boolean_is_an_empty_cell(table: pd.DataFrame) -> None:
     """true, false or nothing, as everywhere in an export."""
     header, *rows = b"".join(csv_pieces("phases", table.reset_index())).decode().splitlines()

@@ -73,6 +73,7 @@ def table(database: Database, name: str, kind: str = "people") -> pd.DataFrame:
         return TABLES[name](db, STUDY, kind)  # type: ignore[arg-type]  # the fact
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("name", OWN)
 def test_a_table_has_the_columns_of_the_codebook_also_when_empty(
     database: Database, name: str
@@ -108,6 +109,7 @@ def test_every_phase_has_a_row_for_each_stream(database: Database) -> None:
     assert (first["non_unit"], first["non_finite"], first["backwards"]) == (3, 4, 5)
 
 
+@pytest.mark.one_engine
 def test_a_redone_phase_stays_and_does_not_count(database: Database) -> None:
     """As in every table of phases."""
     build(database, SessionSpec("P-0001", redone=("block2.hand",)))

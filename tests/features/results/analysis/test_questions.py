@@ -67,7 +67,6 @@ def test_everybody_alike_gives_the_smallest_p_there_is(database: Database) -> No
 
 
 @pytest.mark.one_engine
-@pytest.mark.one_engine
 def test_a_glance_tells_where_a_measure_goes_and_not_where_it_should(database: Database) -> None:
     """Agency was predicted to fall; here it rises: that is told, and p is nearly 1."""
     rising = {0.0: 2, 125.0: 5, 350.0: 7}
@@ -91,7 +90,6 @@ def test_a_glance_tells_where_a_measure_goes_and_not_where_it_should(database: D
 
 
 @pytest.mark.one_engine
-@pytest.mark.one_engine
 def test_what_does_not_change_goes_neither_way(database: Database) -> None:
     """Completed tasks are the same everywhere: no direction is told, and p is 1."""
     found = _found(database, 4)
@@ -101,6 +99,7 @@ def test_what_does_not_change_goes_neither_way(database: Database) -> None:
     assert (line.differ, line.first, line.trend, line.way) == (None, None, "p = 1.000", None)
 
 
+@pytest.mark.one_engine
 def test_nothing_is_significant_and_alpha_is_told(database: Database) -> None:
     """The word does not occur; what was not declared is said to be so."""
     found = _found(database, 3)
@@ -110,7 +109,6 @@ def test_nothing_is_significant_and_alpha_is_told(database: Database) -> None:
     assert found.declared is False
 
 
-@pytest.mark.one_engine
 @pytest.mark.one_engine
 def test_alpha_is_the_one_that_was_declared(database: Database) -> None:
     """What is here beside the declared test is said to be exploratory."""

@@ -43,6 +43,7 @@ def _read(database: Database, table: str, kind: Kind = "people") -> pd.DataFrame
         return TABLES[table](db, STUDY, kind)
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("table", TABLES)
 def test_an_empty_table_has_the_columns_of_the_codebook(database: Database, table: str) -> None:
     """Names and order come from the codebook."""
@@ -71,6 +72,7 @@ def test_kinds_never_mix(three_kinds: Database, table: str) -> None:
     assert len(_read(three_kinds, table, "all")) == sum(sizes)
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     "table", ["phases", "contacts", "completions", "joint_errors", "joint_error_course"]
 )
@@ -82,6 +84,7 @@ def test_a_redone_phase_stays_and_does_not_count(database: Database, table: str)
     assert set(zip(of_step["attempt"], of_step["valid"], strict=True)) == {(1, False), (2, True)}
 
 
+@pytest.mark.one_engine
 def test_a_superseded_form_stays_and_does_not_count(database: Database) -> None:
     """Answers and scores of the first attempt are there and not valid."""
     _build(database, SessionSpec("P-0001", redone=("block2.foot.karas2020",)))
@@ -92,6 +95,7 @@ def test_a_superseded_form_stays_and_does_not_count(database: Database) -> None:
         assert found == {(1, False), (2, True)}
 
 
+@pytest.mark.one_engine
 def test_a_form_about_a_skipped_phase_does_not_count(database: Database) -> None:
     """Whoever skipped a phase cannot say what it was like."""
     _build(database, SessionSpec("P-0001", skipped=("block3.foot",)))
@@ -111,6 +115,7 @@ def test_nothing_of_a_session_that_was_broken_off_counts(database: Database, sta
             assert not rows["valid"].any()
 
 
+@pytest.mark.one_engine
 def test_the_place_in_the_design_comes_with_every_phase(database: Database) -> None:
     """Three blocks of hand then foot, with the latencies of the session's order."""
     _build(database, SessionSpec("P-0001"))
@@ -122,6 +127,7 @@ def test_the_place_in_the_design_comes_with_every_phase(database: Database) -> N
     assert phases["latency_ms"].tolist()[::2] == [float(part) for part in order.split()]
 
 
+@pytest.mark.one_engine
 def test_red_time_is_the_union_over_body_parts(database: Database) -> None:
     """Two parts at one side from 1 to 3 s and from 2 to 4 s: red for 3 s, once; not 4 s."""
     _build(database, SessionSpec("P-0001"))
@@ -132,6 +138,7 @@ def test_red_time_is_the_union_over_body_parts(database: Database) -> None:
     assert sides["duration_s"].tolist() == [2.0, 2.0]
 
 
+@pytest.mark.one_engine
 def test_joint_errors_are_in_degrees(database: Database) -> None:
     """pi / 2 rad in the database is 90 degrees in the table."""
     _build(database, SessionSpec("P-0001", joint_error_rad=lambda _, __: math.pi / 2))
@@ -157,6 +164,7 @@ def test_a_course_has_a_row_for_every_bin_in_order_of_time(database: Database) -
     assert set(rows["participant_code"]) == {"P-0001"}
 
 
+@pytest.mark.one_engine
 def test_what_limits_took_stands_beside_the_errors(database: Database) -> None:
     """As it is stored; empty where nothing is."""
     _build(database, SessionSpec("P-0001"))
@@ -186,6 +194,7 @@ def test_answers_stand_as_given_and_scores_follow_from_them(database: Database) 
     assert values["soe_thesis"] == pytest.approx(1.0407, abs=5e-5)
 
 
+@pytest.mark.one_engine
 def test_heights_are_those_stated_and_matched(database: Database) -> None:
     """Both heights of the procedure stand in the table of sessions."""
     _build(database, SessionSpec("P-0001"))
@@ -193,6 +202,7 @@ def test_heights_are_those_stated_and_matched(database: Database) -> None:
     assert (row["height_stated_m"], row["height_matched_m"]) == (1.75, 1.73)
 
 
+@pytest.mark.one_engine
 def test_an_unknown_study_and_an_unknown_kind_are_refused(database: Database) -> None:
     """The error names what there is."""
     with database.reading() as db:

@@ -117,6 +117,7 @@ def test_a_formula_in_the_open_prompt_is_inert(people: Made) -> None:
     assert all(float(cell) < 0 for cell in live)
 
 
+@pytest.mark.one_engine
 def test_an_earlier_export_is_replaced(filled: Database, tmp_path: Path) -> None:
     """Its files are gone, also those that the new one does not have."""
     export(filled, tmp_path / "out")
@@ -125,6 +126,7 @@ def test_an_earlier_export_is_replaced(filled: Database, tmp_path: Path) -> None
     assert not list(tmp_path.glob(".*"))
 
 
+@pytest.mark.one_engine
 def test_progress_tells_each_file(people: Made) -> None:
     """Every path once, as it is begun, the README last."""
     assert set(people.told) == set(people.tree)
@@ -137,6 +139,7 @@ def _kind_of(db: Session, *specs: SessionSpec) -> str:
     return usual_kind(db, STUDY)
 
 
+@pytest.mark.one_engine
 def test_without_a_kind_people_come_first(database: Database) -> None:
     """A study without people gives what it has; people are never joined by others."""
     with database.writing() as db:

@@ -33,6 +33,7 @@ def test_the_command_writes_a_folder_and_says_what(tmp_path: Path) -> None:
     assert head.removeprefix("audit head ") in (tmp_path / "out" / "README.txt").read_text()
 
 
+@pytest.mark.one_engine
 @pytest.mark.usefixtures("installation")
 def test_the_command_refuses_what_it_does_not_know(tmp_path: Path) -> None:
     """An unknown kind and an unknown study are told apart, and nothing is written."""

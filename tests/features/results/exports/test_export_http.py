@@ -36,6 +36,7 @@ def test_the_export_is_a_zip_of_csv(client: TestClient) -> None:
         assert b"SIM-0001" not in archive.read("events.csv")
 
 
+@pytest.mark.one_engine
 def test_a_kind_can_be_asked_for(client: TestClient) -> None:
     """Simulated sessions come alone."""
     answer = client.get(f"/api/studies/{STUDY}/export", params={"kind": "simulated"})
@@ -44,6 +45,7 @@ def test_a_kind_can_be_asked_for(client: TestClient) -> None:
         assert b"SIM-0001" in archive.read("sessions.csv")
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize(
     ("path", "status"),
     [
@@ -60,12 +62,14 @@ def test_names_that_are_not_ours_are_refused(client: TestClient, path: str, stat
     assert answer.json()["error"]["message"]
 
 
+@pytest.mark.one_engine
 @pytest.mark.parametrize("what", ["export", "codebook"])
 def test_nobody_gets_them_without_signing_in(lab: Lab, what: str) -> None:
     """Both ask who is there."""
     assert lab.stranger().get(f"/api/studies/{STUDY}/{what}").status_code == 401
 
 
+@pytest.mark.one_engine
 def test_the_codebook_describes_every_column(client: TestClient) -> None:
     """One entry a column; an unknown study has none."""
     answer = client.get(f"/api/studies/{STUDY}/codebook")

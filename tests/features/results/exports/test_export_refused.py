@@ -14,6 +14,8 @@ from tests.faults.figures import note
 from tests.features.builders import NOW, SessionSpec, build_session
 from tests.features.results.exports.whole import export, tree_of
 
+pytestmark = pytest.mark.one_engine
+
 
 @pytest.mark.parametrize("what", ["other folder", "file", "own file in an export", "link"])
 def test_what_is_not_ours_is_refused_and_left_alone(

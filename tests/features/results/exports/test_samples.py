@@ -114,6 +114,7 @@ def test_bad_samples_stand_as_they_came_and_are_flagged(
     assert np.array_equal(_values(rows, "actual"), values, equal_nan=True)
 
 
+@pytest.mark.one_engine
 def test_a_session_without_movement_has_a_file_with_a_header(
     database: Database, session: StudySession
 ) -> None:

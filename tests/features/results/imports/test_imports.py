@@ -76,6 +76,7 @@ def test_published_scores_come_back(lab: Lab, shared_data: Path) -> None:
     assert result["test"].startswith("Friedman, asymptotic: χ²(3) = 12.06, p = .007")
 
 
+@pytest.mark.one_engine
 def test_a_wide_survey_file_is_understood(lab: Lab) -> None:
     """Three header rows, semicolons, words for numbers, a set of columns for each condition."""
     names = [f"fms_{ms}" for ms in (0, 125)]
@@ -102,6 +103,7 @@ def test_a_wide_survey_file_is_understood(lab: Lab) -> None:
     assert [line.split(",")[7] for line in table] == ["answered_on", "2026-03-01", "2026-03-01"]
 
 
+@pytest.mark.one_engine
 def test_every_cell_that_does_not_fit_is_told_and_nothing_is_stored(lab: Lab) -> None:
     """A file is taken in as a whole or not at all."""
     text = tidy(["a@b.org,x,3", "P1,x,3", "P1,x,4", "P2,x,21", ",x,2", "P3,x,"])
@@ -141,6 +143,7 @@ def test_the_same_file_is_refused_until_it_is_undone(lab: Lab) -> None:
     assert "P1" not in trail
 
 
+@pytest.mark.one_engine
 def test_imported_answers_are_never_sessions(lab: Lab) -> None:
     """No session, no slot of the ledger, no row of an export's tables; marked in their own file."""
     with lab.database.reading() as db:
@@ -200,6 +203,7 @@ def test_a_participant_of_the_study_gets_and_loses_what_files_say(lab: Lab) -> N
         assert code.encode() not in archive.read(own)
 
 
+@pytest.mark.one_engine
 def test_words_of_the_scale_are_known_and_none_is_an_answer(lab: Lab) -> None:
     """The sickness questionnaire calls its lowest step "None": that is no missing answer."""
     text = f"pid,n1,n2,n3\n{uuid.uuid4().hex[:6]},None,severe,NA\n"
@@ -213,6 +217,7 @@ def test_words_of_the_scale_are_known_and_none_is_an_answer(lab: Lab) -> None:
     assert [given[key] for key in keys] == [0.0, 3.0, None]
 
 
+@pytest.mark.one_engine
 def test_items_turned_in_the_file_are_noticed_and_turned_back(lab: Lab) -> None:
     """An item that a formula turns must go against the others; if not, that is said."""
     names = ["pid", *(f"sp{n}" for n in range(1, 6))]

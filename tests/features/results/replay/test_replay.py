@@ -103,6 +103,7 @@ def test_places_are_those_of_the_stored_frame_nearest_to_each_moment(
             np.testing.assert_allclose(place, expected[nearest], atol=1e-6)
 
 
+@pytest.mark.one_engine
 def test_errors_are_the_angles_of_the_same_frames(lab: Lab, phase: Phase) -> None:
     """Ten times a second, for every joint but the hips, against what was asked for then."""
     shown = placed(lab, phase)
@@ -116,6 +117,7 @@ def test_errors_are_the_angles_of_the_same_frames(lab: Lab, phase: Phase) -> Non
     assert shown.errors_rad.max() > 0.05
 
 
+@pytest.mark.one_engine
 def test_what_was_not_recorded_is_a_gap(lab: Lab, phase: Phase) -> None:
     """Two seconds without frames are neither filled nor closed up."""
     seqs = [*range(180), *range(360, 540)]
@@ -138,6 +140,7 @@ def test_what_was_not_recorded_is_a_gap(lab: Lab, phase: Phase) -> None:
     assert known[outside & (moments_s < 539 / 90)].all()
 
 
+@pytest.mark.one_engine
 def test_contacts_completions_and_forms_lie_on_the_phases_time(lab: Lab, phase: Phase) -> None:
     """With the task's scene, and the questionnaire that follows."""
     shown = ok(lab.operator.get(path(phase)))
@@ -175,6 +178,7 @@ def test_the_movement_is_sent_once_and_asked_for_by_its_tag(lab: Lab, phase: Pha
     assert later.headers["etag"] != first.headers["etag"]
 
 
+@pytest.mark.one_engine
 def test_a_phase_is_replayed_once_it_is_over(lab: Lab, phase: Phase) -> None:
     """Before that, and where there is none, it is said what to do."""
     with lab.database.writing() as db:
@@ -185,6 +189,7 @@ def test_a_phase_is_replayed_once_it_is_over(lab: Lab, phase: Phase) -> None:
     assert phase.phase_id in error(lab.operator.get(unknown), 404, "not_found")["valid"]
 
 
+@pytest.mark.one_engine
 def test_who_is_blind_sees_the_participant_alone(fresh_lab: Lab) -> None:
     """Neither the avatar nor what happened to it: their distance in time is the latency."""
     yaml = ok(fresh_lab.operator.get(f"/api/studies/{STUDY}"))["yaml"]
