@@ -1,7 +1,8 @@
 """Every way to make orders, under a hundred simultaneous joins and with people dropping out.
 
 The short form has a hundred joins where there are most orders, and forty to each other scheme: four
-times all its orders or more, with the same remainder as a hundred have.
+times all its orders or more, with the same remainder as a hundred have. Which scheme makes the
+orders is nothing to the database, so on PostgreSQL, whose locks are others, it has one scheme.
 """
 
 from collections import Counter
@@ -20,6 +21,7 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 JOINS, DROPOUTS, AT_ONCE = 100, 24, 20
 FEW_JOINS, FEW_DROPOUTS = 40, 10
 MOST_ORDERS = "all permutations of 4"
+ON_POSTGRESQL = "Williams, 5 conditions"
 LISTED = """design: explicit
   sequences:
     - [c0, c1, c2, c3]
@@ -69,11 +71,17 @@ def imbalance(sequences: list[list[float]], orders: int) -> int:
 
 
 @pytest.mark.parametrize("many", [False, pytest.param(True, marks=pytest.mark.long)])
-def test_every_scheme_stays_balanced(client: Client, many: bool) -> None:  # noqa: FBT001 - by name
+def test_every_scheme_stays_balanced(
+    client: Client,
+    database_url: str,
+    many: bool,  # noqa: FBT001 - by name
+) -> None:
     """No order is more than one ahead, with all who joined and with all who stayed; a slot that
     somebody left is filled again, and none is held twice.
     """
-    for name, (levels, _, orders) in SCHEMES.items():
+    both = many or database_url.startswith("sqlite")
+    for name in SCHEMES if both else [ON_POSTGRESQL]:
+        levels, _, orders = SCHEMES[name]
         key, text = study(name)
         all_join = many or name == MOST_ORDERS
         joins, dropouts = (JOINS, DROPOUTS) if all_join else (FEW_JOINS, FEW_DROPOUTS)
