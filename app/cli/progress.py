@@ -7,6 +7,7 @@ so that they also come while one step takes minutes and reports nothing.
 
 import sys
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import TracebackType
@@ -37,11 +38,11 @@ class Activity:
 
     def rows(self, what: str) -> Callable[[str, int], None]:
         """Takes how many more rows of a table are done, and says how many that makes."""
-        done = {"table": "", "rows": 0}
+        done: Counter[str] = Counter()
 
         def count(table: str, rows: int) -> None:
-            done.update(table=table, rows=rows + (done["rows"] if table == done["table"] else 0))
-            self.now(f"{what}: {table}, {done['rows']} rows")
+            done[table] += rows
+            self.now(f"{what}: {table}, {done[table]} rows")
 
         return count
 

@@ -93,7 +93,7 @@ def _is_due(view: Json, cast: Cast) -> bool:
     if current["index"] != step["index"]:
         return bool(current["index"] > step["index"])
     running = current["status"] == "running"
-    return running and cast.headset.active_s >= step["duration_s"] / 2.0
+    return bool(running and cast.headset.active_s >= step["duration_s"] / 2.0)
 
 
 async def _interrupt(view: Json, cast: Cast) -> None:
