@@ -17,7 +17,7 @@ from app.features.record.cockpit.schemas import (
     StreamView,
 )
 from app.features.record.cockpit.view import event_views, list_sessions, session_view
-from app.features.record.doubts import doubts_of
+from app.features.record.doubts import judge_with_doubts
 from app.features.record.ledger import Kind
 from app.features.record.questionnaires import (
     Administration,
@@ -35,7 +35,6 @@ from app.features.record.sessions import (
     consent_record,
     is_repeated,
     join,
-    judge_again,
     protocol_of_session,
     store_content,
 )
@@ -89,7 +88,7 @@ def post_command(
     session = session_by_id(db, session_id, lock=True)
     if is_repeated(db, session_id, request.command_id):
         return session_view(db, context, session, caller)
-    done = apply_command(
+    apply_command(
         db,
         context,
         session,
@@ -98,8 +97,7 @@ def post_command(
         command_id=request.command_id,
         expected_version=None if request.type in NEVER_STALE else request.expected_version,
     )
-    if done.state.status == "completed":
-        judge_again(db, session, [one.phase_id for one in doubts_of(db, session_id)])
+    judge_with_doubts(db, session)
     return session_view(db, context, session, caller)
 
 

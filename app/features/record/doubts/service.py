@@ -26,7 +26,7 @@ from app.features.record.doubts.laws import (
     StreamClaim,
     doubts_about,
 )
-from app.features.record.sessions import plan_of, protocol_of_session
+from app.features.record.sessions import judge_again, plan_of, protocol_of_session
 from app.models import (
     AlarmRow,
     ClientReport,
@@ -68,6 +68,15 @@ def doubts_of_sessions(db: Session, chosen: ColumnElement[bool]) -> dict[str, tu
     claims = _Reader(db, chosen).read()
     found = {session_id: doubts_about(one) for session_id, one in claims}
     return {session_id: doubts for session_id, doubts in found.items() if doubts}
+
+
+def judge_with_doubts(db: Session, session: StudySession) -> None:
+    """Decide whether a session counts if it is completed, knowing what of it cannot be true.
+
+    Call it wherever a step ends that may have been the last.
+    """
+    if session.status == "completed":
+        judge_again(db, session, [one.phase_id for one in doubts_of(db, session.id)])
 
 
 class _Reader:

@@ -15,6 +15,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, KeptConflict, NotNow
 from app.features.design.studies import UsedInstrument, used_instrument
+from app.features.record.doubts import judge_with_doubts
 from app.features.record.questionnaires.schemas import (
     Administration,
     AnswerValue,
@@ -152,6 +153,7 @@ def submit(
         step=due.step.index, submission_id=id_, content_hash=digest, rules_met=judgement.met
     )
     apply_command(db, context, session, command, actor=actor)
+    judge_with_doubts(db, session)
     return Receipt(receipt_id=id_, stored_at=now, duplicate=False)
 
 

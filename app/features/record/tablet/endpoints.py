@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput, NotSignedIn
 from app.features.design.studies import protocol_of
+from app.features.record.doubts import judge_with_doubts
 from app.features.record.questionnaires import Receipt, SubmissionRequest, submit
 from app.features.record.sessions import (
     AskQuestion,
@@ -187,6 +188,7 @@ def _complete(
     content = None if given is None else desk.from_tablet(step, given)
     command = CompleteStep(by="tablet", step=step.index, content=content)
     apply_command(db, context, session, command, actor=actor)
+    judge_with_doubts(db, session)
 
 
 @router.post("/submissions")

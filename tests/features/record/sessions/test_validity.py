@@ -6,16 +6,18 @@ import pytest
 from sqlalchemy import delete
 from sqlalchemy.orm import Session
 
+from app.features.record.doubts import OBSERVED
 from app.features.record.ledger import Shortfall, close_attempt
 from app.features.record.sessions import judge_again
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import state_to_json
 from app.features.record.sessions.engine.state import SessionState, SessionStatus, StepStatus
 from app.features.record.sessions.validity import PhaseDelay, judged
-from app.models import Phase, PhaseLatency, StudySession
+from app.models import AlarmRow, Phase, PhaseLatency, StudySession
 from app.protocol import ValidWhen
 from tests.features.lab import STUDY, Json, Lab, ok
 from tests.features.latency_builders import measured
+from tests.features.record.questionnaires.forms import ANSWERS, enter
 from tests.features.record.sessions.engine_run import PLAN, Run, index_of
 from tests.features.session_filler import NOW
 from tests.protocol.helpers import BEFORE_RULES, edited, study
@@ -216,3 +218,22 @@ def test_a_slot_that_somebody_else_has_by_then_stays_theirs(fresh_lab: Lab) -> N
     slot = ledger(lab)[0]
     assert [one["outcome"] for one in slot["attempts"]] == ["invalid", "open"]
     assert lab.view(view["id"])["shortfalls"] == []
+
+
+@pytest.mark.one_engine
+def test_a_form_that_ends_a_session_does_not_hide_what_cannot_be_true(fresh_lab: Lab) -> None:
+    """Whoever ends it, an operator or a form, it is judged with the doubts about its headset."""
+    lab = fresh_lab
+    last = "    - {step: debrief, text: debrief}\n"
+    text = edited((last, f"{last}    - {{step: form, instrument: karas2020}}\n"))
+    ok(lab.operator.post(f"/api/studies/{STUDY}/versions", json={"yaml": text}))
+    view = lab.command(lab.join(), "start")
+    while view["current"]["index"] < len(view["steps"]) - 1:
+        view = lab.command(view, "skip", reason="nobody was there")
+    row = {"severity": "critical", "state": "raised", "message": "an epoch nobody gave out"}
+    with lab.database.writing() as db:
+        db.add(AlarmRow(id="a", session_id=view["id"], code=OBSERVED, at=NOW, **row))
+    ok(enter(lab, view["id"], ANSWERS))
+    view = lab.view(view["id"])
+    assert view["status"] == "completed"
+    assert "headset_doubtful" in [one["code"] for one in view["shortfalls"]]
