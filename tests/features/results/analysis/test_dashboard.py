@@ -2,6 +2,7 @@
 
 import io
 import json
+from contextlib import ExitStack
 from datetime import timedelta
 from typing import Any
 
@@ -9,7 +10,7 @@ import pandas as pd
 import plotly.graph_objects as go
 import pytest
 
-from app.database import Database
+from app.database import Database, open_database
 from app.errors import NotFound
 from app.features.design.studies import add_version, study_by_key, versions_of
 from app.features.results.analysis.dashboard import build_dashboard, drawings_of
@@ -21,7 +22,9 @@ from app.features.results.analysis.schemas import (
     FigureFilter,
 )
 from app.features.results.analysis.sheets import sheet_of
-from tests.features.builders import NOW, STUDY, SessionSpec, build_session
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
+from tests.support.postgres import fresh_postgres
+from tests.support.sqlite import fresh_sqlite
 
 KEYS = [
     "embodiment_ownership",
@@ -73,11 +76,28 @@ def _axes(figure: dict[str, Any]) -> list[dict[str, Any]]:
     return [value for name, value in layout.items() if name[:5] in ("xaxis", "yaxis")]
 
 
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+def two_people(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> DashboardFigures:
+    """What is drawn of two whole sessions, for tests that only look at it."""
+    with ExitStack() as stack:
+        if request.param == "sqlite":
+            url = fresh_sqlite(tmp_path_factory.mktemp("dashboard") / "reembody.sqlite")
+        else:
+            url = stack.enter_context(fresh_postgres())
+        database = open_database(url)
+        stack.callback(database.close)
+        with database.writing() as db:
+            build_study(db)
+        _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
+        return _dashboard(database)
+
+
 @pytest.mark.one_engine
-def test_every_figure_is_valid_and_travels_as_plain_json(database: Database) -> None:
+def test_every_figure_is_valid_and_travels_as_plain_json(two_people: DashboardFigures) -> None:
     """plotly's own validation takes each; no packed arrays, no NaN."""
-    _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
-    view = _dashboard(database)
+    view = two_people
     assert [figure.key for figure in view.figures] == KEYS
     text = json.dumps(view.model_dump(mode="json"), allow_nan=False)
     assert "bdata" not in text
@@ -87,11 +107,9 @@ def test_every_figure_is_valid_and_travels_as_plain_json(database: Database) -> 
 
 
 @pytest.mark.one_engine
-def test_every_figure_says_what_it_shows(database: Database) -> None:
+def test_every_figure_says_what_it_shows(two_people: DashboardFigures) -> None:
     """Title, caption, units on the axes, hover texts, a clear background, and how many people."""
-    _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
-    view = _dashboard(database)
-    for entry in view.figures:
+    for entry in two_people.figures:
         if entry.figure is None:
             assert entry.key in NEEDS_MOVEMENT
             continue

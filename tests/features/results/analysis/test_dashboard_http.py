@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -11,13 +12,29 @@ from pydantic import SecretStr
 from app.main import create_app
 from app.settings import Settings
 from tests.features.builders import STUDY, SessionSpec, build_session
+from tests.support.sqlite import fresh_sqlite
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A signed-in client of an application with two simulated sessions, for tests that read."""
+    with _signed_in(tmp_path_factory.mktemp("dashboard")) as client:
+        yield client
 
 
 @pytest.fixture
-def client(sqlite_url: str, tmp_path: Path) -> Iterator[TestClient]:
-    """A signed-in client of an application with two simulated sessions."""
+def own_client(tmp_path: Path) -> Iterator[TestClient]:
+    """The same, for one test alone."""
+    with _signed_in(tmp_path) as client:
+        yield client
+
+
+@contextmanager
+def _signed_in(folder: Path) -> Iterator[TestClient]:
     secret = SecretStr("secret-words")
-    settings = Settings(data_dir=tmp_path, database_url=sqlite_url, admin_password=secret)
+    settings = Settings(
+        data_dir=folder, database_url=fresh_sqlite(folder / "a.sqlite"), admin_password=secret
+    )
     app = create_app(settings)
     with TestClient(app) as client:
         with app.state.context.database.writing() as db:
@@ -91,19 +108,20 @@ def test_people_are_the_usual_kind_and_all_is_no_kind_of_a_dashboard(client: Tes
 def test_nobody_sees_it_without_signing_in(client: TestClient) -> None:
     """401 for strangers, 404 for an unknown study."""
     assert client.get("/api/studies/nothing/dashboard").status_code == 404
-    client.cookies.clear()
-    assert client.get(f"/api/studies/{STUDY}/dashboard").status_code == 401
+    stranger = TestClient(client.app)
+    stranger.portal = client.portal
+    assert stranger.get(f"/api/studies/{STUDY}/dashboard").status_code == 401
 
 
-def test_a_page_gets_what_was_drawn_last_while_newer_data_are_drawn(client: TestClient) -> None:
+def test_a_page_gets_what_was_drawn_last_while_newer_data_are_drawn(own_client: TestClient) -> None:
     """The old figures come at once and say so; soon the new ones are there."""
     path, people = f"/api/studies/{STUDY}/dashboard", {"kind": "people"}
-    assert client.get(path, params=people).json()["current"] is True
-    with client.app.state.context.database.writing() as db:  # type: ignore[attr-defined]  # ours
+    assert own_client.get(path, params=people).json()["current"] is True
+    with own_client.app.state.context.database.writing() as db:  # type: ignore[attr-defined]  # ours
         build_session(db, SessionSpec("P-0001"))
-    older = client.get(path, params=people).json()
+    older = own_client.get(path, params=people).json()
     deadline = time.monotonic() + 60.0
-    while not (view := client.get(path, params=people).json())["current"]:
+    while not (view := own_client.get(path, params=people).json())["current"]:
         assert time.monotonic() < deadline
         time.sleep(0.05)
     assert (older["current"], older["n_sessions"]) in ((False, 0), (True, 1))
