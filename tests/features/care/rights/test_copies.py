@@ -8,6 +8,8 @@ import zipfile
 from datetime import UTC, datetime
 from pathlib import Path
 
+import pytest
+
 from app.platform.half_made import Notes, made_beside
 from app.settings import Settings
 from tests.faults.commands import reembody
@@ -23,6 +25,7 @@ def copies(site: Site) -> list[Json]:
     return listed
 
 
+@pytest.mark.one_engine
 def test_every_way_out_is_on_record(site: Site, tmp_path: Path) -> None:
     """An export in the browser and by command, a backup, a participant's own copy."""
     visit = make_visit(site, "copied-1")
