@@ -1,7 +1,5 @@
 """What is wrong with the address of a database: one sentence, exit 2, and nothing of a password."""
 
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -14,8 +12,9 @@ from hypothesis import strategies as st
 from app.database import make_engine
 from app.database_address import database_address, shown_address
 from app.errors import InvalidInput
-from app.settings import Settings, read_settings
+from app.settings import read_settings
 from tests.cli.invoked import Invoked
+from tests.faults.commands import Said, command
 from tests.support.postgres import Cluster, running_cluster
 
 SECRET = "tiger-in-the-tank"
@@ -169,30 +168,23 @@ def test_a_database_that_cannot_hold_the_record_is_refused_before_anything(
             tables = connection.execute(
                 "SELECT count(*) FROM pg_tables WHERE tablename = 'alembic_version'"
             ).fetchone()
-    assert (done.returncode, done.stdout) == (2, "")
-    assert said in done.stderr
-    assert "docs/postgresql.md" in done.stderr
-    assert done.stderr.count("\n") == 1
+    assert (done.code, done.out) == (2, "")
+    assert said in done.err
+    assert "docs/postgresql.md" in done.err
+    assert done.err.count("\n") == 1
     assert tables == (0,)
 
 
 def test_a_server_that_is_not_there_is_said_in_a_sentence(tmp_path: Path) -> None:
     """With what to check, and without the password."""
     done = serve(tmp_path, f"postgresql://role:{SECRET}@127.0.0.1:1/db")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "the database 127.0.0.1:1/db cannot be reached" in done.stderr
-    assert SECRET not in done.stderr
-    assert done.stderr.count("\n") == 1
+    assert (done.code, done.out) == (2, "")
+    assert "the database 127.0.0.1:1/db cannot be reached" in done.err
+    assert SECRET not in done.err
+    assert done.err.count("\n") == 1
 
 
-def serve(folder: Path, url: str) -> "subprocess.CompletedProcess[str]":
+def serve(folder: Path, url: str) -> Said:
     """`reembody serve` until it ends."""
-    settings = Settings(data_dir=folder)
-    return subprocess.run(
-        [str(Path(sys.executable).with_name("reembody")), "serve", "--port", "0"],
-        env={"REEMBODY_DATA_DIR": str(settings.data_dir), "REEMBODY_DATABASE_URL": url},
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    environment = {"REEMBODY_DATA_DIR": str(folder), "REEMBODY_DATABASE_URL": url}
+    return command(environment, "serve", "--port", "0")

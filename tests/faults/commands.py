@@ -3,6 +3,7 @@
 import json
 import tempfile
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,11 +33,18 @@ class Said:
 
 def reembody(server: LiveServer, *arguments: object, max_file_bytes: int | None = None) -> Said:
     """Run a command; `max_file_bytes` is the longest file it can write."""
+    return command(server._full_environment(), *arguments, max_file_bytes=max_file_bytes)
+
+
+def command(
+    environment: Mapping[str, str], *arguments: object, max_file_bytes: int | None = None
+) -> Said:
+    """The same with nothing but this environment."""
     with tempfile.TemporaryDirectory() as folder:
         out, err = Path(folder) / "out", Path(folder) / "err"
         wish = Wish(
             list(map(str, arguments)),
-            server._full_environment(),
+            dict(environment),
             Path(folder),
             out,
             errors=err,

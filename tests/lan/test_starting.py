@@ -1,13 +1,13 @@
 """Starting, refusing to start, and starting again with another certificate."""
 
 import asyncio
-import json
 import socket
 import subprocess
 from pathlib import Path
 
 import httpx2
 
+from tests.faults.commands import command
 from tests.features.lab import ok
 from tests.lan.devices import CREDENTIALS, greeted, pair_headset
 from tests.support.lan import LanServer
@@ -58,31 +58,18 @@ def test_a_taken_port_is_named(tmp_path: Path) -> None:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = taken.getsockname()[1]
-        result = subprocess.run(
-            [
-                *(*REEMBODY, "serve", "--port", str(free_port()), "--lan"),
-                *("--lan-host", "127.0.0.1", "--lan-port", str(port)),
-                *("--help-port", str(free_port())),
-            ],
-            env={"REEMBODY_DATA_DIR": str(tmp_path / "data")},
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=60,
+        said = command(
+            {"REEMBODY_DATA_DIR": str(tmp_path / "data")},
+            *("serve", "--port", free_port(), "--lan"),
+            *("--lan-host", "127.0.0.1", "--lan-port", port),
+            *("--help-port", free_port()),
         )
-    assert result.returncode == 2
-    assert f"port {port}" in result.stderr
-    assert "--lan-port" in result.stderr
+    assert said.code == 2
+    assert f"port {port}" in said.err
+    assert "--lan-port" in said.err
     assert not (tmp_path / "data" / "reembody.sqlite").exists()
 
 
 def _command(server: LanServer, *arguments: str) -> dict[str, str]:
-    result = subprocess.run(
-        [*REEMBODY, *arguments],
-        env={"REEMBODY_DATA_DIR": str(server.data_dir)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    told: dict[str, str] = json.loads(result.stdout)
+    told: dict[str, str] = command({"REEMBODY_DATA_DIR": str(server.data_dir)}, *arguments).json
     return told
