@@ -12,11 +12,11 @@ import numpy as np
 
 from app.features.record.doubts import Doubt, doubts_of
 from app.models import Phase
-from tests.faults.short_study import ROAM_S
 from tests.faults.simulated_headset import (
     BOXES,
     DURATION_S,
     REFUSALS,
+    ROAM_S,
     Edit,
     Frames,
     Json,

@@ -13,7 +13,8 @@ from tests.features.record.sessions.engine_run import PLAN
 from tests.protocol.helpers import edited
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
-KEY, PHASE_S, ROAM_S = "short-latency", 8.0, 4.0
+KEY, PHASE_S, ROAM_S = "short-latency", 4.0, 2.0
+AROUND_S = 0.5
 TASKS = 4
 LOOK_EVERY_S = 0.005
 ONE_LATENCY_LESS = (
@@ -26,15 +27,17 @@ ONE_LATENCY_LESS = (
 FIRST_FOOT_STEP = next(step.index for step in PLAN if step.limb == "foot")
 
 
-def short_study() -> str:
-    """Its file."""
+def short_study(
+    *, phase_s: float = PHASE_S, roam_s: float = ROAM_S, around_s: float = AROUND_S
+) -> str:
+    """Its file; a task is prepared for `around_s`, and frozen for as long at its end."""
     return edited(
         ("key: reembodiment-latency", f"key: {KEY}"),
         ONE_LATENCY_LESS,
-        ("duration_s: 120", f"duration_s: {ROAM_S}"),
-        *[("duration_s: 60\n        freeze_s: 5", f"duration_s: {PHASE_S}\n        freeze_s: 1")]
-        * 2,
-        *[("preparation_s: 5", "preparation_s: 1")] * 2,
+        ("duration_s: 120", f"duration_s: {roam_s}"),
+        *[("duration_s: 60\n", f"duration_s: {phase_s}\n")] * 2,
+        *[("freeze_s: 5", f"freeze_s: {around_s}")] * 2,
+        *[("preparation_s: 5", f"preparation_s: {around_s}")] * 2,
     )
 
 

@@ -43,7 +43,7 @@ from tests.wire.samples import standing
 Json = dict[str, Any]
 TICK_S, PER_TICK = 0.1, 2
 TOGETHER = 20
-DURATION_S, FREEZE_S = 8.0, 1.0
+DURATION_S, ROAM_S, FREEZE_S = 8.0, 4.0, 1.0
 BOXES = 4
 REFUSALS = ("refused", "closed", "error")
 """What the server says where it does not take something."""

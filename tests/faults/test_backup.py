@@ -28,7 +28,7 @@ from tests.rehearsal.ledger import Key, LedgerJournal, reconcile
 from tests.support.postgres import fresh_postgres
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
-SPEED = 8.0
+SPEED = 4.0
 HAND = 2
 """The id of the first task phase."""
 CREDENTIALS = {"username": "admin", "password": ADMIN_PASSWORD}

@@ -42,7 +42,7 @@ from tests.support.server import ADMIN_PASSWORD, LiveServer
 CANARIES = canaries((137.25, 262.5), more=("canary",))
 """Both latencies in ms and s, and what their conditions are called."""
 LOOK_EVERY_S = 0.02
-SPEED = 16.0
+SPEED = 8.0
 PAGES = ("/", "/tablet")
 
 
@@ -52,8 +52,9 @@ def canary_study() -> str:
         ("key: reembodiment-latency", f"key: {KEY}"),
         ONE_LATENCY_LESS,
         ("duration_s: 120", f"duration_s: {ROAM_S}"),
-        *[("duration_s: 60\n        freeze_s: 5", f"duration_s: {PHASE_S}\n        freeze_s: 1")]
+        *[("duration_s: 60\n        freeze_s: 5", f"duration_s: {PHASE_S}\n        freeze_s: 0.5")]
         * 2,
+        *[("preparation_s: 5", "preparation_s: 2.5")] * 2,
         ("operator: false", "operator: true"),
         ("latency_125", "canary_small"),
         ("latency_ms: 125", "latency_ms: 137.25"),

@@ -27,7 +27,7 @@ from tests.rehearsal.ledger import LedgerJournal, reconcile
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 FRAME_S = 1 / 90
-SPEED = 8.0
+SPEED = 4.0
 HAND, FOOT = 2, 3
 """The ids of the first two task phases."""
 RESTART_S = 0.5

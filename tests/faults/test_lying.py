@@ -20,7 +20,7 @@ from app.wire import MAX_EPOCH, Hello
 from tests.faults.figures import note
 from tests.faults.lying_streams import CORRECTED, HAND, LIES, Outcome, play
 from tests.faults.short_study import KEY, short_study
-from tests.faults.simulated_headset import DURATION_S, Site
+from tests.faults.simulated_headset import DURATION_S, FREEZE_S, ROAM_S, Site
 from tests.support.sqlite import fresh_sqlite
 
 HONEST, LYING = 12, len(LIES) - len(CORRECTED)
@@ -31,7 +31,8 @@ MANY_HONEST, MANY_LYING = 300, 1000
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     """An application in simulated time."""
     folder: Path = tmp_path_factory.mktemp("lying")
-    site = Site.open(fresh_sqlite(folder / "reembody.sqlite"), folder, short_study(), KEY)
+    text = short_study(phase_s=DURATION_S, roam_s=ROAM_S, around_s=FREEZE_S)
+    site = Site.open(fresh_sqlite(folder / "reembody.sqlite"), folder, text, KEY)
     yield site
     site.context.database.close()
 
