@@ -13,7 +13,7 @@ import pytest
 from tests.faults.damage import Folder, left_by_a_killed_server, many
 from tests.faults.figures import note
 
-SHORT, LONG = 24, 1000
+SHORT, LONG = 12, 1000
 SEED = 6
 
 

@@ -23,6 +23,8 @@ EMULATED = (
     "no -shm, or noise in it\nnot emulated: a disk that lies about fsync or damages sectors nobody "
     "wrote to"
 )
+PLACES = 7
+"""Kinds of moments at which power fails."""
 
 
 @pytest.fixture(scope="module")
@@ -53,8 +55,8 @@ def test_no_ack_leaves_before_the_flush_that_makes_it_true(
 def test_no_power_loss_takes_what_was_acknowledged(
     recording: Recording, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Sixty moments, each with a disk in another mood."""
-    crashes = crash(recording, 60, seed=1)
+    """Around every kind of call, with a disk in each mood."""
+    crashes = crash(recording, PLACES * len(MOODS), seed=1)
     with capsys.disabled():
         sys.stdout.write(crash_figures(crashes))
     check(crashes)
@@ -79,7 +81,7 @@ def test_the_oracle_sees_acks_that_come_before_the_flush(recording: Recording) -
     """The same record with every acknowledgement moved before its flush loses data."""
     careless = recording.with_earlier_acks()
     assert experiment.prove_acks(careless).early > 50
-    crashes = crash(careless, 30, seed=1)
+    crashes = crash(careless, 2 * PLACES, seed=1)
     assert sum(one.verdict.lost for one in crashes) > 0
 
 
@@ -91,7 +93,7 @@ def test_the_oracle_sees_a_database_that_does_not_flush(
     command = [sys.executable, "-m", "tests.faults.weakened", level]
     recording = experiment.record_streaming(tmp_path / "run", 2, 2.5, command)
     assert experiment.prove_acks(recording).early > 20
-    crashes = crash(recording, 30, seed=1)
+    crashes = crash(recording, 2 * PLACES, seed=1)
     assert sum(one.verdict.lost for one in crashes) > 0
 
 
