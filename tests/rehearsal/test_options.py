@@ -9,7 +9,7 @@ from tests.features.lab import ok
 from tests.protocol.options import KEY, with_options
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
-SPEED = 25.0
+SPEED = 12.0
 
 
 def short() -> str:

@@ -30,15 +30,15 @@ from tests.rehearsal.test_headset import AS_FAST_AS_IT_GOES
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 KEY = "short-study"
-SPEED = 10.0
+SPEED = 5.0
 SUMMARIES_WITHIN_S = 60.0
 
 
 def short() -> str:
     """The shipped study with short phases."""
     text = edited(("key: reembodiment-latency", f"key: {KEY}"))
-    text = text.replace("duration_s: 120", "duration_s: 2")
-    text = text.replace("duration_s: 60", "duration_s: 6")
+    text = text.replace("duration_s: 120", "duration_s: 1")
+    text = text.replace("duration_s: 60", "duration_s: 3")
     return re.sub(r"(preparation_s|freeze_s): 5", r"\1: 0.5", text)
 
 
