@@ -4,10 +4,10 @@ Fault 28 of the matrix. Every revision there is takes part, also those that are 
 """
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from pathlib import Path
+from functools import cache
 
 import numpy as np
 import pytest
@@ -40,10 +40,12 @@ STOPS_ON_POSTGRES = 6
 """PostgreSQL is slow to copy; the long form stops at every statement there too."""
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
-def bench(request: pytest.FixtureRequest, tmp_path: Path) -> Bench:
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
+def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Bench:
     """Where databases are made."""
-    return SqliteBench(tmp_path) if request.param == "sqlite" else PostgresBench(running_cluster())
+    if request.param == "sqlite":
+        return SqliteBench(tmp_path_factory.mktemp("bench"))
+    return PostgresBench(running_cluster())
 
 
 @dataclass(frozen=True)
@@ -72,35 +74,46 @@ def undisturbed(bench: Bench, step: Step) -> Iterator[Known]:
             with counted() as changes:
                 upgrade(copy, after)
             took_s = time.monotonic() - began_s
-            yield Known(url, old, found(copy), len(changes), took_s)
+            new = found(copy)
+        yield Known(url, old, new, len(changes), took_s)
+
+
+@pytest.fixture(scope="module")
+def known_of(bench: Bench) -> Iterator[Callable[[Step], Known]]:
+    """What is known of a step: each is taken once for all tests, which only copy the database."""
+    with ExitStack() as stack:
+        yield cache(lambda step: stack.enter_context(undisturbed(bench, step)))
 
 
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
-def test_a_step_stopped_at_a_statement_can_be_taken_again(bench: Bench, step: Step) -> None:
+def test_a_step_stopped_at_a_statement_can_be_taken_again(
+    bench: Bench, known_of: Callable[[Step], Known], step: Step
+) -> None:
     """Behind every statement and instead of the commit: the old schema; then the new one."""
     most = None if isinstance(bench, SqliteBench) else STOPS_ON_POSTGRES
-    stop_often(bench, step, most)
+    stop_often(bench, step, known_of(step), most)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
 def test_a_step_stopped_at_every_statement_on_postgresql(step: Step) -> None:
     """The same without leaving any out."""
-    stop_often(PostgresBench(running_cluster()), step, None)
-
-
-def stop_often(bench: Bench, step: Step, most: int | None) -> None:
-    """Stop behind each statement, or behind so many of them evenly spread; the last always."""
+    bench = PostgresBench(running_cluster())
     with undisturbed(bench, step) as known:
-        stops = np.unique(np.linspace(1, known.changes, most or known.changes, dtype=int)).tolist()
-        assert stops[-1] == known.changes > 1
-        for changes in stops:
-            with bench.copy(known.url) as url:
-                with pytest.raises(Interrupted), stopped_after(changes):
-                    upgrade(url, step[1])
-                assert found(url) == known.old
+        stop_often(bench, step, known, None)
+
+
+def stop_often(bench: Bench, step: Step, known: Known, most: int | None) -> None:
+    """Stop behind each statement, or behind so many of them evenly spread; the last always."""
+    stops = np.unique(np.linspace(1, known.changes, most or known.changes, dtype=int)).tolist()
+    assert stops[-1] == known.changes > 1
+    for changes in stops:
+        with bench.copy(known.url) as url:
+            with pytest.raises(Interrupted), stopped_after(changes):
                 upgrade(url, step[1])
-                assert found(url) == known.new
+            assert found(url) == known.old
+            upgrade(url, step[1])
+            assert found(url) == known.new
     note(
         28,
         f"{engine_of(bench)}, {' to '.join(step)}",
@@ -121,17 +134,17 @@ def engine_of(bench: Bench) -> str:
 
 
 @pytest.mark.parametrize("step", STEPS, ids="-".join)
-def test_a_step_keeps_every_row(bench: Bench, step: Step) -> None:
+def test_a_step_keeps_every_row(known_of: Callable[[Step], Known], step: Step) -> None:
     """What both schemas know is the same before and after."""
-    with undisturbed(bench, step) as known:
-        for table, rows in known.old.contents.items():
-            now = known.new.contents.get(table)
-            if now is None:
-                continue
-            shared = rows[0].keys() & now[0].keys()
-            assert [{name: row[name] for name in shared} for row in now] == [
-                {name: row[name] for name in shared} for row in rows
-            ]
+    known = known_of(step)
+    for table, rows in known.old.contents.items():
+        now = known.new.contents.get(table)
+        if now is None:
+            continue
+        shared = rows[0].keys() & now[0].keys()
+        assert [{name: row[name] for name in shared} for row in now] == [
+            {name: row[name] for name in shared} for row in rows
+        ]
 
 
 def test_a_killed_migration_can_be_taken_again(bench: Bench) -> None:
