@@ -14,6 +14,7 @@ from tests.features.record.headset.site import Site
 from tests.support.browser import (
     ColorScheme,
     ContextFactory,
+    Motion,
     PageWatch,
     accessibility_violations,
     launched_browser,
@@ -51,7 +52,7 @@ def page_watch() -> PageWatch:
 
 @pytest.fixture
 def new_context(browser: Browser, page_watch: PageWatch) -> Iterator[ContextFactory]:
-    """`new_context(size=(1280, 800), color_scheme="light", locale="en-US", **playwright's)`."""
+    """`new_context(size=(1280, 800), color_scheme="light", locale="en-US", motion="reduce")`."""
     with watched_contexts(browser, page_watch) as factory:
         yield factory
 
@@ -64,9 +65,10 @@ def page_factory(new_context: ContextFactory) -> Callable[..., Page]:
         size: tuple[int, int] = (1280, 800),
         color_scheme: ColorScheme = "light",
         locale: str = "en-US",
+        motion: Motion = "reduce",
         **options: object,
     ) -> Page:
-        return new_context(size, color_scheme, locale, **options).new_page()
+        return new_context(size, color_scheme, locale, motion, **options).new_page()
 
     return new_page
 

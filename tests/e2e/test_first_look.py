@@ -91,7 +91,7 @@ def test_a_loader_keeps_still_where_motion_is_not_wanted(
     running_server: LiveServer, page_factory: Callable[..., Page]
 ) -> None:
     """Its dots are drawn once instead of flickering for ever."""
-    page = page_factory(reduced_motion="reduce")
+    page = page_factory(motion="reduce")
     page.goto(running_server.url)
     repeats = page.evaluate(
         """() => {
