@@ -8,6 +8,8 @@ from playwright.sync_api import Page, expect
 from tests.support.server import ADMIN_PASSWORD
 
 PATIENCE_MS = 30_000
+PICTURE_HIDDEN = "localStorage.setItem('reembody.cockpit.live', 'false')"
+"""For consoles on which nobody looks at the live picture: software draws it with a whole core."""
 
 
 class Experimenter:

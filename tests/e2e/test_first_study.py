@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.people import PATIENCE_MS, Experimenter, Participant
+from tests.e2e.people import PATIENCE_MS, PICTURE_HIDDEN, Experimenter, Participant
 from tests.e2e.wearer import Wearer
 from tests.protocol.helpers import STUDY as FILE
 from tests.support.browser import PageWatch
@@ -38,11 +38,11 @@ DEMOGRAPHICS = {
 }
 
 
-def short_study() -> str:
+def short_study(task_s: float = 4) -> str:
     """The shipped study with every duration cut, so that a whole session fits into a test."""
     text = FILE.replace("key: reembodiment-latency", f"key: {STUDY}", 1)
-    text = text.replace("duration_s: 120", "duration_s: 2")
-    text = re.sub(r"duration_s: 60", "duration_s: 4", text)
+    text = text.replace("duration_s: 120", f"duration_s: {task_s / 2}")
+    text = re.sub(r"duration_s: 60", f"duration_s: {task_s}", text)
     return re.sub(r"(preparation_s|freeze_s): 5", r"\1: 0.5", text)
 
 
@@ -57,17 +57,24 @@ def pages(
     return Experimenter(console, live_server.url), Participant(tablet, live_server.url)
 
 
+@pytest.mark.parametrize(
+    ("task_s", "watched"), [(1.5, False), pytest.param(4.0, True, marks=pytest.mark.long)]
+)
 def test_a_whole_session_from_login_to_csv(
     pages: tuple[Experimenter, Participant],
     live_server: LiveServer,
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
+    task_s: float,
+    watched: bool,  # noqa: FBT001 - by parameter
 ) -> None:
     """An experimenter runs a session by the pages; dashboard and CSV then hold its score."""
     experimenter, participant = pages
+    if not watched:
+        experimenter.page.add_init_script(PICTURE_HIDDEN)
     with live_server.client() as api:
         api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD})
-        assert api.post("/api/studies", json={"yaml": short_study()}).status_code == 201
+        assert api.post("/api/studies", json={"yaml": short_study(task_s)}).status_code == 201
     experimenter.log_in()
     experimenter.open_tab(STUDY)
     experimenter.create_session()

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
-from tests.e2e.people import PATIENCE_MS
+from tests.e2e.people import PATIENCE_MS, PICTURE_HIDDEN
 from tests.e2e.scripted_tablet import ScriptedTablet
 from tests.e2e.wearer import Wearer
 from tests.features.lab import ok
@@ -179,11 +179,18 @@ def console(
         ok(api.post("/api/login", json={"username": "admin", "password": ADMIN_PASSWORD}))
         if api.get(f"/api/studies/{STUDY}").status_code == 404:
             ok(api.post("/api/studies", json={"yaml": short_study()}))
-    return page_factory((1280, 800))
+    return page_factory((1280, 800), motion="no-preference")
 
 
-def test_a_whole_session_without_a_mouse(console: Page, running_server: LiveServer) -> None:
+@pytest.mark.parametrize("watched", [False, pytest.param(True, marks=pytest.mark.long)])
+def test_a_whole_session_without_a_mouse(
+    console: Page,
+    running_server: LiveServer,
+    watched: bool,  # noqa: FBT001 - by parameter
+) -> None:
     """From the login to the end; a phase costs one key, and the rest stays within its bound."""
+    if not watched:
+        console.add_init_script(PICTURE_HIDDEN)
     keyboard = Keyboard(console)
     log_in_and_create(keyboard, running_server.url)
     with paired(keyboard, running_server.url) as (tablet, wearer):
