@@ -12,9 +12,9 @@ from tests.e2e.people import Experimenter, Participant
 from tests.faults.streaming import pair_headsets
 from tests.support.browser import (
     ARGUMENTS,
-    ColorScheme,
     ContextFactory,
     PageWatch,
+    in_both_schemes,
     watched_contexts,
 )
 from tests.support.chromium_binary import find_chromium
@@ -108,39 +108,36 @@ def test_without_it_the_device_is_refused_and_helped(
     assert Path(download.value.path()).read_bytes().startswith(b"-----BEGIN CERTIFICATE")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(390, 844), (1180, 820)])
 def test_the_help_page_fits_and_can_be_read(
     lan: LanServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
-    scheme: ColorScheme,
     size: tuple[int, int],
 ) -> None:
     """Nothing is cut off on a phone, nothing is serious to axe; in both languages."""
-    page = page_factory(size, scheme)
+    page = page_factory(size)
     for language in ("en", "de"):
         page.goto(f"{lan.help_url}/?lang={language}")
         for section in page.locator("details").all():
             section.evaluate("(section) => { section.open = true; }")
-        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
-        assert axe(page) == []
-        screenshot(page, f"help-{language}-{size[0]}-{scheme}")
+        for scheme in in_both_schemes(page):
+            assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+            assert axe(page) == [], scheme
+            screenshot(page, f"help-{language}-{size[0]}-{scheme}")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", [(1280, 800), (1180, 820)])
 def test_the_console_shows_how_to_reach_the_lab(
     lan: LanServer,
     page_factory: Callable[..., Page],
     axe: Callable[[Page], list[str]],
     screenshot: Callable[[Page, str], object],
-    scheme: ColorScheme,
     size: tuple[int, int],
 ) -> None:
     """Addresses, fingerprint, the help page's QR code and the cable, by a link in the header."""
-    operator = Experimenter(page_factory(size, scheme), lan.url)
+    operator = Experimenter(page_factory(size), lan.url)
     operator.log_in()
     page = operator.page
     page.get_by_role("link", name="Network").click()
@@ -151,8 +148,9 @@ def test_the_console_shows_how_to_reach_the_lab(
     with lan.client() as client:
         shown = client.get(lan.help_url).text.partition('class="fingerprint">')[2]
     assert shown.partition("</span>")[0].removeprefix("<span>") in fingerprint
-    assert axe(page) == []
-    screenshot(page, f"network-{size[0]}-{scheme}")
+    for scheme in in_both_schemes(page):
+        assert axe(page) == [], scheme
+        screenshot(page, f"network-{size[0]}-{scheme}")
 
 
 def test_pairing_offers_the_certificate_first(

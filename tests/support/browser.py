@@ -137,6 +137,14 @@ def watched_contexts(browser: Browser, watch: PageWatch) -> Iterator[ContextFact
     assert not unexpected, "the pages reported errors:\n" + "\n".join(unexpected)
 
 
+def in_both_schemes(page: Page) -> Iterator[ColorScheme]:
+    """Show the page dark, then light again, as it is: what led to it need not happen twice."""
+    schemes: tuple[ColorScheme, ...] = ("dark", "light")
+    for scheme in schemes:
+        page.emulate_media(color_scheme=scheme)
+        yield scheme
+
+
 def take_screenshot(page: Page, folder: Path, name: str) -> Path:
     """Save the whole page as `folder/name.png`, without moving parts."""
     path = folder / f"{name}.png"
