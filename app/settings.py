@@ -7,7 +7,7 @@ Built once in `create_app` or a command, never at import, so that two applicatio
 import os
 from pathlib import Path
 
-from pydantic import SecretStr, ValidationError
+from pydantic import Field, SecretStr, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict, SettingsError
 
 from app.errors import InvalidInput
@@ -38,11 +38,11 @@ class Settings(BaseSettings):
     database_url: str = ""
     admin_password: SecretStr | None = None
     host: str = "127.0.0.1"
-    port: int = 8321
+    port: int = Field(8321, ge=0, le=65535)
     lan: bool = False
     lan_host: str = ""
-    lan_port: int = 8443
-    help_port: int = 8080
+    lan_port: int = Field(8443, ge=0, le=65535)
+    help_port: int = Field(8080, ge=0, le=65535)
     certificate: Path | None = None
     key: Path | None = None
     without_tls: bool = False

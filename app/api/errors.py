@@ -25,7 +25,7 @@ from app.errors import (
     ReembodyError,
 )
 from app.platform.text import printable
-from app.platform.trouble import BUSY, explain
+from app.platform.trouble import BUSY, DAMAGED, explain
 
 log = logging.getLogger(__name__)
 MOST_DETAILS = 50
@@ -105,11 +105,20 @@ def _install_database_handlers(app: FastAPI) -> None:
         _log_refusal(error)
         return _went_wrong() if explain(error) is None else _not_durable(error)
 
+    # What is in a request is checked where it comes in; text that cannot be read here was stored.
+    @app.exception_handler(UnicodeDecodeError)
     @app.exception_handler(sqlite3.Error)
     @app.exception_handler(OSError)
     def refused(_: Request, error: Exception) -> JSONResponse:
         _log_refusal(error)
         return _went_wrong() if explain(error) is None else _not_durable(error)
+
+    @app.exception_handler(json.JSONDecodeError)
+    def no_json(_: Request, error: json.JSONDecodeError) -> JSONResponse:
+        log.error("stored JSON is none", exc_info=error)
+        return error_response(
+            NotDurable(f"{DAMAGED.message}: nothing was stored", remedy=DAMAGED.remedy)
+        )
 
     @app.exception_handler(IntegrityError)
     def clash(_: Request, error: IntegrityError) -> JSONResponse:

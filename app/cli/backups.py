@@ -103,7 +103,7 @@ def _sentence(done: BackedUp) -> str:
     return (
         f"{done.path}: {done.rows} rows, {size_mb:.1f} MB in {done.duration_s:.1f} s "
         f"({size_mb / done.duration_s:.0f} MB/s)\n"
-        f"sha256 {done.sha256}"
+        f"sha256 of the content {done.sha256}"
         + ("" if done.audit_head is None else f"\naudit head {done.audit_head}")
     )
 
@@ -278,7 +278,7 @@ def _sentences(done: Restored) -> str:
     made = f"{done.made_at:%Y-%m-%d %H:%M:%S} UTC"
     lines = [
         f"Restored {done.rows} rows from {done.path}, made {made}, in {done.duration_s:.1f} s",
-        f"sha256 {done.sha256}",
+        f"sha256 of the content {done.sha256}",
     ]
     if done.before is not None:
         lines.append(f"What was there before: {done.before}")

@@ -109,7 +109,7 @@ def openapi() -> None:
 @app.command()
 def token(
     account: Annotated[str, typer.Option(help="User name.")] = "admin",
-    hours: Annotated[float, typer.Option(help="How long it is valid.")] = 12.0,
+    hours: Annotated[float, typer.Option(min=0.01, help="How long it is valid.")] = 12.0,
 ) -> None:
     """Print a bearer token for scripts."""
     from app.cli.installation import new_token

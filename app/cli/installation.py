@@ -55,8 +55,8 @@ def new_token(username: str, hours: float) -> str:
     with opened_database("token") as database, database.writing() as db:
         account = db.scalar(select(Account).where(Account.username == username))
         if account is None:
-            raise LookupError(
-                f"there is no account {username!r}; start the server once to make the first"
-            )
+            known = db.scalars(select(Account.username).order_by(Account.username)).all()
+            way_on = f"there are {', '.join(known)}" if known else "start the server for the first"
+            raise LookupError(f"there is no account {username!r}; {way_on}")
         now = Clock().utc_now()
         return issue_token(db, account, purpose="script", now=now, hours=hours).token

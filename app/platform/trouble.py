@@ -79,6 +79,8 @@ def explain(error: Exception) -> Trouble | None:
     """
     if isinstance(error, OSError):
         return _BY_ERRNO.get(error.errno or 0)
+    if proves_damage(error):
+        return DAMAGED
     origin = error.orig if isinstance(error, DBAPIError) else error
     code = getattr(origin, "sqlite_errorcode", None)
     if isinstance(code, int):

@@ -1,6 +1,7 @@
 """Answers of every kind: one shape of errors, the same headers, limits on size."""
 
 from collections.abc import Iterator
+from json import JSONDecodeError
 
 import pytest
 from sqlalchemy.exc import DataError, IntegrityError, OperationalError
@@ -51,6 +52,8 @@ def test_odd_names_are_not_found(lab: Lab, name: str) -> None:
     ("raised", "status", "code"),
     [
         (OperationalError("INSERT", {}, Exception("disk full")), 503, "not_durable"),
+        (JSONDecodeError("a secret", "INSERT", 0), 503, "not_durable"),
+        (UnicodeDecodeError("utf-8", b"INSERT", 0, 1, "a secret"), 503, "not_durable"),
         (DataError("INSERT", {}, Exception("too long")), 422, "invalid_input"),
         (IntegrityError("INSERT", {}, Exception("unique")), 409, "conflict"),
         (RuntimeError("a secret of the server"), 500, "error"),

@@ -16,6 +16,7 @@ from unittest.mock import patch
 
 import numpy as np
 from fastapi.testclient import TestClient
+from httpx2 import Response
 
 from app.cli.backups import restore_from
 from app.cli.progress import Activity
@@ -131,8 +132,13 @@ def _looked_around(client: TestClient, session_id: str) -> Iterator[str]:
         "/api/audit/check",
     ]
     for answer in (login, *map(client.get, paths)):
-        if not answer.is_success:
+        if not answer.is_success and not _says_damaged(answer):
             yield f"{answer.request.url.path}: {answer.status_code} {answer.text[:100]}"
+
+
+def _says_damaged(answer: Response) -> bool:
+    """A value can be damaged where no start looks; whoever asks hears that, and the way out."""
+    return answer.status_code == 503 and "the database is damaged" in answer.text
 
 
 def _restored(folder: Folder, settings: Settings) -> Iterator[str]:

@@ -7,21 +7,28 @@ import typer
 
 from app.cli.errors import reported
 
+MOST = 65_535
+"""No port has a higher number."""
 tls = typer.Typer(help="The certificate of the lab's network.", no_args_is_help=True)
 
 
 def serve(
-    port: Annotated[int | None, typer.Option(help="Port to listen on.")] = None,
+    port: Annotated[
+        int | None, typer.Option(min=0, max=MOST, help="Port to listen on; 0: any free one.")
+    ] = None,
     host: Annotated[str | None, typer.Option(help="Address to listen on.")] = None,
     lan: Annotated[
         bool | None, typer.Option("--lan", help="Also https on the lab's network.")
     ] = None,
-    lan_port: Annotated[int | None, typer.Option(help="Port of https (8443).")] = None,
+    lan_port: Annotated[
+        int | None, typer.Option(min=0, max=MOST, help="Port of https (8443).")
+    ] = None,
     lan_host: Annotated[
         str | None, typer.Option(help="Address of https; every one of this machine if left out.")
     ] = None,
     help_port: Annotated[
-        int | None, typer.Option(help="Port of the page that helps devices (8080).")
+        int | None,
+        typer.Option(min=0, max=MOST, help="Port of the page that helps devices (8080)."),
     ] = None,
     certificate: Annotated[
         Path | None, typer.Option(help="Your own certificate with its chain, PEM.")

@@ -9,9 +9,7 @@ import typer
 
 from app.cli.errors import reported
 
-walk = typer.Typer(
-    help="Learns how people walk, and predicts how others will.", no_args_is_help=True
-)
+walk = typer.Typer(help="Learn how people walk, and predict how others will.", no_args_is_help=True)
 _Json = Annotated[bool, typer.Option("--json", help="Print the result as JSON.")]
 _Walks = Annotated[
     list[Path],

@@ -6,6 +6,7 @@ from typing import Any, Literal
 from pydantic import BaseModel, ConfigDict, TypeAdapter
 
 ShortfallCode = Literal[
+    "consent_skipped",
     "phase_skipped",
     "phase_short",
     "phase_doubtful",
@@ -53,6 +54,8 @@ class Shortfall(BaseModel):
 
     def _what(self) -> str:
         match self.code:
+            case "consent_skipped":
+                return "no consent on record"
             case "phase_skipped":
                 return "skipped"
             case "phase_short":

@@ -36,6 +36,8 @@ def judged(
     state: SessionState,
     delays: Mapping[int, PhaseDelay],
     doubted: Collection[int | None] = (),
+    *,
+    of_people: bool = True,
 ) -> tuple[Shortfall, ...]:
     """What a session lacks, in the order of its steps; nothing if it counts.
 
@@ -47,10 +49,22 @@ def judged(
             it until it has.
         doubted: ids of phases of which the headset said what cannot be true; None stands for the
             whole session.
+        of_people: nobody's consent is needed for a test, an expert's try or a simulation.
     """
     whole = [Shortfall(code="headset_doubtful", step="session")] if None in doubted else []
+    if of_people:
+        whole += _without_consent(plan, state)
     of_steps = (_of_step(rules, step, state, delays, doubted) for step in plan)
     return (*whole, *(found for of_step in of_steps for found in of_step))
+
+
+def _without_consent(plan: Sequence[Step], state: SessionState) -> list[Shortfall]:
+    """Where a study asks for consent, nobody's data count who gave none."""
+    return [
+        Shortfall(code="consent_skipped", step=step.key)
+        for step in plan
+        if step.kind == "consent" and state.steps[step.index].status != "done"
+    ]
 
 
 def _of_step(
@@ -145,7 +159,8 @@ def settle_validity(
     rules = version_content(db, session.study_version_id).protocol.valid_when
     if rules is None or state.status != "completed" or state.erased:
         return
-    found = judged(rules, plan, state, _delays(db, session.id), doubted)
+    delays, of_people = _delays(db, session.id), session.kind == "people"
+    found = judged(rules, plan, state, delays, doubted, of_people=of_people)
     session.shortfalls = [one.model_dump() for one in found]
     settle_attempt(db, session, counts=not found)
 

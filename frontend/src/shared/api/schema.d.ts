@@ -7258,7 +7258,7 @@ export interface components {
              * Code
              * @enum {string}
              */
-            readonly code: "phase_skipped" | "phase_short" | "phase_doubtful" | "form_skipped" | "latency_missing" | "latency_off" | "headset_doubtful";
+            readonly code: "consent_skipped" | "phase_skipped" | "phase_short" | "phase_doubtful" | "form_skipped" | "latency_missing" | "latency_off" | "headset_doubtful";
             /** Instrument */
             readonly instrument?: string | null;
             /** Limit */

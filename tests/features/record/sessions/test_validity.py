@@ -141,6 +141,19 @@ def test_what_is_missing_is_told_in_the_order_of_the_steps() -> None:
     ]
 
 
+def test_nobody_counts_without_a_consent() -> None:
+    """Whatever else was done; a test or an expert's try needs none."""
+    state = done()
+    consent = next(step.index for step in PLAN if step.kind == "consent")
+    steps = tuple(
+        replace(one, status=StepStatus.SKIPPED) if index == consent else one
+        for index, one in enumerate(state.steps)
+    )
+    state = replace(state, steps=steps)
+    assert [one.code for one in judged(RULES, PLAN, state, {})] == ["consent_skipped"]
+    assert judged(RULES, PLAN, state, {}, of_people=False) == ()
+
+
 def test_a_latency_may_be_off_by_the_tolerance_and_no_more() -> None:
     """100 ms off is allowed by a tolerance of 101 ms and refused by one of 99 ms."""
     state = done()
@@ -170,11 +183,12 @@ def test_a_session_whose_every_task_was_skipped_gives_its_slot_back(fresh_lab: L
     view = skip_all(lab, lab.join())
     assert view["status"] == "completed"
     codes = [one["code"] for one in view["shortfalls"]]
-    assert codes == ["phase_skipped", "form_skipped"] * 6
+    assert codes == ["consent_skipped", *["phase_skipped", "form_skipped"] * 6]
     slot = ledger(lab)[0]
     assert (slot["state"], slot["attempts"][0]["outcome"]) == ("free", "invalid")
     assert slot["attempts"][0]["shortfalls"] == view["shortfalls"]
-    assert Shortfall.model_validate(view["shortfalls"][0]).words() == "block 1, hand task: skipped"
+    words = [Shortfall.model_validate(one).words() for one in view["shortfalls"][:2]]
+    assert words == ["no consent on record", "block 1, hand task: skipped"]
     assert lab.join()["slot"]["index"] == 0
 
 

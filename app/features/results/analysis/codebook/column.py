@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
-_PHASE = "Whether the row may be analysed: the phase was finished and not redone or skipped,"
+_PHASE = "Whether the row may be analysed: the phase was finished and not redone or skipped"
 ColumnType = Literal["text", "integer", "number", "boolean", "time"]
 
 

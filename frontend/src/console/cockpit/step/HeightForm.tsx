@@ -53,9 +53,15 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
     };
     send({ type: "complete_step", step_index: step, height_m });
   };
+  const problem = (height: number | string) =>
+    height === "" || isHeight(height)
+      ? null
+      : t("height.impossible", { shortest: SHORTEST_CM, tallest: TALLEST_CM });
   const common = {
     min: SHORTEST_CM,
     max: TALLEST_CM,
+    // What was typed stays, and is refused in words: another height is nobody's.
+    clampBehavior: "none" as const,
     suffix: " cm",
     decimalScale: 1,
     size: "md",
@@ -69,11 +75,18 @@ export function HeightForm(props: HeightFormProps): JSX.Element {
       }}
     >
       <div className={classes.height}>
-        <NumberInput {...common} label={t("height.stated")} value={stated} onChange={setStated} />
+        <NumberInput
+          {...common}
+          label={t("height.stated")}
+          value={stated}
+          error={problem(stated)}
+          onChange={setStated}
+        />
         <NumberInput
           {...common}
           label={t("height.matched")}
           value={matched}
+          error={problem(matched)}
           onChange={setMatched}
         />
       </div>
