@@ -40,7 +40,8 @@ def test_others_lose_what_they_could_do(data: Path) -> None:
 def test_links_lead_nobody_out(data: Path, tmp_path: Path) -> None:
     """What they point to keeps its mode, file or folder."""
     outside = tmp_path / "outside"
-    outside.mkdir(mode=0o755)
+    outside.mkdir()
+    outside.chmod(0o755)  # whatever umask a command before has left
     (outside / "mine.txt").write_text("mine")
     (outside / "mine.txt").chmod(0o644)
     (data / "backups" / "link.txt").symlink_to(outside / "mine.txt")
@@ -60,7 +61,8 @@ def test_a_folder_that_is_everybodys_stays_so(data: Path) -> None:
 def test_other_things_in_a_shared_folder_stay_as_they_are(data: Path, tmp_path: Path) -> None:
     """A database may stand in a folder that is used for more."""
     file = tmp_path / "shared" / "lab.sqlite"
-    file.parent.mkdir(mode=0o755)
+    file.parent.mkdir()
+    file.parent.chmod(0o755)
     for path in (file, file.parent / "notes.txt"):
         path.write_text("x")
         path.chmod(0o644)
