@@ -4,6 +4,7 @@ Nobody else reads an address. What is wrong with one is said without any of it t
 a password, and what a PostgreSQL database must offer is looked at before anything works with it.
 """
 
+import os
 import re
 from typing import Any
 
@@ -24,15 +25,24 @@ DRIVERS = {
 """How an address may begin, and what works with it."""
 FORMS = ("postgresql://ROLE:PASSWORD@HOST:5432/DATABASE", "sqlite:////absolute/path.sqlite")
 LARGEST_PORT = 65_535
+IN_MEMORY = ":memory:"
+_SQLITE_OPTIONS = frozenset(
+    {
+        *("uri", "mode", "vfs", "immutable", "cache", "nolock", "psow", "modeof"),
+        *("timeout", "isolation_level", "detect_types", "check_same_thread", "cached_statements"),
+    }
+)
+"""Names that SQLite or its driver knows, and which may therefore be shown."""
 _SCHEME = re.compile(r"([A-Za-z0-9+.-]{1,30}):")
 _ESCAPED = "In a role or password write @ as %40, : as %3A, / as %2F, ? as %3F and % as %25"
 _PAGE = "See docs/postgresql.md"
 
 
 def database_address(url: str) -> URL:
-    """An address with the driver that works with it.
+    """An address with the driver that works with it; an embedded database's path is absolute.
 
-    Raises InvalidInput for one that cannot be one, without showing more of it than its scheme.
+    Raises InvalidInput for one that cannot be one, without showing more of it than its scheme and
+    the names of SQLite's options.
     """
     if not url.strip():
         raise _unusable("is empty", f"Unset {VARIABLE} to work with the embedded database")
@@ -41,13 +51,7 @@ def database_address(url: str) -> URL:
     scheme = _scheme_of(url)
     if scheme.startswith("postgres"):
         return _postgres_address(url, scheme)
-    address = _parsed(url)
-    if address.host is not None:
-        raise _unusable(
-            "names a host, which an embedded database does not have",
-            "Write three slashes before a relative path and four before an absolute one",
-        )
-    return address.set(drivername=DRIVERS[scheme])
+    return _sqlite_address(url, scheme)
 
 
 def shown_address(url: str) -> str:
@@ -128,6 +132,43 @@ def _scheme_of(url: str) -> str:
     return scheme
 
 
+def _sqlite_address(url: str, scheme: str) -> URL:
+    """The address of one file, which everybody who reads it takes for the same one.
+
+    Locks, permissions and logs depend on the file's name. So nothing is taken that lets SQLite open
+    another file than the one that is written there.
+    """
+    address = _parsed(url)
+    if address.host is not None or address.port is not None:
+        raise _unusable(
+            "names a host, which an embedded database does not have",
+            "Write three slashes before a relative path and four before an absolute one",
+        )
+    if address.username is not None or address.password is not None:
+        raise _unusable("names a role or a password, which an embedded database does not have")
+    file = address.database or ""
+    if file.lower().startswith("file:"):
+        raise _unusable(
+            "names its file as file:, which SQLite would read as an address of its own",
+            "Write the path alone",
+            value="file:",
+        )
+    if "?" in url:
+        names = ", ".join(sorted(_SQLITE_OPTIONS & set(address.query)))
+        raise _unusable(
+            f"has options behind a question mark{f' ({names})' if names else ''}, which can lead "
+            "SQLite to another file than the one that is locked",
+            "Write the path alone, without a question mark; the path of a folder "
+            "(REEMBODY_DATA_DIR) may hold none either",
+            value=names or None,
+        )
+    if file not in ("", IN_MEMORY):
+        # As the driver does: `..` is taken off without following a link before it.
+        absolute = os.path.abspath(file)  # noqa: PTH100 - `Path.resolve` follows links
+        address = address.set(database=absolute)
+    return address.set(drivername=DRIVERS[scheme])
+
+
 def _postgres_address(url: str, scheme: str) -> URL:
     if url.count("@") > 1:
         raise _unusable("has more than one @", _ESCAPED)
@@ -149,10 +190,11 @@ def _parsed(url: str) -> URL:
         raise _unusable("cannot be read", _ESCAPED) from None
 
 
-def _unusable(what: str, remedy: str = "") -> InvalidInput:
+def _unusable(what: str, remedy: str = "", value: str | None = None) -> InvalidInput:
     forms = f"Valid are {' and '.join(FORMS)}"
     return InvalidInput(
         f"the address of the database ({VARIABLE}) {what}",
+        value=value,
         valid=list(FORMS),
         remedy=f"{remedy}. {forms}. {_PAGE}" if remedy else f"{forms}. {_PAGE}",
     )

@@ -176,7 +176,13 @@ def as_sentences(*parts: str) -> str:
 
 
 def missing_file(path: Path) -> str:
-    """That a file is not there, with the folder that was looked into."""
+    """That a file is not there, with the folder that was looked into, or is no regular file."""
+    if path.is_dir():
+        return f"{path} is a folder, where a file is needed"
+    if path.exists():
+        return f"{path} is no regular file (a device, a pipe or the like)"
+    if path.is_symlink():
+        return f"{path} is a link that leads to no file"
     folder = path.absolute().parent
     if folder.is_dir():
         return f"there is no file {path.name} in {folder}"

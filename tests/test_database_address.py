@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 from app.database import make_engine
 from app.database_address import database_address, shown_address
 from app.errors import InvalidInput
-from app.settings import read_settings
+from app.features.care.ownership import own_data
+from app.platform.folders import database_file
+from app.settings import Settings, read_settings
 from tests.cli.invoked import Invoked
 from tests.faults.commands import Said, command
 from tests.support.postgres import Cluster, running_cluster
@@ -39,6 +41,17 @@ SECRET = "tiger-in-the-tank"
         (f"postgresql://u:{SECRET}@host:70000/db", "not between 1 and 65535"),
         (f"postgresql://u:{SECRET}@host:0/db", "not between 1 and 65535"),
         ("sqlite://reembody.sqlite", "names a host"),
+        (f"sqlite://u:{SECRET}@/srv/lab.sqlite", "names a role or a password"),
+        ("sqlite:///file:/srv/lab.sqlite?uri=true", "names its file as file:"),
+        ("sqlite:///file:lab.sqlite", "names its file as file:"),
+        ("sqlite:///FILE::memory:?cache=shared", "names its file as file:"),
+        ("sqlite:////srv/lab.sqlite?uri=true", "behind a question mark (uri)"),
+        ("sqlite:////srv/lab.sqlite?mode=memory&vfs=unix-none", "question mark (mode, vfs)"),
+        ("sqlite:////srv/lab.sqlite?immutable=1", "question mark (immutable)"),
+        (f"sqlite:////srv/lab.sqlite?key={SECRET}", "options behind a question mark,"),
+        (f"sqlite:////srv/lab.sqlite?{SECRET}=1", "options behind a question mark,"),
+        ("sqlite:////srv/lab?", "options behind a question mark,"),
+        ("sqlite:///:memory:?uri=1", "options behind a question mark (uri)"),
     ],
 )
 def test_an_address_that_cannot_be_one_is_refused_without_its_secret(url: str, said: str) -> None:
@@ -72,6 +85,33 @@ def test_whatever_is_written_there_is_read_or_refused(rest: str) -> None:
 def test_an_address_is_shown_without_role_and_password(url: str, shown: str) -> None:
     """As the terminal and errors name it."""
     assert shown_address(url) == shown
+
+
+@pytest.mark.parametrize("name", ["link/../lab.sqlite", "./lab.sqlite", "a/../lab.sqlite"])
+def test_the_file_that_is_opened_is_the_one_that_is_locked(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also for a path through a link and back, which the driver and the system read differently."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "elsewhere" / "deep").mkdir(parents=True)
+    (tmp_path / "link").symlink_to(tmp_path / "elsewhere" / "deep")
+    settings = Settings(data_dir=tmp_path, database_url=f"sqlite:///{tmp_path}/{name}")
+    engine = make_engine(settings.resolved_database_url)
+    with engine.connect() as connection:
+        opened = connection.exec_driver_sql("PRAGMA database_list").one()[2]
+    engine.dispose()
+    file = database_file(settings)
+    assert file is not None
+    assert file.resolve() == Path(opened).resolve()
+
+
+def test_a_folder_with_a_question_mark_is_refused_before_anything_is_made(tmp_path: Path) -> None:
+    """Its path would end there, and the database be begun beside it."""
+    settings = Settings(data_dir=tmp_path / "why?")
+    with pytest.raises(InvalidInput, match="question mark") as refused:
+        own_data(settings)
+    assert "REEMBODY_DATA_DIR" in refused.value.remedy
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("name", ["REEMBODY_DATABASE_URL", "REEMBODY_DATA_DIR"])

@@ -34,6 +34,8 @@ LONGEST_TEXT = 2000
 MOST_ITEMS = 500
 MOST_CHARACTERS = 60_000
 DEEPEST = 8
+UNREADABLE = 400
+"""What the framework says of a body that Python's JSON reader gives up on."""
 
 
 def error_response(error: ReembodyError) -> JSONResponse:
@@ -54,7 +56,7 @@ def install_error_handler(app: FastAPI) -> None:
 
     @app.exception_handler(RequestValidationError)
     def validation(request: Request, error: RequestValidationError) -> JSONResponse:
-        secret, problems = _takes_secrets(request.scope.get("route")), error.errors()
+        fields, problems = _fields_beside_secrets(request.scope.get("route")), error.errors()
         more = len(problems) - MOST_DETAILS
         return error_response(
             InvalidInput(
@@ -63,10 +65,10 @@ def install_error_handler(app: FastAPI) -> None:
                 + (f" {more} more problems are not listed." if more > 0 else ""),
                 details=[
                     {
-                        "path": ".".join(str(part)[:LONGEST_VALUE] for part in problem["loc"][1:]),
+                        "path": _path(problem["loc"], fields),
                         "message": problem["msg"],
                         # A container would be the whole input; of a missing field it is all others.
-                        "value": None if secret else _scalar(problem.get("input")),
+                        "value": None if fields else _scalar(problem.get("input")),
                     }
                     for problem in problems[:MOST_DETAILS]
                 ],
@@ -80,6 +82,10 @@ def install_error_handler(app: FastAPI) -> None:
         # The framework wraps what goes wrong while a body is read, such as our limit on its size.
         if isinstance(error.__cause__, ReembodyError):
             return error_response(error.__cause__)
+        if error.status_code == UNREADABLE and isinstance(
+            error.__cause__, ValueError | RecursionError
+        ):
+            return error_response(_unreadable_body())
         if error.status_code == NotFound.status:
             return error_response(NotFound("there is nothing at this address"))
         if error.status_code == NotAllowed.status:
@@ -164,20 +170,44 @@ def _went_wrong() -> JSONResponse:
     )
 
 
-def _takes_secrets(route: object) -> bool:
-    """Whether a route's body has a field marked as a secret (`writeOnly`).
+def _unreadable_body() -> InvalidInput:
+    return InvalidInput(
+        "the request's body is JSON that cannot be read: a number in it has too many digits, or "
+        "its lists and objects stand too deep inside each other",
+        valid="JSON with numbers of at most 4300 digits, nested a few hundred deep at most",
+        remedy="Send it again without that; nothing was stored.",
+    )
 
-    Then no value is repeated, not even of other fields: a password may stand in any of them.
+
+def _fields_beside_secrets(route: object) -> frozenset[str]:
+    """The names in a route's body if one of them is marked as a secret (`writeOnly`), else none.
+
+    Where there is one, no value is repeated, not even of other fields, and no name but these: a
+    password may stand in any place.
     """
     field = getattr(route, "body_field", None)
     model = getattr(getattr(field, "field_info", None), "annotation", None)
-    return model is not None and _has_secrets(model)
+    return frozenset() if model is None else _names_beside_secrets(model)
 
 
 @lru_cache(maxsize=256)
-def _has_secrets(model: Any) -> bool:
+def _names_beside_secrets(model: Any) -> frozenset[str]:
     schema = TypeAdapter(model).json_schema(mode="validation")
-    return '"writeOnly": true' in json.dumps(schema)
+    if '"writeOnly": true' not in json.dumps(schema):
+        return frozenset()
+    parts = [schema, *schema.get("$defs", {}).values()]
+    return frozenset(name for part in parts for name in part.get("properties", {}))
+
+
+def _path(place: Sequence[object], fields: frozenset[str]) -> str:
+    """Where in a request it is; beside secrets only what we call things ourselves."""
+    hidden = bool(fields) and place[:1] == ("body",)
+    return ".".join(
+        "(a field that is not known)"
+        if hidden and isinstance(part, str) and part not in fields
+        else str(part)[:LONGEST_VALUE]
+        for part in place[1:]
+    )
 
 
 def _scalar(value: object) -> object:

@@ -88,10 +88,12 @@ def verify(
     as_json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON.")] = False,
 ) -> None:
     """Prove what of a session is there, or that the audit trail is whole; exit code 1 if not."""
-    with reported(), Activity("verifying: opening the database") as now:
-        from app.cli.record import verify_record
+    with reported():
+        from app.cli.record import heads_of, verify_record
 
-        text, holds = verify_record(session, head or (), now, as_json=as_json)
+        heads = heads_of(head or ())
+        with Activity("verifying: opening the database") as now:
+            text, holds = verify_record(session, heads, now, as_json=as_json)
     print(text)
     if not holds:
         raise typer.Exit(INCOMPLETE)

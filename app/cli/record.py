@@ -102,16 +102,19 @@ def _known(kind: str) -> Kind:
     raise ValueError(f"unknown kind {kind!r}; valid are {', '.join(KINDS)}")
 
 
+def heads_of(texts: Sequence[str]) -> tuple[TrailHead, ...]:
+    """Heads as backups and exports print them, SEQ:HASH; raises InvalidInput for what is none."""
+    return tuple(TrailHead.parse(text) for text in texts)
+
+
 def verify_record(
-    session_id: str | None, heads: Sequence[str], activity: Activity, *, as_json: bool
+    session_id: str | None, heads: Sequence[TrailHead], activity: Activity, *, as_json: bool
 ) -> tuple[str, bool]:
     """Check a session, the audit trail or both; the findings as text or JSON, and whether all hold.
 
-    The trail is checked if no session is named, or if there are `heads`, SEQ:HASH as backups and
-    exports print them: each must still be in it. Reads beside a running server. Raises
-    ReembodyError for an unknown session, and for a head that cannot be one.
+    The trail is checked if no session is named, or if there are `heads`: each must still be
+    in it. Reads beside a running server. Raises ReembodyError for an unknown session.
     """
-    wanted = [TrailHead.parse(head) for head in heads]
     parts: list[str] = []
     found: dict[str, Any] = {}
     holds = True
@@ -121,9 +124,9 @@ def verify_record(
             receipt = _receipt(db, session_id)
             found, holds = receipt.as_json(), receipt.complete
             parts.append(receipt_text(receipt))
-        if session_id is None or wanted:
+        if session_id is None or heads:
             activity.now("verifying: reading the audit trail")
-            trail = _check_trail(db, wanted)
+            trail = _check_trail(db, heads)
             holds = holds and trail.holds
             parts.append(trail.text())
             found = {**found, "audit": trail.as_json()}

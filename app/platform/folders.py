@@ -1,11 +1,14 @@
 """Where the data of a laboratory stand on disk, and who may look at them."""
 
+import glob
 import os
 import stat
 from collections.abc import Iterator
+from itertools import chain, islice
 from pathlib import Path
 
-from app.database_address import database_address
+from app.database_address import IN_MEMORY, database_address
+from app.errors import Conflict
 from app.settings import Settings
 
 OTHERS = 0o077
@@ -13,6 +16,8 @@ OTHERS = 0o077
 BEGINNING = ".beginning-"
 """How the folder's name begins in which a new database is made."""
 DATABASE_SUFFIXES = ("", "-wal", "-shm", "-journal")
+_MOST_LOOKED_AT = 2000
+"""Files among which another name is looked for."""
 _OURS = ("backups", "quarantine", "scratch", "walking", "tls", "half-made", "erasures.jsonl")
 """What is ours in a folder that may hold other things, beside the database's own files."""
 _TRACES = ("backups/*.reembody", "quarantine/*", "erasures.jsonl", "erasure-unfinished")
@@ -23,7 +28,7 @@ _TRACES_IN_DATA_DIR = ("*.reembody", "walking/*", "scratch/exports/*", "*/codebo
 def database_file(settings: Settings) -> Path | None:
     """The embedded database's file; None for PostgreSQL, and for one in memory."""
     url = database_address(settings.resolved_database_url)
-    if url.get_backend_name() != "sqlite" or url.database in (None, "", ":memory:"):
+    if url.get_backend_name() != "sqlite" or url.database in (None, "", IN_MEMORY):
         return None
     return Path(str(url.database))
 
@@ -50,6 +55,59 @@ def is_there(file: Path) -> bool:
     except (FileNotFoundError, NotADirectoryError):
         return False
     return True
+
+
+def require_one_name(settings: Settings) -> None:
+    """Raise Conflict where the embedded database, its log or its index has a second hard link.
+
+    SQLite keeps the log beside the name by which it opened the file. By another name it finds
+    another log or none, and no lock on a folder keeps the two apart. Links that lead to a name
+    (symbolic ones) do no harm: they are followed first. A file system that does not count the names
+    says 0 or 1.
+    """
+    file = database_file(settings)
+    if file is None:
+        return
+    file = file.resolve()
+    for suffix in DATABASE_SUFFIXES:
+        one = file.with_name(file.name + suffix)
+        try:
+            found = one.stat()
+        except OSError:
+            continue
+        if stat.S_ISREG(found.st_mode) and found.st_nlink > 1:
+            raise _more_than_one_name(one, found)
+
+
+def _more_than_one_name(file: Path, found: os.stat_result) -> Conflict:
+    other = _another_name(file, found)
+    also = "" if other is None else f", one of which is {other}"
+    rest = f"find DISK -xdev -inum {found.st_ino}" if other is None else f"rm {other}"
+    how = "find the other names" if other is None else "remove the other name"
+    return Conflict(
+        f"{file} has {found.st_nlink} names (hard links){also}. SQLite keeps its log beside the "
+        "name by which it is opened, so work under two names loses what was stored and damages the "
+        "database; nothing was changed",
+        value=str(file) if other is None else [str(file), str(other)],
+        valid="a database file with one name",
+        remedy=f"Stop every server that works under one of the names. To keep one, {how}: {rest}. "
+        f"To keep both, make this one a file of its own: cp -p {file} {file}.copy && "
+        f"mv {file}.copy {file}. Copy a data folder with `cp -a` while no server runs, or with "
+        "`./run backup`; never with `ln` or `cp -al`.",
+    )
+
+
+def _another_name(file: Path, found: os.stat_result) -> Path | None:
+    """Another name of a file in its folder, or its own in a folder beside that: where most are."""
+    near = chain(file.parent.glob("*"), file.parent.parent.glob(f"*/{glob.escape(file.name)}"))
+    for one in islice(near, _MOST_LOOKED_AT):
+        try:
+            same = one != file and os.path.samestat(one.lstat(), found)
+        except OSError:
+            continue
+        if same:
+            return one
+    return None
 
 
 def traces_of_a_database(settings: Settings) -> list[str]:

@@ -116,6 +116,32 @@ def test_no_answer_repeats_a_secret(lab: Lab, method: str, path: str, body: obje
 
 
 @pytest.mark.one_engine
+@pytest.mark.parametrize(("method", "path"), [*WITH_A_BODY, ("PUT", "/api/me/password")])
+def test_no_answer_to_a_secret_repeats_the_name_of_a_field(
+    lab: Lab, method: str, path: str
+) -> None:
+    """A password that was pasted into the place of a name is not shown; our own names are."""
+    told = error(lab.operator.request(method, path, json={SECRET: 1}), 422, "invalid_input")
+    assert SECRET not in json.dumps(told)
+    paths = [one["path"] for one in told["details"]]
+    assert "(a field that is not known)" in paths
+    assert len(set(paths)) > 1
+
+
+@pytest.mark.one_engine
+@pytest.mark.parametrize("body", [b"9" * 9000, b"[" * 8000 + b"]" * 8000, b'{"a":' * 2500])
+def test_json_beyond_what_can_be_read_is_refused_in_words(lab: Lab, body: bytes) -> None:
+    """A number of thousands of digits, or thousands of lists inside each other: to a stranger, and
+    to whoever is signed in.
+    """
+    for client, path in ((lab.stranger(), "/api/login"), (lab.operator, "/api/studies/check")):
+        answer = client.post(path, content=body, headers=JSON)
+        told = error(answer, 422, "invalid_input")
+        assert "the request" in told["message"]
+        assert told["remedy"]
+
+
+@pytest.mark.one_engine
 @pytest.mark.parametrize("filling", ["\x01", "é", '"', "x"])
 def test_an_answer_is_small_however_much_was_sent(lab: Lab, filling: str) -> None:
     """No route gives back what it did not understand, neither values nor names of fields."""

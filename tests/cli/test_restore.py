@@ -1,6 +1,7 @@
 """`reembody restore`: what it says, asks for and leaves behind."""
 
 import json
+import re
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,7 +13,9 @@ from sqlalchemy import select
 
 from app.cli import progress
 from app.database import open_database
+from app.errors import NotFound
 from app.features.care.backups import back_up
+from app.features.care.rights.tombstones import read_list
 from app.models import Erasure, Participant
 from tests.cli.invoked import Invoked
 from tests.features.care.backups.lab import CLOCK
@@ -79,6 +82,34 @@ def codes(data: Path) -> list[str]:
         found = list(db.scalars(select(Participant.code)))
     database.close()
     return found
+
+
+def test_a_folder_or_a_device_is_said_to_be_one(data: Path, tmp_path: Path) -> None:
+    """As the backup, and as the list of erasures: they are there, but are no files."""
+    (tmp_path / "away").symlink_to(tmp_path / "gone")
+    said = {
+        Path("/dev/zero"): "/dev/zero is no regular file",
+        tmp_path: f"{tmp_path} is a folder, where a file is needed",
+        tmp_path / "away": "is a link that leads to no file",
+        tmp_path / "missing": "there is no file missing in",
+    }
+    for path, words in said.items():
+        assert words in RESTORE.refusal(path)
+        with pytest.raises(NotFound, match=re.escape(words)):
+            read_list(path)
+    assert not data.exists()
+
+
+@pytest.mark.parametrize("head", ["15:zz", "15:ab", "x"])
+def test_a_head_that_is_none_is_refused_before_the_database_is_opened(
+    head: str, data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Nothing is said of opening, and no folder is made for a database that is not there."""
+    monkeypatch.setattr(progress, "SAID_AFTER_S", 0.0)
+    said = Invoked("verify").refusal("--head", head)
+    assert "is not the head of an audit trail" in said
+    assert "opening" not in said
+    assert not data.exists()
 
 
 def test_without_a_list_of_erasures_it_says_who_may_be_back(earlier: Earlier, data: Path) -> None:

@@ -6,6 +6,7 @@ The short form tries a few times what `--long` tries fifty times.
 import asyncio
 import contextlib
 import json
+import os
 import signal
 import subprocess
 import time
@@ -20,7 +21,7 @@ from app.features.record.sessions import events_of
 from app.models import SessionEvent
 from app.rehearsal.cast import answer, operate
 from app.rehearsal.rehearse import RehearsalPlan, assembled
-from tests.faults.commands import UNUSABLE, reembody
+from tests.faults.commands import UNUSABLE, command, reembody
 from tests.faults.figures import note
 from tests.faults.record import record_of
 from tests.faults.short_study import KEY, Watch, add_short_study
@@ -124,21 +125,53 @@ def test_commands_that_write_are_refused_and_those_that_read_are_not(
         ("token",),
         ("tls", "show"),
     ]
-    for command in works:
-        said = reembody(live_server, *command)
+    for arguments in works:
+        said = reembody(live_server, *arguments)
         assert said.code in (0, 1), said.err
         assert "in use" not in said.err
     before = event_count(live_server, session_id)
-    for command in (
+    for arguments in (
         ("restore", file, "--replace", "--even-though-active"),
         ("tune", "--save", "mine"),
         ("rehearse", "--data", live_server.data_dir),
     ):
-        said = reembody(live_server, *command)
+        said = reembody(live_server, *arguments)
         assert said.code == UNUSABLE, said.err
         assert f"process id {live_server.pid} on port {live_server.port}" in said.err
         assert "Traceback" not in said.err
     assert event_count(live_server, session_id) == before
+
+
+def test_no_second_name_leads_to_the_database_of_a_running_server(
+    live_server: LiveServer, tmp_path: Path
+) -> None:
+    """Neither an address of SQLite's own nor a hard link: each would lock another folder. Nothing
+    is made by the attempt.
+    """
+    file, other = live_server.data_dir / "reembody.sqlite", tmp_path / "other"
+    other.mkdir()
+    environment = {"REEMBODY_DATA_DIR": str(other)}
+    address = {"REEMBODY_DATABASE_URL": f"sqlite:///file:{file}?uri=true"}
+    said = command(environment | address, "serve", "--port", free_port())
+    assert said.code == UNUSABLE
+    assert "names its file as file:" in said.err
+    assert list(other.iterdir()) == []
+    second = other / file.name
+    os.link(file, second)
+    try:
+        for arguments in (
+            ("serve", "--port", free_port()),
+            ("restore", tmp_path / "none.reembody", "--replace"),
+            ("backup", tmp_path / "all.reembody"),
+            ("token",),
+        ):
+            said = command(environment, *arguments)
+            assert said.code == UNUSABLE, said.err
+            assert f"{second} has 2 names (hard links)" in said.err
+            assert "Traceback" not in said.err
+        assert [one.name for one in other.iterdir()] == [file.name]
+    finally:
+        second.unlink()
 
 
 def test_a_database_of_postgres_has_one_server(tmp_path: Path) -> None:

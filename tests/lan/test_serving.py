@@ -1,6 +1,7 @@
 """The real server on the lab's network: three doors, one application."""
 
 import asyncio
+import logging
 import socket
 import ssl
 from collections.abc import Iterator
@@ -8,11 +9,19 @@ from contextlib import nullcontext
 
 import httpx2
 import pytest
+import uvicorn
+from starlette.types import Receive, Scope, Send
 from websockets.exceptions import InvalidStatus
 
+from app.lan.serving import Door, LabServer, SocketProtocol, bind
 from tests.features.lab import STUDY, ok
 from tests.lan.devices import CREDENTIALS, greeted, pair_headset
 from tests.support.lan import LanServer
+
+UPGRADE = (
+    b"GET %s HTTP/1.1\r\nhost: localhost\r\nupgrade: websocket\r\nconnection: Upgrade\r\n"
+    b"sec-websocket-version: 13\r\nsec-websocket-key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+)
 
 
 @pytest.fixture(scope="module")
@@ -74,6 +83,44 @@ def test_signing_out_over_https_takes_the_cookie_away(lan: LanServer) -> None:
         assert "secure" in gone
         assert "path=/" in gone
         assert ok(client.get("/api/me"))["account"] is None
+
+
+def test_a_refused_socket_writes_nothing_in_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    """Whoever may ask for nothing any more could fill a disk with such lines."""
+    paths = ("/a-body", "/no-body")
+
+    async def refusing(scope: Scope, _receive: Receive, send: Send) -> None:
+        if scope["path"] == "/no-body":
+            await send({"type": "websocket.close", "code": 4403})
+        elif scope["type"] == "websocket":
+            start, body = "websocket.http.response.start", "websocket.http.response.body"
+            await send({"type": start, "status": 429, "headers": []})
+            await send({"type": body, "body": b"sl", "more_body": True})
+            await send({"type": body, "body": b"ow"})
+
+    async def asked() -> list[bytes]:
+        sockets = bind(("127.0.0.1",), 0, "--port")
+        port = sockets[0].getsockname()[1]
+        config = uvicorn.Config(refusing, ws=SocketProtocol, lifespan="off", log_config=None)
+        serves = asyncio.Event()
+
+        async def meanwhile() -> None:
+            serves.set()
+
+        server = LabServer([Door(sockets, config)], meanwhile)
+        serving = asyncio.create_task(server.serve())
+        await serves.wait()
+        answers = [await asyncio.to_thread(raw, port, UPGRADE % path.encode()) for path in paths]
+        server.should_exit = True
+        await serving
+        return answers
+
+    with caplog.at_level(logging.WARNING):
+        body, no_body = asyncio.run(asked())
+    assert body.startswith(b"HTTP/1.1 429 ")
+    assert body.endswith(b"\r\n\r\nslow")
+    assert no_body.startswith(b"HTTP/1.1 403 ")
+    assert caplog.messages == []
 
 
 def test_headsets_are_served_over_wss(lan: LanServer) -> None:

@@ -31,6 +31,7 @@ from app.lan.serving import (
     LabAuthority,
     LabServer,
     Plan,
+    SocketProtocol,
     allow_open_files,
     bind,
     look_around,
@@ -178,7 +179,7 @@ class _Bound:
 def _config(app: object, settings: Settings) -> uvicorn.Config:
     return uvicorn.Config(
         app,  # type: ignore[arg-type]  # any ASGI application
-        ws="websockets-sansio",
+        ws=SocketProtocol,
         ws_max_size=settings.max_telemetry_message_bytes,
         log_level="warning",
         proxy_headers=False,

@@ -7,7 +7,14 @@ be reached (`app.lan`).
 from app.lan.serving.addresses import look_around
 from app.lan.serving.certificates import Identity, LabAuthority
 from app.lan.serving.help.site import HelpSite
-from app.lan.serving.listening import Door, LabServer, allow_open_files, bind, tls_context
+from app.lan.serving.listening import (
+    Door,
+    LabServer,
+    SocketProtocol,
+    allow_open_files,
+    bind,
+    tls_context,
+)
 from app.lan.serving.plan import Plan, make_plan
 from app.lan.serving.watch import CertificateWatch
 
@@ -19,6 +26,7 @@ __all__ = [
     "LabAuthority",
     "LabServer",
     "Plan",
+    "SocketProtocol",
     "allow_open_files",
     "bind",
     "look_around",

@@ -11,9 +11,11 @@ import ssl
 import sys
 from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import uvicorn
 from uvicorn.config import STARTUP_FAILURE
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from app.errors import InvalidInput
 from app.lan.serving.deadlines import ReceivingProtocol, Unfinished
@@ -29,6 +31,20 @@ class Door:
     sockets: tuple[socket.socket, ...]
     config: uvicorn.Config
     tls: ssl.SSLContext | None = None
+
+
+class SocketProtocol(WebSocketsSansIOProtocol):
+    """A WebSocket whose handshake is over, too, once it was answered with a refusal.
+
+    uvicorn knows that of `websocket.close`, but not of a refusal with a body
+    (`websocket.http.response.body`): it would log an error for each, and anybody could fill a disk.
+    """
+
+    async def send(self, message: Any) -> None:
+        """As the application wishes."""
+        await super().send(message)
+        if self.initial_response is not None and self.close_sent:
+            self.handshake_complete = True
 
 
 class LabServer(uvicorn.Server):

@@ -21,6 +21,7 @@ from app.platform.folders import (
     database_file,
     home_of,
     is_there,
+    require_one_name,
     traces_of_a_database,
 )
 from app.platform.trouble import in_plain_words, plainly
@@ -152,7 +153,9 @@ def prepare_database(
 
 
 def existing_database(settings: Settings) -> Database:
-    """The database as it is, to read from; raises NotFound where there is none."""
+    """The database as it is, to read from; raises NotFound where there is none, and Conflict where
+    it has a second name.
+    """
     file = database_file(settings)
     if file is not None and not is_there(file):
         raise NotFound(
@@ -160,6 +163,7 @@ def existing_database(settings: Settings) -> Database:
             value=str(file),
             remedy="Set REEMBODY_DATA_DIR or REEMBODY_DATABASE_URL as for the server.",
         )
+    require_one_name(settings)
     return open_database(settings.resolved_database_url)
 
 

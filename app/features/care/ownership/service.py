@@ -20,7 +20,7 @@ from app.features.care.ownership.folder_lock import FolderLock
 from app.features.care.ownership.owner import SERVER, Owned, Owner
 from app.platform.background import Background
 from app.platform.context import Part
-from app.platform.folders import database_file, home_of
+from app.platform.folders import database_file, home_of, require_one_name
 from app.schema_revisions import newest_revision, revision_of
 from app.settings import Settings
 
@@ -102,7 +102,11 @@ def own_data(settings: Settings, command: str = SERVER, *, port: int | None = No
 
 
 def _locks(settings: Settings, owner: Owner) -> list[_Lock]:
-    """All locks or none, always in the same order: of two that start, one gets them."""
+    """All locks or none, always in the same order: of two that start, one gets them.
+
+    They are locks on folders, which hold nobody off who has the database by another name.
+    """
+    require_one_name(settings)
     folders = {settings.data_dir.resolve()}
     file = database_file(settings)
     if file is not None:

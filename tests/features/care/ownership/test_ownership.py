@@ -1,6 +1,7 @@
 """One owner for the data: what its lock survives, what ends it, and what it says of the owner."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,7 +16,8 @@ from sqlalchemy import text
 
 from app.clock import Clock
 from app.database_address import connected, disconnect
-from app.errors import NotDurable, NotNow
+from app.errors import Conflict, NotDurable, NotNow
+from app.features.care.opening import existing_database
 from app.features.care.ownership import Owned, Ownership, OwnerWatch, own_data
 from app.features.care.ownership.folder_lock import NAME, FolderLock
 from app.features.care.ownership.owner import Owner
@@ -142,6 +144,51 @@ def test_every_path_to_a_folder_leads_to_one_lock(tmp_path: Path, settings: Sett
         # What was refused half-way holds nothing.
         with own_data(Settings(data_dir=other)):
             pass
+
+
+@pytest.mark.parametrize("suffix", ["", "-wal", "-shm"])
+@pytest.mark.parametrize("opened", ["by its name", "by a symbolic link"])
+def test_a_database_with_a_second_hard_link_is_refused(
+    tmp_path: Path, settings: Settings, suffix: str, opened: str
+) -> None:
+    """Also through a symbolic link, and for what lies beside the database. The other name is said,
+    nothing is made, and a copy in its place is taken.
+    """
+    settings.data_dir.mkdir()
+    other = tmp_path / "other"
+    other.mkdir()
+    database = settings.data_dir / "reembody.sqlite"
+    first, second = (one / f"reembody.sqlite{suffix}" for one in (settings.data_dir, other))
+    database.touch()
+    first.touch()
+    os.link(first, second)
+    (tmp_path / "link").symlink_to(database)
+    if opened == "by a symbolic link":
+        settings = Settings(data_dir=other, database_url=f"sqlite:///{tmp_path / 'link'}")
+    with pytest.raises(Conflict, match="has 2 names") as refused:
+        own_data(settings)
+    assert f"{first} has 2 names (hard links), one of which is {second}." in str(refused.value)
+    assert "`cp -a`" in refused.value.remedy
+    with pytest.raises(Conflict, match="has 2 names"):
+        existing_database(settings)
+    assert not list(tmp_path.rglob(NAME))
+    shutil.copy(second, tmp_path / "copy")
+    (tmp_path / "copy").rename(second)
+    with own_data(settings):
+        pass
+
+
+def test_other_names_that_are_far_away_are_only_counted(tmp_path: Path, settings: Settings) -> None:
+    """They are not looked for through the whole disk; how to find them is said."""
+    settings.data_dir.mkdir()
+    file = settings.data_dir / "reembody.sqlite"
+    file.touch()
+    far = tmp_path / "a" / "b" / "c"
+    far.mkdir(parents=True)
+    os.link(file, far / "other")
+    with pytest.raises(Conflict, match=r"has 2 names \(hard links\)\. ") as refused:
+        own_data(settings)
+    assert f"-inum {file.stat().st_ino}" in refused.value.remedy
 
 
 def test_a_command_is_waited_for_and_a_server_is_not(settings: Settings) -> None:
