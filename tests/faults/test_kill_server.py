@@ -23,10 +23,11 @@ from tests.rehearsal.performed import SHIPPED, Lengths
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 FRAME_S = 1 / 90
-SHORT_KILLS = 8
+SHORT_KILLS = 6
 SPEED = 20.0
+SHORT_SPEED = 10.0
 # A second of a machine's time each: longer than the longest wait for a kill in it.
-SHORT = Lengths(30.0, 20.0)
+SHORT = Lengths(15.0, 10.0, 2.5)
 
 
 @pytest.mark.timeout(900)
@@ -34,7 +35,7 @@ def test_kills_lose_nothing_and_every_phase_goes_on(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A session at high speed, killed again and again from its set-up to its last phase."""
-    kills = kill_until(tmp_path, SHORT_KILLS, SHORT, first_seed=1, capsys=capsys)
+    kills = kill_until(tmp_path, SHORT_KILLS, SHORT, SHORT_SPEED, first_seed=1, capsys=capsys)
     assert {"setup", "preparing", "running"} <= {kill.before.kind for kill in kills}
 
 
@@ -42,7 +43,9 @@ def test_kills_lose_nothing_and_every_phase_goes_on(
 @pytest.mark.timeout(3600)
 def test_two_hundred_kills_lose_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Ten sessions and more of the shipped length, each with other moments."""
-    kills = kill_until(tmp_path, 10 * KILLS_PER_SESSION, SHIPPED, first_seed=2, capsys=capsys)
+    kills = kill_until(
+        tmp_path, 10 * KILLS_PER_SESSION, SHIPPED, SPEED, first_seed=2, capsys=capsys
+    )
     assert set(KINDS) <= {kill.before.kind for kill in kills}
 
 
@@ -50,6 +53,7 @@ def kill_until(
     folder: Path,
     wanted: int,
     lengths: Lengths,
+    speed: float,
     *,
     first_seed: int,
     capsys: pytest.CaptureFixture[str],
@@ -58,7 +62,9 @@ def kill_until(
     kills: list[Kill] = []
     seed = first_seed
     while len(kills) < wanted:
-        kills += _kill_during_a_session(folder / str(seed), lengths, seed, wanted - len(kills))
+        kills += _kill_during_a_session(
+            folder / str(seed), lengths, speed, seed, wanted - len(kills)
+        )
         seed += 1
     note(
         1,
@@ -79,11 +85,15 @@ def kill_until(
     return kills
 
 
-def _kill_during_a_session(folder: Path, lengths: Lengths, seed: int, most: int) -> list[Kill]:
+def _kill_during_a_session(
+    folder: Path, lengths: Lengths, speed: float, seed: int, most: int
+) -> list[Kill]:
     ledger = LedgerJournal()
     with LiveServer(folder) as server:
-        study = lengths.store(server)
-        kills, session_id = asyncio.run(_rehearse(server, study, ledger, seed, most))
+        plan = RehearsalPlan(
+            server.url, lengths.store(server), speed=speed, seed=seed, password=ADMIN_PASSWORD
+        )
+        kills, session_id = asyncio.run(_rehearse(server, plan, ledger, most))
         for kill in kills:
             check_kill(kill)
         check_session(server, session_id, ledger, lengths)
@@ -91,12 +101,11 @@ def _kill_during_a_session(folder: Path, lengths: Lengths, seed: int, most: int)
 
 
 async def _rehearse(
-    server: LiveServer, study: str, ledger: LedgerJournal, seed: int, most: int
+    server: LiveServer, plan: RehearsalPlan, ledger: LedgerJournal, most: int
 ) -> tuple[list[Kill], str]:
-    targets = draw_schedule(np.random.default_rng(seed))
+    targets = draw_schedule(np.random.default_rng(plan.seed))
     if most < KILLS_PER_SESSION:
         targets = targets[:: max(1, len(targets) // (most + 1))]
-    plan = RehearsalPlan(server.url, study, speed=SPEED, seed=seed, password=ADMIN_PASSWORD)
     async with assembled(plan, journal=ledger) as cast:
         killer = Killer(server, cast, ledger)
         async with asyncio.TaskGroup() as group:

@@ -8,7 +8,15 @@ from sqlalchemy.orm import Session
 
 from app.database import open_database
 from app.rehearsal.rehearse import RehearsalPlan
-from tests.rehearsal.performed import SHIPPED, SHORT, STUDY, Performed, performed_once
+from tests.rehearsal.performed import (
+    BRIEF,
+    LONGER,
+    SHIPPED,
+    SHORT,
+    STUDY,
+    Performed,
+    performed_once,
+)
 from tests.support import postgres
 from tests.support.shared_run import once
 
@@ -27,18 +35,21 @@ PERFORMED = [
 def performed(request: pytest.FixtureRequest) -> Performed:
     """A finished rehearsal at high speed, on each database; phases are short but in the long form.
 
-    Another seed each: what holds does so whatever the participant does.
+    Another seed each: what holds does so whatever the participant does. On PostgreSQL phases are
+    too brief for a task with the foot, unless in the long form.
     """
+    long = request.config.getoption("--long")
+    brief, short = (LONGER, LONGER) if long else (BRIEF, SHORT)
     if request.param == "postgresql":
         url = _kept_postgres()
         plan = RehearsalPlan(url="", study=STUDY, speed=2 * SPEED, seed=2)
         environment = {"REEMBODY_DATABASE_URL": url}
-        return performed_once("rehearsal-postgresql", plan, url, environment, SHORT)
+        return performed_once("rehearsal-postgresql", plan, url, environment, brief)
     shared_data: Path = request.getfixturevalue("shared_data")
     plan = RehearsalPlan(url="", study=STUDY, speed=SPEED, seed=1, capture=shared_data / CAPTURE)
     if request.param == "sqlite, shipped length":
         return performed_once("rehearsal-shipped", plan, None, {}, SHIPPED)
-    return performed_once("rehearsal-sqlite", plan, None, {}, SHORT)
+    return performed_once("rehearsal-sqlite", plan, None, {}, short)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

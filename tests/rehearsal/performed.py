@@ -27,10 +27,14 @@ SUMMARIES_WITHIN_S = 60.0
 
 @dataclass(frozen=True)
 class Lengths:
-    """How long the phases of the shipped study are, in s of active time."""
+    """How long the phases of the shipped study are, in s of active time.
+
+    `around_s` is how long a task is prepared, and frozen at its end.
+    """
 
     roam_s: float
     task_s: float
+    around_s: float = 5.0
 
     @property
     def key(self) -> str:
@@ -45,6 +49,8 @@ class Lengths:
             (f"key: {STUDY}", f"key: {self.key}"),
             ("duration_s: 120", f"duration_s: {self.roam_s}"),
             *[("duration_s: 60\n", f"duration_s: {self.task_s}\n")] * 2,
+            *[("preparation_s: 5\n", f"preparation_s: {self.around_s}\n")] * 2,
+            *[("freeze_s: 5\n", f"freeze_s: {self.around_s}\n")] * 2,
         )
         with server.client() as client:
             credentials = {"username": "admin", "password": ADMIN_PASSWORD}
@@ -54,8 +60,10 @@ class Lengths:
 
 
 SHIPPED = Lengths(120.0, 60.0)
-SHORT = Lengths(15.0, 30.0)
+LONGER, SHORT = Lengths(15.0, 30.0), Lengths(10.0, 25.0, 1.0)
 """Long enough for a task with each limb, and for a latency to be measured in every phase."""
+BRIEF = Lengths(6.0, 10.0, 1.0)
+"""Long enough for a task with the hand, and for a latency to be measured of each condition."""
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,7 @@ def phases(performed: Performed, db: Session) -> list[Phase]:
     return list(db.scalars(query.order_by(Phase.phase_id)))
 
 
+@pytest.mark.one_engine
 def test_what_was_counted_lies_at_the_headsets_own_time(db: Session, phases: list[Phase]) -> None:
     """Contacts and completions by their active time, through every way back, to the microsecond."""
     session = session_by_id(db, phases[0].session_id)

@@ -86,6 +86,7 @@ def test_the_report_counts_what_the_server_stored(performed: Performed) -> None:
     assert {row["frames_flagged"] for row in report["streams"]} == {0}
 
 
+@pytest.mark.one_engine
 def test_every_task_phase_has_completions_and_the_session_side_contacts(
     performed: Performed,
 ) -> None:
@@ -116,6 +117,7 @@ def test_latency_is_seen_in_the_joint_error_and_costs_the_controller_nothing(
         assert max(command) < 1e-4
 
 
+@pytest.mark.one_engine
 def test_walks_back_stop_the_clock(performed: Performed, db: Session) -> None:
     """A phase spans its active time, its walks back and its pauses, and nothing else."""
     for phase in _task_phases(db, performed):
