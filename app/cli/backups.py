@@ -5,6 +5,7 @@ import sqlite3
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, suppress
+from datetime import timedelta
 from pathlib import Path
 
 from sqlalchemy.exc import DBAPIError
@@ -17,6 +18,7 @@ from app.errors import ReembodyError
 from app.features.care.backups import (
     BackedUp,
     Backup,
+    Lifetimes,
     Restored,
     RestoredContent,
     back_up,
@@ -154,6 +156,11 @@ def _restored(
     from app.main import create_app  # a backup needs no application
 
     clock, kept = Clock(), backups_of(settings)
+    lifetimes = Lifetimes(
+        clock.utc_now(),
+        login=timedelta(hours=settings.login_hours),
+        pairing=timedelta(minutes=settings.pairing_minutes),
+    )
     with (
         _no_folder_left(kept),
         checked_backup(path, kept, activity.rows(f"checking {path}")) as backup,
@@ -178,7 +185,7 @@ def _restored(
                     replace=replace,
                     even_though_active=even_though_active,
                     erasures=outliving,
-                    content=RestoredContent(even_though_altered),
+                    content=RestoredContent(even_though_altered, lifetimes),
                     progress=activity.rows("restoring"),
                 )
     if expected and not done.erasures_reapplied:

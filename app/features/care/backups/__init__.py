@@ -7,6 +7,7 @@ can be looked into with any SQLite tool, and damage is noticed before anything i
 shapes     the tables of a schema, as far as copying needs to know them
 rows       rows in one form that is the same on both engines
 digest     checksums over such rows
+readable   whether this program can read what rows mean
 content    whether rows and tables are ones that this program can have written
 manifest   what a backup says of itself
 writing    making the file
@@ -21,6 +22,7 @@ from app.features.care.backups.content import (
     wrong_rows,
     wrong_tables,
 )
+from app.features.care.backups.readable import Lifetimes
 from app.features.care.backups.reading import Backup
 from app.features.care.backups.service import (
     ENDING,
@@ -39,6 +41,7 @@ __all__ = [
     "ENDING",
     "BackedUp",
     "Backup",
+    "Lifetimes",
     "Restored",
     "RestoredContent",
     "TableShape",

@@ -18,10 +18,11 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import InvalidInput
+from app.features.care.backups.readable import Lifetimes, require_readable
 from app.features.care.backups.shapes import Kind, TableShape
 from app.features.people.audit import verify_trail
 from app.features.record.sessions import events_of, verify_chain
-from app.models import ROLES, Account, StudySession
+from app.models import StudySession
 
 AT_ONCE = 2000
 _TYPES: dict[Kind, frozenset[type]] = {
@@ -127,35 +128,37 @@ class RestoredContent:
     """What a restore asks of the rows it has just put in place, inside its transaction.
 
     `even_though_altered`: take a record whose chains of hashes do not fit; somebody has decided so.
+    `lifetimes`: how long logins, pairing codes and invitations in it may still last, None for as
+    long as they say.
     """
 
     even_though_altered: bool = False
+    lifetimes: Lifetimes | None = None
 
     def __call__(self, db: Session) -> None:
-        """Raise InvalidInput for roles that there are not, and for chains that do not verify."""
-        roles = set(db.scalars(select(Account.role).distinct()))
-        if unknown := sorted(roles - set(ROLES)):
-            raise InvalidInput(
-                f"the backup holds an account of the role {unknown[0]!r}; nothing was changed",
-                value=unknown,
-                valid=list(ROLES),
-                remedy="Take another copy of this backup, or another backup.",
-            )
-        if self.even_though_altered:
-            return
-        broken = [] if verify_trail(db).ok else ["the audit trail"]
-        sessions = select(StudySession.id, StudySession.version).order_by(StudySession.created_at)
-        for session_id, version in db.execute(sessions).all():
-            if not verify_chain(events_of(db, session_id), version=version).ok:
-                broken.append(f"session {session_id}")
-            db.expunge_all()
-        if broken:
-            more = f" and {len(broken) - 3} more" if len(broken) > 3 else ""
-            raise InvalidInput(
-                f"the record in the backup was altered: the chain of {', '.join(broken[:3])}{more} "
-                "does not verify; nothing was changed",
-                value=broken,
-                valid="chains of which every hash follows from the one before",
-                remedy="Take another backup; or, knowing that this record cannot be relied on, say "
-                "--even-though-altered.",
-            )
+        """Raise InvalidInput for what cannot be read later, and for chains that do not verify."""
+        if not self.even_though_altered:
+            _require_chains(db)
+        require_readable(db, even_though_altered=self.even_though_altered)
+        if self.lifetimes is not None:
+            self.lifetimes.shorten(db)
+        db.expunge_all()
+
+
+def _require_chains(db: Session) -> None:
+    broken = [] if verify_trail(db).ok else ["the audit trail"]
+    sessions = select(StudySession.id, StudySession.version).order_by(StudySession.created_at)
+    for session_id, version in db.execute(sessions).all():
+        if not verify_chain(events_of(db, session_id), version=version).ok:
+            broken.append(f"session {session_id}")
+        db.expunge_all()
+    if broken:
+        more = f" and {len(broken) - 3} more" if len(broken) > 3 else ""
+        raise InvalidInput(
+            f"the record in the backup was altered: the chain of {', '.join(broken[:3])}{more} "
+            "does not verify; nothing was changed",
+            value=broken,
+            valid="chains of which every hash follows from the one before",
+            remedy="Take another backup; or, knowing that this record cannot be relied on, say "
+            "--even-though-altered.",
+        )

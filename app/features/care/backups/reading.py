@@ -20,6 +20,7 @@ from app.errors import InvalidInput, NotDurable, NotFound, missing_file
 from app.features.care.backups.content import wrong_rows, wrong_tables
 from app.features.care.backups.digest import TableDigest, digest_of
 from app.features.care.backups.manifest import Manifest, ManifestError, read_manifest
+from app.features.care.backups.readable import unfit_rows
 from app.features.care.backups.rows import Progress, silent
 from app.features.care.backups.shapes import TableShape, shapes_of, shapes_of_models
 from app.platform.trouble import DAMAGED, explain
@@ -68,8 +69,8 @@ def require_ours(backup: Backup) -> None:
     """Refuse what no backup of this program holds, whatever its checksums say.
 
     `backup` is in the newest schema. Raises InvalidInput for tables and columns that are missing or
-    too many, views and triggers, values of another kind than their column's, and rows that refer
-    to nothing.
+    too many, views and triggers, values of another kind or range than their column's, and rows that
+    refer to nothing.
     """
     driver: Any = backup.connection.connection.driver_connection
     found = {shape.name: [one.name for one in shape.columns] for shape in backup.shapes}
@@ -80,6 +81,8 @@ def require_ours(backup: Backup) -> None:
         wrong += [f"there is a {name}" for (name,) in driver.execute(more)]
         if not wrong:
             wrong += list(wrong_rows(driver, ours))
+        if not wrong:
+            wrong += list(unfit_rows(driver))
         if not wrong:
             lost = driver.execute("PRAGMA foreign_key_check").fetchall()
             wrong += [f"rows of {row[0]} refer to nothing in {row[2]}" for row in lost[:1]]

@@ -19,8 +19,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TypeVar
 
-from argon2 import PasswordHasher
-from argon2.exceptions import VerificationError
+from argon2 import PasswordHasher, Type, extract_parameters
+from argon2.exceptions import InvalidHashError, VerificationError
 from zxcvbn import zxcvbn
 
 from app.errors import Busy, InvalidInput
@@ -35,6 +35,8 @@ _ESTIMATED_LENGTH = 32
 """Its time grows steeply with the length: of 32 characters chosen to be slow, a few tenths of a
 second; of 72, five seconds. A good beginning is enough."""
 NICENESS = 10
+MOST_TIMES_OURS = 4
+"""How much dearer a stored hash may be: releases of the library have had other costs."""
 Result = TypeVar("Result")
 _HASHER = PasswordHasher()
 
@@ -93,6 +95,25 @@ def is_password(stored: str | None, password: str) -> bool:
     """
     _require_length(password)
     return DESK.do(lambda: _verified(stored or _nobody(), password)) and stored is not None
+
+
+def is_hash(stored: str) -> bool:
+    """Whether a stored hash is one that a log-in can be checked against, at a cost like ours.
+
+    A made-up one could ask for more memory or time than the machine has.
+    """
+    try:
+        costs = extract_parameters(stored)
+    except (InvalidHashError, ValueError):
+        return False
+    return (
+        costs.type is Type.ID
+        and 0 < costs.memory_cost <= MOST_TIMES_OURS * _HASHER.memory_cost
+        and 0 < costs.time_cost <= MOST_TIMES_OURS * _HASHER.time_cost
+        and 0 < costs.parallelism <= MOST_TIMES_OURS * _HASHER.parallelism
+        and costs.hash_len >= 16
+        and costs.salt_len >= 8
+    )
 
 
 def _verified(stored: str, password: str) -> bool:

@@ -37,7 +37,7 @@ def create_account(
 
 def add_account(db: Session, *, username: str, hashed: str, role: str, now: datetime) -> Account:
     """The same with a password that was hashed before: hashing takes too long for a transaction."""
-    if not _USERNAME.fullmatch(username):
+    if not is_username(username):
         raise InvalidInput(
             f"{username!r} cannot be a user name",
             value=username,
@@ -59,6 +59,11 @@ def add_account(db: Session, *, username: str, hashed: str, role: str, now: date
     db.add(account)
     db.flush()
     return account
+
+
+def is_username(name: str) -> bool:
+    """Whether an account may have this name."""
+    return _USERNAME.fullmatch(name) is not None
 
 
 def ensure_admin(db: Session, *, password: str | None, now: datetime) -> str | None:

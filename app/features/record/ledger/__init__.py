@@ -1,6 +1,6 @@
 """Joining: participants and the counterbalancing ledger."""
 
-from app.features.record.ledger.codes import find_or_add_participant
+from app.features.record.ledger.codes import find_or_add_participant, is_code
 from app.features.record.ledger.schemas import Kind
 from app.features.record.ledger.service import (
     close_attempt,
@@ -19,6 +19,7 @@ __all__ = [
     "close_attempt",
     "find_or_add_participant",
     "hold_slot",
+    "is_code",
     "planned_slots",
     "settle_attempt",
     "shortfalls_of",

@@ -24,7 +24,7 @@ def find_or_add_participant(
     if code is None or not code.strip():
         return _add_participant(db, study_id, kind, _next_code(db, study_id, kind), now)
     code = code.strip()
-    if not _CODE.fullmatch(code):
+    if not is_code(code):
         raise InvalidInput(
             f"{code!r} cannot be a participant's code",
             value=code,
@@ -58,6 +58,11 @@ def find_or_add_participant(
             details=[{"session_id": busy.id, "status": busy.status}],
         )
     return known
+
+
+def is_code(code: str) -> bool:
+    """Whether a participant may have this code."""
+    return _CODE.fullmatch(code) is not None
 
 
 def _add_participant(

@@ -1,9 +1,9 @@
 """Running sessions: joining, and applying commands to the event log in one transaction."""
 
 import secrets
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, reduce
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -29,7 +29,7 @@ from app.features.record.sessions.engine import (
     state_to_json,
 )
 from app.features.record.sessions.engine.events import SessionEnded
-from app.features.record.sessions.journal import append_events
+from app.features.record.sessions.journal import append_events, event_of
 from app.features.record.sessions.projection import project
 from app.features.record.sessions.validity import settle_validity
 from app.models import KINDS, SessionEvent, StudySession, StudyVersion, new_id
@@ -45,10 +45,15 @@ def plan_of(db: Session, session: StudySession) -> tuple[Step, ...]:
 
     A session's version and slot never change, so neither does its plan.
     """
-    return _plans.get(db, session.id, lambda: _read(db, session))
+    return _plans.get(db, session.id, lambda: read_plan(db, session))
 
 
-def _read(db: Session, session: StudySession) -> tuple[Step, ...]:
+def read_plan(db: Session, session: StudySession) -> tuple[Step, ...]:
+    """The same, read anew: for rows that have just taken the place of others.
+
+    Raises sqlalchemy.exc.NoResultFound without a slot, ConfigError or PlanError for stored texts
+    that are no study or no order of its conditions.
+    """
     version = db.get_one(StudyVersion, session.study_version_id)
     slot = slot_of(db, session)
     return _compiled(version.canonical_json, tuple(slot.sequence), slot.position % 2 == 1)
@@ -79,6 +84,15 @@ def protocol_of_session(db: Session, session: StudySession) -> StudyProtocol:
 def state_of(session: StudySession) -> SessionState:
     """The folded state, from the snapshot."""
     return state_from_json(session.snapshot)
+
+
+def folded(log: Iterable[SessionEvent], steps: int) -> SessionState:
+    """The state that a whole log leads to, from the first event on; the plan has `steps` steps.
+
+    Raises KeyError for an event of an unknown type, ValueError for a payload that is none of its
+    type, IndexError for one of a step that there is not.
+    """
+    return reduce(evolve, map(event_of, log), initial_state(steps))
 
 
 def join(

@@ -1,21 +1,24 @@
 """What a backup holds is looked at before it goes into place, whatever its checksums say."""
 
+import shutil
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
-from sqlalchemy import text
+from sqlalchemy import column, select, table, text
 
 from app.database import Database, open_database
 from app.errors import InvalidInput
-from app.features.care.backups import RestoredContent
+from app.features.care.backups import Lifetimes, RestoredContent
 from app.features.care.backups.manifest import Manifest, read_manifest
 from app.features.care.backups.manifest import write_manifest as seal
 from app.features.care.backups.reading import digests, opened_copy
 from app.features.care.backups.shapes import MANIFEST_TABLE, shapes_of
-from tests.features.care.backups.lab import make, put_back
+from app.models import StudySession
+from tests.features.care.backups.lab import NOW, make, put_back
 from tests.features.lab import PASSWORD, Lab, ok, running_lab
 from tests.support.filled import contents
 from tests.support.sqlite import fresh_sqlite
@@ -138,3 +141,161 @@ def test_the_backup_before_a_restore_that_failed_is_gone(lab: Lab, tmp_path: Pat
             even_though_active=True,
         )
     assert list((tmp_path / "kept").iterdir()) == []
+
+
+ALTERED_LOG, ALTERED_HASH = "not what its log leads to", "not the hash of its canonical_json"
+ONLY_ALTERED = (ALTERED_LOG, ALTERED_HASH)
+LIES = {
+    "a snapshot that is no state": (
+        "UPDATE sessions SET snapshot = '{}'",
+        r"sessions \w{32} has the snapshot {}, which cannot be read",
+    ),
+    "a snapshot of another moment": (
+        "UPDATE sessions SET snapshot = json_set(snapshot, '$.current', 1)",
+        ALTERED_LOG,
+    ),
+    "a snapshot of fewer steps": (
+        "UPDATE sessions SET snapshot = json_remove(snapshot, '$.steps[0]')",
+        "not of the [0-9]+ steps of its plan",
+    ),
+    "a status that there is not": (
+        "UPDATE sessions SET status = 'flying'",
+        "has the status 'flying', not one of planned, active",
+    ),
+    "a status that the log does not tell": (
+        "UPDATE sessions SET status = 'completed'",
+        "not of completed and version 1",
+    ),
+    "a status that snapshot and log tell differently": (
+        "UPDATE sessions SET status='planned', snapshot=json_set(snapshot,'$.status','planned')",
+        ALTERED_LOG,
+    ),
+    "a language that the study has not": ("UPDATE sessions SET language = 'xx'", "no texts"),
+    "a clock that runs backwards": ("UPDATE sessions SET time_scale = -1", "time_scale = 1.0"),
+    "shortfalls that are none": (
+        "UPDATE sessions SET shortfalls = '[5]'",
+        r"the shortfalls \[5\], which cannot be read",
+    ),
+    "a session that holds no slot": ("DELETE FROM slot_attempts", "study_version_id"),
+    "a study that is none": (
+        "UPDATE study_versions SET canonical_json = '{}'",
+        r"study_versions \w{32} has the canonical_json '{}', which cannot be read",
+    ),
+    "a study whose hash is another's": (
+        "UPDATE study_versions SET content_hash = substr(content_hash, 2) || 'g'",
+        ALTERED_HASH,
+    ),
+    "a version without its wordings": (
+        "UPDATE study_versions SET instruments = '{}'",
+        "names no stored wording",
+    ),
+    "wordings as a list": (
+        "UPDATE study_versions SET instruments = '[]'",
+        r"the instruments \[\], not an object",
+    ),
+    "a version that was never counted to": (
+        "UPDATE study_versions SET number = 9223372036854775807",
+        "number is out of range",
+    ),
+    "a version after a gap": ("UPDATE study_versions SET number = 7", "not numbered from 1 on"),
+    "a key that is a path": ("UPDATE studies SET key = '../../x'", r"the key '../../x', not"),
+    "a wording that is none": (
+        "UPDATE instrument_versions SET canonical_json = '[]'",
+        r"canonical_json '\[\]', which cannot be read",
+    ),
+    "an order of one condition": (
+        """UPDATE ledger_slots SET sequence = '["latency_9"]'""",
+        r"ledger_slots \w{32} has the sequence \['latency_9'\], not each of",
+    ),
+    "an order that is a number": (
+        "UPDATE ledger_slots SET sequence = '5'",
+        "the sequence 5, not a list",
+    ),
+    "an order of lists": ("UPDATE ledger_slots SET sequence = '[[],{}]'", "the sequence"),
+    "blocks that were never made": ("UPDATE ledgers SET blocks = blocks + 1", "ledgers"),
+    "a design of no study": ("UPDATE ledgers SET design_hash = 'x'", "the design of no version"),
+    "an avatar that is none": ("UPDATE avatar_versions SET canonical_json = '{}'", "avatar_versi"),
+    "a NUL in a name": (
+        "UPDATE accounts SET username = 'op' || char(0) || 'x'",
+        "username holds a NUL character",
+    ),
+    "a name that none may have": ("UPDATE accounts SET username = '../x'", "no user name"),
+    "a password's hash that is none": (
+        "UPDATE accounts SET password_hash = 'x'",
+        "no hash of a password",
+    ),
+    "a password's hash of four gigabytes": (
+        "UPDATE accounts SET password_hash = replace(password_hash, 'm=', 'm=99')",
+        "no hash of a password",
+    ),
+    "a login for ever": (
+        "UPDATE login_tokens SET expires_at = '9999-12-31 23:59:59.999999'",
+        "expires_at lies outside of 1970 to 2199",
+    ),
+    "a login for what is unknown": ("UPDATE login_tokens SET purpose = 'all'", "purpose 'all'"),
+    "a participant who is nobody": ("UPDATE participants SET kind = 'gods'", "kind 'gods'"),
+    "a participant with a name": ("UPDATE participants SET code = 'Eva Maier'", "no code of a"),
+}
+
+
+@pytest.fixture(scope="module")
+def backed_up(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Database, Path]]:
+    """An installation with a session that runs, and a backup of it; nothing changes either."""
+    folder = tmp_path_factory.mktemp("lies")
+    with running_lab(fresh_sqlite(folder / "reembody.sqlite"), data_dir=folder) as running:
+        ok(running.operator.post("/api/login", json={"username": "admin", "password": PASSWORD}))
+        running.command(running.join(participant_code="P-014"), "start")
+        make(running.database, folder / "all.reembody")
+        yield running.database, folder / "all.reembody"
+
+
+@pytest.mark.parametrize("lie", LIES)
+def test_content_that_this_program_cannot_have_written_is_refused(
+    backed_up: tuple[Database, Path], tmp_path: Path, lie: str
+) -> None:
+    """Its checksums fit; table, row and value are named, and every row is as it was before.
+
+    What cannot be read is refused also where an altered record is taken.
+    """
+    statement, said = LIES[lie]
+    database, whole = backed_up
+    backup = forged(Path(shutil.copy(whole, tmp_path)), statement)
+    before = contents(database.engine)
+    for even_though_altered in [False] if said in ONLY_ALTERED else [False, True]:
+        with pytest.raises(InvalidInput, match=said) as refused:
+            put_back(
+                database,
+                backup,
+                content=RestoredContent(even_though_altered),
+                replace=True,
+                even_though_active=True,
+            )
+        assert "othing was changed" in str(refused.value)
+        assert contents(database.engine) == before
+    assert not list(tmp_path.glob("kept/*"))
+
+
+def test_what_opens_the_door_lasts_no_longer_than_if_it_were_made_now(
+    lab: Lab, tmp_path: Path
+) -> None:
+    """A login, a pairing code and an invitation for ten years; what ends sooner stays."""
+    with lab.database.reading() as db:
+        session_id = db.scalar(select(StudySession.id))
+    ok(lab.operator.post(f"/api/sessions/{session_id}/pairings", json={"device": "tablet"}))
+    ok(lab.operator.post("/api/invitations", json={"role": "operator"}))
+    make(lab.database, tmp_path / "all.reembody")
+    tables = ("login_tokens", "pairing_codes", "invitations")
+    later = [f"UPDATE {name} SET expires_at = '2036-01-01 00:00:00.000000'" for name in tables]  # noqa: S608 - named above
+    backup = forged(tmp_path / "all.reembody", *later)
+    lifetimes = Lifetimes(NOW, login=timedelta(hours=12), pairing=timedelta(minutes=10))
+    options = {"even_though_active": True, "replace": True}
+    put_back(lab.database, backup, content=RestoredContent(lifetimes=lifetimes), **options)
+    with lab.database.reading() as db:
+        ends: list[set[object]] = [
+            set(db.scalars(select(table(name, column("expires_at"))))) for name in tables
+        ]
+    assert ends == [
+        {"2026-11-21 18:11:08.123456"},
+        {"2026-11-21 06:21:08.123456"},
+        {"2026-12-21 06:11:08.123456"},
+    ]

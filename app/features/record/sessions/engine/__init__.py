@@ -15,15 +15,23 @@ from app.features.record.sessions.engine.events import (
     event_to_json,
 )
 from app.features.record.sessions.engine.evolve import evolve, initial_state
-from app.features.record.sessions.engine.state import SessionState, state_from_json, state_to_json
+from app.features.record.sessions.engine.state import (
+    PhaseStatus,
+    SessionState,
+    SessionStatus,
+    state_from_json,
+    state_to_json,
+)
 
 __all__ = [
     "EVENT_TYPES",
     "Command",
     "ContentRef",
     "Event",
+    "PhaseStatus",
     "Refused",
     "SessionState",
+    "SessionStatus",
     "allowed_commands",
     "decide",
     "event_from_json",
