@@ -91,8 +91,14 @@ def test_the_oracle_sees_a_database_that_does_not_flush(
 ) -> None:
     """The real server with `synchronous` below FULL acknowledges what a power loss takes."""
     command = [sys.executable, "-m", "tests.faults.weakened", level]
-    recording = experiment.record_streaming(tmp_path / "run", 2, 2.5, command)
-    assert experiment.prove_acks(recording).early > 20
+    for duration_s in (2.5, 10.0, 40.0):
+        # A traced server on a busy machine takes a while until it acknowledges anything.
+        folder = tmp_path / f"{duration_s:g} s"
+        recording = experiment.record_streaming(folder, 2, duration_s, command)
+        proof = experiment.prove_acks(recording)
+        if proof.early > 20:
+            break
+    assert proof.early > 20
     crashes = crash(recording, 2 * PLACES, seed=1)
     assert sum(one.verdict.lost for one in crashes) > 0
 
