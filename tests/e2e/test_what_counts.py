@@ -31,6 +31,7 @@ def test_a_session_of_skipped_tasks_does_not_count(
     page.goto(f"{live_server.url}/#/sessions/{session_id}")
     console.sees_step("Session completed")
     notice = page.get_by_role("status").filter(has_text="This session does not count")
+    expect(notice).to_contain_text("No consent on record")
     expect(notice).to_contain_text("Block 1, hand task: skipped")
     expect(notice).to_contain_text("Block 3, foot task: questionnaire karas2020 not answered")
     assert axe(page) == []
@@ -55,7 +56,9 @@ def test_a_session_of_skipped_tasks_does_not_count(
     [name] = [one for one in archive.namelist() if one.endswith("sessions.csv")]
     [row] = csv.DictReader(io.StringIO(archive.read(name).decode()))
     assert (row["status"], row["valid"]) == ("completed", "false")
-    assert row["reasons_not_valid"].startswith("block 1, hand task: skipped; ")
+    assert row["reasons_not_valid"].startswith(
+        "no consent on record; block 1, hand task: skipped; "
+    )
 
 
 def _skipped(api: httpx2.Client) -> str:
