@@ -91,8 +91,10 @@ class Notes:
             try:
                 yield
             finally:
+                # A note that cannot be removed is no reason to fail: the next start removes it.
                 if not os.path.lexists(path):
-                    note.unlink(missing_ok=True)
+                    with suppress(OSError):
+                        note.unlink()
 
     def all(self) -> list[HalfMade]:
         """What is noted, oldest first; a note that was not finished says nothing yet."""

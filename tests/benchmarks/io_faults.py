@@ -7,6 +7,7 @@ started. Needs Linux on x86-64 and a system that lets a process trace its own ch
 
 import errno
 import json
+import os
 import pickle
 import subprocess
 import sys
@@ -18,7 +19,8 @@ from tests.benchmarks.report import CannotMeasure, Figure, Report
 from tests.faults.io_faults import OPERATIONS, source_in
 from tests.faults.tracing.injecting import injecting_machine
 from tests.faults.tracing.running import why_not
-from tests.support.nursery import nursery
+from tests.support.nursery import STUDIES, nursery
+from tests.support.shipped_studies import write_delayed_copies
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PARTS = tuple(OPERATIONS)
@@ -34,6 +36,10 @@ def measure(parts: frozenset[str], runs: int = 0) -> Report:
         raise CannotMeasure(refused or "system calls of this machine cannot be made to fail")
     report = Report("io_faults")
     with tempfile.TemporaryDirectory() as folder:
+        studies = Path(folder) / "studies"
+        write_delayed_copies(studies)
+        # The nursery, which begins with the first server, hands it on.
+        os.environ[STUDIES] = str(studies)
         source = Path(folder) / "source"
         source.write_bytes(pickle.dumps(source_in(Path(folder) / "live")))
         measured = {part: _measured(part, source, runs) for part in PARTS if part in parts}

@@ -138,6 +138,27 @@ def test_a_note_that_was_cut_off_goes_at_a_start(settings: Settings) -> None:
     assert list(folder.iterdir()) == []
 
 
+def test_a_note_that_cannot_be_removed_fails_nothing(
+    settings: Settings, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was made is whole and stays; the note goes at the next start."""
+    to = tmp_path / "out" / "made.reembody"
+    notes = Notes.of(settings)
+
+    def refuse(path: Path, **_: object) -> None:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "unlink", refuse)
+        with made_beside("backup", to, now=NOW, notes=notes) as folder:
+            (folder / "new").write_text("whole")
+            (folder / "new").rename(to)
+    assert to.read_text() == "whole"
+    assert len(list(notes.folder.iterdir())) == 1
+    assert remove_left(settings, starting=True) == []
+    assert list(notes.folder.iterdir()) == []
+
+
 def test_notes_are_for_their_owner(settings: Settings, tmp_path: Path) -> None:
     """They name studies and places; so are the folders they speak of."""
     to = tmp_path / "out" / "export"

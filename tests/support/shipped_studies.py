@@ -16,9 +16,14 @@ def delayed_copies() -> Path:
     folder = run_folder() / "shipped-studies"
     with once("shipped-studies") as mark:
         if mark:
-            folder.mkdir()
-            for file in CONFIGS.glob("*.yaml"):
-                text = as_delayed_copy(file.read_text(encoding="utf-8"))
-                (folder / file.name).write_text(text, encoding="utf-8")
+            write_delayed_copies(folder)
             mark.touch()
     return folder
+
+
+def write_delayed_copies(folder: Path) -> None:
+    """Make the folder with them."""
+    folder.mkdir()
+    for file in CONFIGS.glob("*.yaml"):
+        text = as_delayed_copy(file.read_text(encoding="utf-8"))
+        (folder / file.name).write_text(text, encoding="utf-8")

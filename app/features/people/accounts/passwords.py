@@ -19,7 +19,14 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TypeVar
 
-from argon2 import PasswordHasher, Type, extract_parameters
+from argon2 import (
+    DEFAULT_MEMORY_COST,
+    DEFAULT_PARALLELISM,
+    DEFAULT_TIME_COST,
+    PasswordHasher,
+    Type,
+    extract_parameters,
+)
 from argon2.exceptions import InvalidHashError, VerificationError
 from zxcvbn import zxcvbn
 
@@ -108,9 +115,9 @@ def is_hash(stored: str) -> bool:
         return False
     return (
         costs.type is Type.ID
-        and 0 < costs.memory_cost <= MOST_TIMES_OURS * _HASHER.memory_cost
-        and 0 < costs.time_cost <= MOST_TIMES_OURS * _HASHER.time_cost
-        and 0 < costs.parallelism <= MOST_TIMES_OURS * _HASHER.parallelism
+        and 0 < costs.memory_cost <= MOST_TIMES_OURS * DEFAULT_MEMORY_COST
+        and 0 < costs.time_cost <= MOST_TIMES_OURS * DEFAULT_TIME_COST
+        and 0 < costs.parallelism <= MOST_TIMES_OURS * DEFAULT_PARALLELISM
         and costs.hash_len >= 16
         and costs.salt_len >= 8
     )

@@ -22,12 +22,14 @@ from app.rows import insert_rows
 
 log = logging.getLogger(__name__)
 TURN_S = 0.2
+ATTEMPTS = 3
+"""An erasure between reading and writing changes the batches; reading anew then is enough."""
 FOLDER = "telemetry-folder"
 CHUNKS = cast("Table", TelemetryChunk.__table__)
 
 
 class BatchesChanged(RuntimeError):
-    """What was to be folded is not what is stored any more; the next turn looks anew."""
+    """What was to be folded is not what is stored any more."""
 
 
 @dataclass
@@ -80,14 +82,25 @@ class Folder(Part):
                 self._stop.wait(1.0)
 
     def fold_once(self) -> int:
-        """Fold the streams that are due, up to a turn's worth; how many batches that were."""
+        """Fold the streams that are due, up to a turn's worth; how many batches that were.
+
+        Raises BatchesChanged where they change at every attempt.
+        """
         now = self.context.clock.utc_now()
-        # Compress before the writing turn: telemetry waits for it.
-        chunks = self._due_chunks(now)
-        if chunks:
-            with self.context.database.writing() as db:
-                _replace(db, chunks)
-        return sum(chunk["batches"] for chunk in chunks)
+        for left in reversed(range(ATTEMPTS)):
+            # Compress before the writing turn: telemetry waits for it.
+            chunks = self._due_chunks(now)
+            if not chunks:
+                break
+            try:
+                with self.context.database.writing() as db:
+                    _replace(db, chunks)
+            except BatchesChanged:
+                if not left:
+                    raise
+            else:
+                return sum(chunk["batches"] for chunk in chunks)
+        return 0
 
     def _due_chunks(self, now: datetime) -> Chunks:
         with self.context.database.reading() as db:
@@ -109,7 +122,7 @@ _DELETE = delete(BATCHES).where(
 def _replace(db: Session, chunks: Chunks) -> None:
     """Store chunks and delete the batches they hold; nothing, if these are no longer there.
 
-    A backup may have been restored since they were read.
+    A session may have been erased or a backup restored since they were read.
     """
     columns = CHUNKS.c.keys()
     insert_rows(db, CHUNKS, [{name: chunk[name] for name in columns} for chunk in chunks])

@@ -5,12 +5,15 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+from argon2 import PasswordHasher
 
 from app.errors import Busy, InvalidInput
+from app.features.people.accounts import passwords
 from app.features.people.accounts.passwords import (
     MAX_LENGTH,
     Desk,
     hash_password,
+    is_hash,
     is_password,
     require_good,
 )
@@ -110,3 +113,14 @@ def test_what_fails_leaves_its_place() -> None:
     for _ in range(3):
         with pytest.raises(ValueError, match="as it may"):
             desk.do(fail)
+
+
+def test_what_is_a_hash_does_not_hang_on_what_hashes_cost_here(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A backup of a lab is restored where passwords are made cheaply, too; a dear one nowhere."""
+    theirs = PasswordHasher().hash("correct horse battery")
+    monkeypatch.setattr(passwords, "_HASHER", PasswordHasher(1, 64, 1))
+    assert is_hash(theirs)
+    assert is_hash(hash_password("correct horse battery"))
+    assert not is_hash(theirs.replace("m=", "m=99"))

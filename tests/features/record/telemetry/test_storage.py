@@ -2,7 +2,7 @@
 
 import threading
 from dataclasses import replace
-from datetime import timedelta
+from datetime import datetime, timedelta
 
 import numpy as np
 import pytest
@@ -10,10 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.typing import NDArray
-from sqlalchemy import func, select
+from sqlalchemy import delete, func, select
 
 from app.clock import Clock
 from app.database import Database
+from app.features.record.telemetry.due import Chunks, due_chunks
+from app.features.record.telemetry.encoder import Encoder
 from app.features.record.telemetry.encoding import ENCODING, Frames, decode_frames, encode_frames
 from app.features.record.telemetry.fold import Folder
 from app.features.record.telemetry.frames import concatenate, iter_frames, phase_frames
@@ -189,6 +191,35 @@ def test_a_chunk_waits_until_it_is_whole(lab: Lab, session_id: str) -> None:
     later = Folder(replace(lab.context, clock=Clock(utc_now=lambda: now + 2 * LATER)))
     assert later.fold_once() == 7
     assert read(lab.database, session_id).seq.tolist() == list(range(160))
+
+
+class ErasingEncoder(Encoder):
+    """Makes chunks here; after the first time a session is erased before they are written."""
+
+    def __init__(self, lab: Lab, erased_id: str) -> None:
+        super().__init__("")
+        self.lab, self.erased_id = lab, erased_id
+
+    def due_chunks(self, now: datetime) -> Chunks:
+        """What is due."""
+        with self.lab.database.reading() as db:
+            chunks = due_chunks(db, now)
+        with self.lab.database.writing() as db:
+            db.execute(delete(TelemetryBatch).where(TelemetryBatch.session_id == self.erased_id))
+        return chunks
+
+
+def test_a_session_that_is_erased_meanwhile_is_not_folded(lab: Lab, session_id: str) -> None:
+    """No chunk of it comes back; the others are folded in the same turn, and nothing has failed."""
+    fold(lab)
+    erased_id = str(lab.join()["id"])
+    for one in (session_id, erased_id):
+        store(lab, one, 0, numbered(0, 10))
+    clock = Clock(utc_now=lambda: lab.context.clock.utc_now() + LATER)
+    folder = Folder(replace(lab.context, clock=clock), ErasingEncoder(lab, erased_id))
+    assert folder.fold_once() == 1
+    assert read(lab.database, session_id).seq.tolist() == list(range(10))
+    assert read(lab.database, erased_id).seq.tolist() == []
 
 
 def test_a_chunk_is_found_by_its_sound_times(lab: Lab, session_id: str) -> None:
