@@ -1,15 +1,19 @@
 """Random damage to the files of a real data folder, and how a start with it ends.
 
 A folder is one that a server left that was killed in the middle of a visit: its log holds
-transactions that the database does not. Each case works on a copy, in this process.
+transactions that the database does not. Each case works on a copy, within the
+process that tries it.
 """
 
+import multiprocessing
 import shutil
 import sys
 import traceback
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from io import StringIO
 from pathlib import Path
 from unittest.mock import patch
@@ -161,12 +165,18 @@ def _no_output() -> Iterator[None]:
         yield
 
 
-def many(folder: Folder, elsewhere: Path, count: int, seed: int) -> list[Case]:
+def many(
+    folder: Folder, elsewhere: Path, count: int, seed: int, *, processes: int = 1
+) -> list[Case]:
     """Try so many kinds of damage, each drawn by a seed of its own."""
-    return [
-        tried(folder, elsewhere / str(number), np.random.default_rng([seed, number]))
-        for number in range(count)
-    ]
+    if processes == 1:
+        return [_numbered(folder, elsewhere, seed, number) for number in range(count)]
+    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
+        return list(pool.map(partial(_numbered, folder, elsewhere, seed), range(count)))
+
+
+def _numbered(folder: Folder, elsewhere: Path, seed: int, number: int) -> Case:
+    return tried(folder, elsewhere / str(number), np.random.default_rng([seed, number]))
 
 
 def left_by_a_killed_server(folder: Path) -> Folder:

@@ -5,6 +5,7 @@ database, its log and the log's index. Each kind of damage by itself is tested i
 tests/features/care/opening.
 """
 
+import os
 from collections import Counter
 from pathlib import Path
 
@@ -23,9 +24,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Folder:
     return left_by_a_killed_server(tmp_path_factory.mktemp("killed"))
 
 
-def try_many(folder: Folder, elsewhere: Path, count: int) -> None:
+def try_many(folder: Folder, elsewhere: Path, count: int, processes: int = 1) -> None:
     """Damage that many copies; each start serves, or puts the database away for a restore."""
-    cases = many(folder, elsewhere, count, SEED)
+    cases = many(folder, elsewhere, count, SEED, processes=processes)
     ends = Counter(case.end for case in cases)
     note(6, f"{count} random damages", "served", ends["served"])
     note(6, f"{count} random damages", "quarantined, restored", ends["quarantined"])
@@ -44,4 +45,4 @@ def test_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path)
 @pytest.mark.timeout(14_400)
 def test_much_damage_ends_in_serving_or_in_quarantine(folder: Folder, tmp_path: Path) -> None:
     """The same, a thousand times."""
-    try_many(folder, tmp_path, LONG)
+    try_many(folder, tmp_path, LONG, os.cpu_count() or 1)

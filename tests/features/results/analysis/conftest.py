@@ -22,20 +22,27 @@ def database(database_url: str) -> Iterator[Database]:
 
 
 @pytest.fixture(scope="module", params=["sqlite", "postgresql"])
-def three_kinds(
+def lasting_database(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[Database]:
-    """A session of a person, a simulated one and a test, for tests that only read."""
+    """The same for all tests of a module, of which one fixture fills it and the rest only read."""
     with ExitStack() as stack:
         if request.param == "sqlite":
-            url = fresh_sqlite(tmp_path_factory.mktemp("kinds") / "reembody.sqlite")
+            url = fresh_sqlite(tmp_path_factory.mktemp("lasting") / "reembody.sqlite")
         else:
             url = stack.enter_context(fresh_postgres())
         database = open_database(url)
         stack.callback(database.close)
         with database.writing() as db:
             build_study(db)
-            build_session(db, SessionSpec("P-0001"))
-            build_session(db, SessionSpec("SIM-0001", kind="simulated"))
-            build_session(db, SessionSpec("TEST-0001", kind="test"))
         yield database
+
+
+@pytest.fixture(scope="module")
+def three_kinds(lasting_database: Database) -> Database:
+    """A session of a person, a simulated one and a test."""
+    with lasting_database.writing() as db:
+        build_session(db, SessionSpec("P-0001"))
+        build_session(db, SessionSpec("SIM-0001", kind="simulated"))
+        build_session(db, SessionSpec("TEST-0001", kind="test"))
+    return lasting_database

@@ -2,7 +2,6 @@
 
 import io
 import json
-from contextlib import ExitStack
 from datetime import timedelta
 from typing import Any
 
@@ -10,7 +9,7 @@ import pandas as pd
 import plotly.graph_objects as go
 import pytest
 
-from app.database import Database, open_database
+from app.database import Database
 from app.errors import NotFound
 from app.features.design.studies import add_version, study_by_key, versions_of
 from app.features.results.analysis.dashboard import build_dashboard, drawings_of
@@ -22,9 +21,7 @@ from app.features.results.analysis.schemas import (
     FigureFilter,
 )
 from app.features.results.analysis.sheets import sheet_of
-from tests.features.builders import NOW, STUDY, SessionSpec, build_session, build_study
-from tests.support.postgres import fresh_postgres
-from tests.support.sqlite import fresh_sqlite
+from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 
 KEYS = [
     "embodiment_ownership",
@@ -76,22 +73,11 @@ def _axes(figure: dict[str, Any]) -> list[dict[str, Any]]:
     return [value for name, value in layout.items() if name[:5] in ("xaxis", "yaxis")]
 
 
-@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
-def two_people(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> DashboardFigures:
+@pytest.fixture(scope="module")
+def two_people(lasting_database: Database) -> DashboardFigures:
     """What is drawn of two whole sessions, for tests that only look at it."""
-    with ExitStack() as stack:
-        if request.param == "sqlite":
-            url = fresh_sqlite(tmp_path_factory.mktemp("dashboard") / "reembody.sqlite")
-        else:
-            url = stack.enter_context(fresh_postgres())
-        database = open_database(url)
-        stack.callback(database.close)
-        with database.writing() as db:
-            build_study(db)
-        _build(database, SessionSpec("P-0001"), SessionSpec("P-0002"))
-        return _dashboard(database)
+    _build(lasting_database, SessionSpec("P-0001"), SessionSpec("P-0002"))
+    return _dashboard(lasting_database)
 
 
 @pytest.mark.one_engine
