@@ -1,9 +1,13 @@
-"""Problems of a study or instrument file as every interface tells them."""
+"""What is wrong with a study or instrument file, and with one that was stored and then damaged."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 from pydantic import BaseModel
 
-from app.errors import InvalidConfig
-from app.protocol import ConfigError
+from app.errors import InvalidConfig, NotDurable
+from app.platform.trouble import DAMAGED
+from app.protocol import ConfigError, sha256_of
 
 
 class ProblemView(BaseModel):
@@ -32,3 +36,17 @@ def invalid_config(what: str, error: ConfigError) -> InvalidConfig:
         remedy="Mend the lines named below; nothing was stored.",
         details=problems,
     )
+
+
+@contextmanager
+def unpacking(stored: str, content_hash: str) -> Iterator[None]:
+    """Raise NotDurable where a stored text is unpacked that is not the one that was stored.
+
+    Whatever unpacking it raises passes where the text still has its hash.
+    """
+    try:
+        yield
+    except Exception as error:
+        if sha256_of(stored) == content_hash:
+            raise
+        raise NotDurable(f"{DAMAGED.message}: nothing was stored", remedy=DAMAGED.remedy) from error

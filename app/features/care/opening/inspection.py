@@ -8,6 +8,7 @@ Use it only in a process that has not opened the file with SQLite: on POSIX, clo
 file drops the locks that SQLite's own handles hold.
 """
 
+import errno
 import os
 import re
 import sqlite3
@@ -36,6 +37,7 @@ _BLOCK = 4 * 1024 * 1024
 _SHARED_FIRST, _SHARED_SIZE = 0x40000002, 510
 """The bytes that every process with an open SQLite database holds a lock on in WAL mode."""
 _REVISION = re.compile(r"\d{4}")
+_ERROR_CODE = re.compile(r"error code=(\d+)")
 
 
 def log_of(file: Path) -> Path:
@@ -184,9 +186,17 @@ def _checked(file: Path, *, pages: bool, rows: bool) -> str | None:
             return None
         (first,) = connection.execute("PRAGMA quick_check(1)").fetchone()
         if first != "ok":
+            _require_read(file, str(first))
             return _plain(str(first))
         connection.text_factory = str
         return _wrong_content(connection) if rows else None
+
+
+def _require_read(file: Path, finding: str) -> None:
+    """Raise OSError for a finding that shows a disk that could not be read, and no damage."""
+    code = _ERROR_CODE.search(finding)
+    if code is not None and int(code[1]) & 0xFF == sqlite3.SQLITE_IOERR:
+        raise OSError(errno.EIO, os.strerror(errno.EIO), str(file))
 
 
 def _as_readable(text: bytes) -> str:

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import NotFound
 from app.models import InstrumentVersion, Study, StudyVersion
-from app.platform.config_problems import invalid_config
+from app.platform.config_problems import invalid_config, unpacking
 from app.protocol import ConfigError, LoadedInstrument, load_instrument, parse_instrument_json
 from app.science.instruments import Instrument
 
@@ -19,8 +19,9 @@ def instrument_of(version: InstrumentVersion) -> Instrument:
 
 
 @lru_cache(maxsize=64)
-def _parse_instrument(_content_hash: str, canonical_json: str) -> Instrument:
-    return parse_instrument_json(canonical_json)
+def _parse_instrument(content_hash: str, canonical_json: str) -> Instrument:
+    with unpacking(canonical_json, content_hash):
+        return parse_instrument_json(canonical_json)
 
 
 def newest_instruments(db: Session) -> dict[str, InstrumentVersion]:

@@ -12,7 +12,7 @@ from app.errors import Conflict, NotFound, NotNow
 from app.features.design.instruments import newest_instruments, parsed_instruments, save_instrument
 from app.features.movement.avatar import newest_numbers
 from app.models import InstrumentVersion, Study, StudySession, StudyVersion
-from app.platform.config_problems import invalid_config
+from app.platform.config_problems import invalid_config, unpacking
 from app.protocol import ConfigError, LoadedStudy, StudyProtocol, load_study, parse_study_json
 from app.resources import study_configs_dir
 
@@ -39,8 +39,9 @@ def protocol_of(version: StudyVersion) -> StudyProtocol:
 
 
 @lru_cache(maxsize=64)
-def _parse_study(_content_hash: str, canonical_json: str) -> StudyProtocol:
-    return parse_study_json(canonical_json)
+def _parse_study(content_hash: str, canonical_json: str) -> StudyProtocol:
+    with unpacking(canonical_json, content_hash):
+        return parse_study_json(canonical_json)
 
 
 def instrument_for(db: Session, version: StudyVersion, key: str) -> InstrumentVersion:

@@ -11,6 +11,7 @@ from sqlalchemy.orm import Session
 from app.errors import NotFound
 from app.features.design.instruments import instrument_of
 from app.models import InstrumentVersion, StudyVersion
+from app.platform.config_problems import unpacking
 from app.platform.immutable_cache import Unchanging
 from app.protocol import StudyProtocol, parse_study_json
 from app.science.instruments import Instrument
@@ -51,7 +52,9 @@ def used_instrument(db: Session, version_id: str, key: str) -> UsedInstrument:
 
 def _read_content(db: Session, version_id: str) -> VersionContent:
     version = db.get_one(StudyVersion, version_id)
-    return VersionContent(parse_study_json(version.canonical_json), dict(version.instruments))
+    with unpacking(version.canonical_json, version.content_hash):
+        protocol = parse_study_json(version.canonical_json)
+    return VersionContent(protocol, dict(version.instruments))
 
 
 def _read_used(db: Session, version_id: str, key: str) -> UsedInstrument:

@@ -17,6 +17,7 @@ from app.features.movement.avatar.schemas import NewAvatar, NewAvatarVersion, Or
 from app.features.movement.humanoids import is_known
 from app.features.people.audit import record
 from app.models import Avatar, AvatarVersion
+from app.platform.config_problems import unpacking
 from app.protocol.avatar import (
     AvatarFile,
     LoadedAvatar,
@@ -163,8 +164,9 @@ def typed(version: AvatarVersion) -> Configuration:
 
 
 @lru_cache(maxsize=64)
-def _parsed(_content_hash: str, canonical_json: str) -> Configuration:
-    return parse_avatar_json(canonical_json)
+def _parsed(content_hash: str, canonical_json: str) -> Configuration:
+    with unpacking(canonical_json, content_hash):
+        return parse_avatar_json(canonical_json)
 
 
 def checked(db: Session, file: AvatarFile) -> LoadedAvatar:

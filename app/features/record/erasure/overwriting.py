@@ -48,8 +48,14 @@ def is_overwritten(settings: Settings) -> bool:
 
 
 def forget_erasure(settings: Settings) -> None:
-    """Nothing was erased after all."""
-    _marker(settings).unlink(missing_ok=True)
+    """Nothing is to be overwritten, or nothing any more.
+
+    A mark that cannot be removed is no reason to fail: the next start overwrites once more.
+    """
+    try:
+        _marker(settings).unlink(missing_ok=True)
+    except OSError as error:
+        log.warning("the mark of an erasure stays, and the next start overwrites again: %s", error)
 
 
 def overwrite(database: Database, settings: Settings, *, starting: bool = False) -> bool:
@@ -66,7 +72,7 @@ def overwrite(database: Database, settings: Settings, *, starting: bool = False)
         words = getattr(error, "orig", error)
         log.warning("erased rows are still to be overwritten: %s", words)
         return False
-    return done
+    return done and is_overwritten(settings)
 
 
 def overwrite_what_is_left(database: Database, settings: Settings) -> bool:

@@ -33,6 +33,7 @@ from app.features.record.sessions.journal import append_events, event_of
 from app.features.record.sessions.projection import project
 from app.features.record.sessions.validity import settle_validity
 from app.models import KINDS, SessionEvent, StudySession, StudyVersion, new_id
+from app.platform.config_problems import unpacking
 from app.platform.context import AppContext
 from app.platform.immutable_cache import Unchanging
 from app.protocol import Step, StudyProtocol, compile_plan, parse_study_json
@@ -56,12 +57,20 @@ def read_plan(db: Session, session: StudySession) -> tuple[Step, ...]:
     """
     version = db.get_one(StudyVersion, session.study_version_id)
     slot = slot_of(db, session)
-    return _compiled(version.canonical_json, tuple(slot.sequence), slot.position % 2 == 1)
+    texts = version.content_hash, version.canonical_json
+    return _compiled(*texts, tuple(slot.sequence), slot.position % 2 == 1)
 
 
 @lru_cache(maxsize=256)
-def _compiled(canonical_json: str, sequence: tuple[str, ...], flip: bool) -> tuple[Step, ...]:  # noqa: FBT001 - a cache key
-    return compile_plan(parse_study_json(canonical_json), sequence, block_limb_flip=flip)
+def _compiled(
+    content_hash: str,
+    canonical_json: str,
+    sequence: tuple[str, ...],
+    flip: bool,  # noqa: FBT001 - a cache key
+) -> tuple[Step, ...]:
+    with unpacking(canonical_json, content_hash):
+        protocol = parse_study_json(canonical_json)
+    return compile_plan(protocol, sequence, block_limb_flip=flip)
 
 
 MAX_TIME_SCALE = 100.0

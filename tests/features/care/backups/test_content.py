@@ -225,7 +225,7 @@ LIES = {
         "no hash of a password",
     ),
     "a password's hash of four gigabytes": (
-        "UPDATE accounts SET password_hash = replace(password_hash, 'm=', 'm=99')",
+        "UPDATE accounts SET password_hash = replace(password_hash, 'm=', 'm=42949')",
         "no hash of a password",
     ),
     "a login for ever": (

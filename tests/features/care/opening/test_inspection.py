@@ -174,6 +174,15 @@ def test_another_programs_database_is_known_by_its_tables(file: Path, tmp_path: 
     assert foreign_tables(new) == []
 
 
+def test_a_page_that_the_disk_does_not_give_is_no_damage(file: Path) -> None:
+    """SQLite reports both as a finding; only what was read and is wrong is damage."""
+    words = "*** in database main ***\nPage 90: unable to get the page. error code="
+    with pytest.raises(OSError, match="Input/output error"):
+        inspection._require_read(file, f"{words}8458")
+    inspection._require_read(file, f"{words}11")
+    inspection._require_read(file, "row 7 missing from index ix_events")
+
+
 def test_whoever_has_it_open_is_noticed(file: Path) -> None:
     """A server that runs, even while it does nothing."""
     assert not is_open_elsewhere(file)

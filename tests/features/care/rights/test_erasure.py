@@ -3,12 +3,14 @@
 import hashlib
 import json
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.people.audit import verify_trail
+from app.features.record.erasure import expect_erasure, forget_erasure, is_overwritten
 from app.features.record.sessions import canonical, events_of, verify_chain
 from app.models import (
     AuditEntry,
@@ -20,6 +22,7 @@ from app.models import (
     StudySession,
     Submission,
 )
+from app.settings import Settings
 from tests.features.care.rights.visit import (
     CANARY,
     SHEET,
@@ -213,3 +216,21 @@ def test_a_completed_session_takes_nothing_more_either(site: Site) -> None:
         assert headset.hear("error")["code"] in ("not_signed_in", "withdrawn")
     assert site.view(session_id)["status"] == "completed"
     assert in_tables(visit, site.database.engine) == {}
+
+
+def test_a_mark_that_cannot_be_removed_fails_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was done stays done; the bytes are overwritten once more at the next start."""
+    settings = Settings(data_dir=tmp_path)
+    expect_erasure(settings)
+
+    def refuse(path: Path, **_: object) -> None:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "unlink", refuse)
+        forget_erasure(settings)
+    assert not is_overwritten(settings)
+    forget_erasure(settings)
+    assert is_overwritten(settings)
