@@ -9,7 +9,6 @@ import pytest
 
 from tests.support import checking
 from tests.support.checking import Chosen, NoSuchPath, mirror, plan, without_inner
-from tests.support.stage_runner import CORES
 from tests.support.unit_tests import STARTERS
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -94,7 +93,7 @@ def test_a_path_outside_is_refused() -> None:
 def test_without_paths_everything_is_checked() -> None:
     """Sources, pages and unit tests; these come last, since they take both cores."""
     planned = plan(Chosen.of([]))
-    assert [stage.name for stage in planned if stage.cores == CORES] == ["unit tests"]
+    assert [stage.name for stage in planned if stage.alone] == ["unit tests"]
     assert planned[-1].name == "unit tests"
     assert {"mypy", "imports", "ruff check", "frontend tests"} <= {one.name for one in planned}
 
@@ -104,7 +103,7 @@ def test_a_feature_needs_no_look_at_the_pages() -> None:
     planned = {stage.name: stage for stage in plan(Chosen.of(["app/api"]))}
     assert set(planned) == {"ruff check", "ruff format", "mypy", "imports", "unit tests"}
     assert "tests/api" in planned["unit tests"].command
-    assert planned["unit tests"].cores == 1
+    assert not planned["unit tests"].alone
 
 
 def test_pages_need_no_look_at_python() -> None:

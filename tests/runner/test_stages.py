@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.support import stages
-from tests.support.stage_runner import CORES, REPOSITORY, Outcome, Stage, as_json, run_stages
+from tests.support.stage_runner import REPOSITORY, Outcome, Stage, as_json, run_stages
 from tests.support.tally import SLOWEST, Tally
 from tests.support.warden import Ended
 
@@ -25,15 +25,15 @@ def test_that_is_missing_something(): pytest.skip("it is not there")
 """
 
 
-def python(name: str, code: str, cores: int = 1) -> Stage:
+def python(name: str, code: str, *, alone: bool = False, aloud: bool = False) -> Stage:
     """A stage that runs some Python."""
-    return Stage(name, [sys.executable, "-S", "-c", code], cores=cores)
+    return Stage(name, [sys.executable, "-S", "-c", code], alone=alone, aloud=aloud)
 
 
 def test_a_failure_keeps_nothing_from_running(capfd: pytest.CaptureFixture[str]) -> None:
     """All run, in the order of the plan, and what failed says what it has to say."""
     outcomes = run_stages(
-        [python("one", "raise SystemExit('it is wrong')"), python("two", "", cores=CORES)]
+        [python("one", "raise SystemExit('it is wrong')"), python("two", "", alone=True)]
     )
     assert [(one.stage.name, one.passed) for one in outcomes] == [("one", False), ("two", True)]
     assert "it is wrong" in capfd.readouterr().out
@@ -49,6 +49,17 @@ while not pathlib.Path({other!r}).exists(): time.sleep(0.01)
     files = [str(tmp_path / name) for name in ("a", "b")]
     pair = [python(own, meet.format(mine=own, other=other)) for own, other in (files, files[::-1])]
     assert all(outcome.passed for outcome in run_stages(pair))
+
+
+def test_one_that_is_alone_waits_for_its_neighbours_and_prints_as_it_goes(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Nothing else is being run, and what it says is under its own heading."""
+    done = tmp_path / "done"
+    late = f"import pathlib, time; time.sleep(0.2); pathlib.Path({str(done)!r}).touch()"
+    look = f"import pathlib; print('it was', pathlib.Path({str(done)!r}).exists())"
+    run_stages([python("one", late), python("two", look, alone=True, aloud=True)])
+    assert "it was True" in capfd.readouterr().out.partition("=== two")[2]
 
 
 def test_in_short_what_passes_gets_one_line(capfd: pytest.CaptureFixture[str]) -> None:

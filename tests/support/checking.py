@@ -97,7 +97,7 @@ def plan(chosen: Chosen) -> list[Stage]:
     if chosen.pages or everything:
         planned += _page_stages(chosen.pages)
     if chosen.python or everything:
-        # Last: where it takes both cores, nothing else may be left to run.
+        # Last: where it takes both cores, nothing else is left to run.
         planned.append(_units(without_inner(map(mirror, chosen.python or [Path()]))))
     return planned
 
@@ -133,10 +133,12 @@ def _units(tests: Sequence[Path]) -> Stage:
     """Every process costs the time to find and import tests, so that few tests are one's work."""
     options = ["-p", "tests.support.unit_tests", "-rfE"]
     if TESTS not in tests:
-        return pytest_stage("unit tests", *options, *map(str, tests), cores=1)
+        return pytest_stage("unit tests", *options, *map(str, tests))
     spread = ["-n", str(CORES), "--dist", "worksteal"]
     ignored = [f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS)]
-    return pytest_stage("unit tests", *options, *spread, *ignored, str(TESTS))
+    return pytest_stage(
+        "unit tests", *options, *spread, *ignored, str(TESTS), alone=True, aloud=True
+    )
 
 
 def main(arguments: list[str]) -> int:

@@ -1,8 +1,8 @@
 """Stages of a check of the project: how they share two cores, and what is told of them.
 
 A stage that fails does not keep the others from running: one call shows everything that is wrong.
-Neighbours that need one core run side by side and print what they have to say when they end; one
-that needs both runs alone, prints as it goes, and is not disturbed in what it times.
+Two run at a time, whichever are next, and print what they have to say when they end; so neither
+core waits for the slowest of the other's. One that must be alone is, and prints as it goes.
 """
 
 # ruff: noqa: T201  # what it prints is what it is for
@@ -24,7 +24,7 @@ from tests.support.tally import TALLY_VARIABLE, Tally
 from tests.support.warden import Ended, run_warded
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-# As many as a small machine has: with three, tests that keep real time took twice as long.
+# As many as a small machine has.
 CORES = 2
 FAILED_TO_START = Ended(1, 0.0, 0.0, 0.0)
 ONE_AT_A_TIME = Lock()
@@ -32,14 +32,18 @@ ONE_AT_A_TIME = Lock()
 
 @dataclass(frozen=True)
 class Stage:
-    """A command, where it runs, and what must be there before it does."""
+    """A command, where it runs, and what must be there before it does.
+
+    `alone`: nothing else may run meanwhile. `aloud`: it prints as it goes.
+    """
 
     name: str
     command: list[str]
     folder: Path = REPOSITORY
     environment: dict[str, str] = field(default_factory=dict)
     prepare: Callable[[], None] | None = None
-    cores: int = 1
+    alone: bool = False
+    aloud: bool = False
 
 
 @dataclass(frozen=True)
@@ -62,15 +66,17 @@ def inherited() -> dict[str, str]:
 
 
 def run_stages(planned: Sequence[Stage], *, brief: bool = False) -> list[Outcome]:
-    """Run every stage in order, neighbours that need one core side by side.
+    """Run every stage in order, two at a time where they may be.
 
     If `brief`, those that find nothing wrong get one line.
     """
     outcomes: list[Outcome] = []
-    for alone, neighbours in groupby(planned, lambda stage: stage.cores == CORES):
+    for alone, neighbours in groupby(planned, lambda stage: stage.alone):
         group = list(neighbours)
         outcomes += (
-            [_run_aloud(stage) for stage in group] if alone else _side_by_side(group, brief=brief)
+            [_run_beside(stage, brief=brief) for stage in group]
+            if alone
+            else _side_by_side(group, brief=brief)
         )
     return outcomes
 
@@ -78,10 +84,14 @@ def run_stages(planned: Sequence[Stage], *, brief: bool = False) -> list[Outcome
 def _side_by_side(planned: list[Stage], *, brief: bool) -> list[Outcome]:
     with ThreadPoolExecutor(CORES) as threads:
         try:
-            return list(threads.map(partial(_run_silently, brief=brief), planned))
+            return list(threads.map(partial(_run_beside, brief=brief), planned))
         except BaseException:
             threads.shutdown(cancel_futures=True)
             raise
+
+
+def _run_beside(stage: Stage, *, brief: bool) -> Outcome:
+    return _run_aloud(stage) if stage.aloud else _run_silently(stage, brief=brief)
 
 
 def _run_aloud(stage: Stage) -> Outcome:

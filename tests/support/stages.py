@@ -45,15 +45,15 @@ included; "skips" are {"name", "reason"}.
 """
 
 
-def python_stage(name: str, *arguments: str, cores: int = 1) -> Stage:
+def python_stage(name: str, *arguments: str, alone: bool = False, aloud: bool = False) -> Stage:
     """A stage that is a Python module or program."""
-    return Stage(name, [sys.executable, *arguments], cores=cores)
+    return Stage(name, [sys.executable, *arguments], alone=alone, aloud=aloud)
 
 
-def pytest_stage(name: str, *arguments: str, cores: int = CORES) -> Stage:
+def pytest_stage(name: str, *arguments: str, alone: bool = False, aloud: bool = False) -> Stage:
     """A stage that is a pytest run whose counts go into the total."""
     plugin = ["-m", "pytest", "-p", "tests.support.tally", "-q"]
-    return python_stage(name, *plugin, *arguments, cores=cores)
+    return python_stage(name, *plugin, *arguments, alone=alone, aloud=aloud)
 
 
 def node_stage(name: str, *command: str) -> Stage:
@@ -95,14 +95,15 @@ def frontend_stages() -> list[Stage]:
 def stages(*, long: bool) -> list[Stage]:
     """Everything, cheap checks first."""
     also_long = ["--long"] if long else []
-    spread = ["-n", str(CORES), "--dist"]
+    spread = ["-n", str(CORES), "--dist", "worksteal"]
     ignored = [f"--ignore={folder}" for folder in (ARCHITECTURE_TESTS, BROWSER_TESTS)]
     return [
         *static_stages(),
         *frontend_stages(),
-        pytest_stage("tests", *spread, "worksteal", "-m", "not browser", *ignored, *also_long),
-        pytest_stage("browser tests", *spread, "loadfile", BROWSER_TESTS, *also_long),
-        pytest_stage("architecture", ARCHITECTURE_TESTS, *also_long),
+        # Together: tests wait for servers, pages and clocks, and what waits needs no core.
+        pytest_stage("tests", *spread, "-m", "not browser", *ignored, *also_long, aloud=True),
+        pytest_stage("browser tests", BROWSER_TESTS, *also_long),
+        pytest_stage("architecture", ARCHITECTURE_TESTS, *also_long, alone=True, aloud=True),
     ]
 
 
@@ -130,7 +131,7 @@ def main(arguments: list[str]) -> int:
         if asked.json is None:
             command = [sys.executable, "-m", "pytest", *of_pytest, *also_long]
             return subprocess.run(command, check=False).returncode
-        planned = [pytest_stage("tests", *of_pytest, *also_long)]
+        planned = [pytest_stage("tests", *of_pytest, *also_long, aloud=True)]
     else:
         compile_ours()
         planned = stages(long=asked.long)
