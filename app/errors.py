@@ -160,6 +160,10 @@ class Busy(ReembodyError):
     status = 503
 
 
+class DamagedValue(ValueError):
+    """A stored value is none that this program can have written."""
+
+
 class NotDurable(ReembodyError):
     """The record cannot be written now, so nothing was promised."""
 

@@ -18,6 +18,7 @@ from starlette.exceptions import HTTPException
 
 from app.errors import (
     Conflict,
+    DamagedValue,
     InvalidInput,
     NotAllowed,
     NotDurable,
@@ -113,6 +114,7 @@ def _install_database_handlers(app: FastAPI) -> None:
 
     # What is in a request is checked where it comes in; text that cannot be read here was stored.
     @app.exception_handler(UnicodeDecodeError)
+    @app.exception_handler(DamagedValue)
     @app.exception_handler(sqlite3.Error)
     @app.exception_handler(OSError)
     def refused(_: Request, error: Exception) -> JSONResponse:

@@ -1,12 +1,15 @@
 """Column types and keys shared by all tables."""
 
 import uuid
+from collections.abc import Callable
 from datetime import UTC, datetime
-from typing import Annotated
+from typing import Annotated, Any
 
 from sqlalchemy import DateTime, Dialect, String
 from sqlalchemy.orm import mapped_column
 from sqlalchemy.types import TypeDecorator
+
+from app.errors import DamagedValue
 
 
 class UtcDateTime(TypeDecorator[datetime]):
@@ -29,6 +32,22 @@ class UtcDateTime(TypeDecorator[datetime]):
         if value is None:
             return None
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+    def result_processor(
+        self, dialect: Dialect, coltype: object
+    ) -> Callable[[Any], datetime | None] | None:
+        """Raise DamagedValue for a text that is no time: SQLite keeps times as text."""
+        process = super().result_processor(dialect, coltype)
+        if process is None or dialect.name != "sqlite":
+            return process
+
+        def checked(value: Any) -> datetime | None:
+            try:
+                return process(value)
+            except (ValueError, TypeError) as error:
+                raise DamagedValue(f"{value!r} is stored where a time should be") from error
+
+        return checked
 
 
 def new_id() -> str:

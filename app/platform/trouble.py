@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from sqlalchemy.exc import DBAPIError, OperationalError
 
-from app.errors import NotDurable
+from app.errors import DamagedValue, NotDurable
 
 
 class Trouble(NamedTuple):
@@ -98,10 +98,11 @@ def proves_damage(error: Exception) -> bool:
     """Whether an error of SQLite's shows that the file itself is damaged, not that it is held up.
 
     Damage can make SQLite's own message undecodable: then Python's driver raises UnicodeDecodeError
-    in its place, or an error without a code where a stored text cannot be decoded.
+    in its place, or an error without a code where a stored text cannot be decoded. Ours is that a
+    stored text is no time.
     """
     origin = error.orig if isinstance(error, DBAPIError) else error
-    if isinstance(origin, UnicodeDecodeError):
+    if isinstance(origin, UnicodeDecodeError | DamagedValue):
         return True
     if not isinstance(origin, sqlite3.Error):
         return False

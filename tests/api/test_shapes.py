@@ -6,7 +6,7 @@ from json import JSONDecodeError
 import pytest
 from sqlalchemy.exc import DataError, IntegrityError, OperationalError
 
-from app.errors import ReembodyError
+from app.errors import DamagedValue, ReembodyError
 from tests.features.lab import STUDY, Lab, error
 
 SHAPE = {"code", "message", "value", "valid", "remedy", "details"}
@@ -54,6 +54,7 @@ def test_odd_names_are_not_found(lab: Lab, name: str) -> None:
         (OperationalError("INSERT", {}, Exception("disk full")), 503, "not_durable"),
         (JSONDecodeError("a secret", "INSERT", 0), 503, "not_durable"),
         (UnicodeDecodeError("utf-8", b"INSERT", 0, 1, "a secret"), 503, "not_durable"),
+        (DamagedValue("INSERT a secret"), 503, "not_durable"),
         (DataError("INSERT", {}, Exception("too long")), 422, "invalid_input"),
         (IntegrityError("INSERT", {}, Exception("unique")), 409, "conflict"),
         (RuntimeError("a secret of the server"), 500, "error"),
