@@ -1,0 +1,79 @@
+"""docs/glossary.md has one entry for each word, and what it says of code and CSV is there."""
+
+import re
+from functools import cache
+
+import pytest
+
+from app.features.results.analysis.codebook import CODEBOOK, TABLES
+from tests.docs.markdown import DOCS, REPOSITORY
+
+GLOSSARY = DOCS / "glossary.md"
+HEAD = "| word | German | meaning | in code | in CSV |"
+SPAN = re.compile(r"`([^`]+)`")
+SOURCES = {"app": ("*.py",), "frontend/src": ("*.ts", "*.tsx")}
+
+
+def entries() -> list[list[str]]:
+    """The cells of every row of the tables of words."""
+    rows: list[list[str]] = []
+    inside = False
+    for line in GLOSSARY.read_text(encoding="utf-8").splitlines():
+        inside = line == HEAD or (inside and line.startswith("|"))
+        if inside and line != HEAD and not line.startswith("|---"):
+            rows.append([cell.strip() for cell in line.strip("|").split(" |")])
+    return rows
+
+
+@cache
+def code() -> str:
+    """The sources of the server and the pages."""
+    return "\n".join(
+        path.read_text(encoding="utf-8")
+        for folder, patterns in SOURCES.items()
+        for pattern in patterns
+        for path in sorted((REPOSITORY / folder).rglob(pattern))
+        if "static" not in path.parts
+    )
+
+
+def test_every_word_has_one_entry_in_both_languages() -> None:
+    """Two entries for one word would be two meanings."""
+    words = [row[0] for row in entries()]
+    assert len(words) > 60
+    assert [row for row in entries() if len(row) != 5 or not all(row[:4])] == []
+    assert sorted({word for word in words if words.count(word) > 1}) == []
+
+
+@pytest.mark.parametrize("row", entries(), ids=lambda row: row[0])
+def test_what_the_glossary_says_is_in_the_code_is_there(row: list[str]) -> None:
+    """A path exists; a name is a whole word of the sources."""
+    for name in SPAN.findall(row[3]):
+        if "/" in name:
+            assert (REPOSITORY / name).exists(), f"{row[0]}: {name} does not exist"
+        else:
+            assert re.search(rf"\b{re.escape(name)}\b", code()), f"{row[0]}: no source says {name}"
+
+
+def test_what_the_glossary_says_is_in_the_csv_is_there() -> None:
+    """Each is a table or a column of the export."""
+    there = {*TABLES, *(column.name for column in CODEBOOK)}
+    named = {name for row in entries() for name in SPAN.findall(row[4])}
+    assert len(named) > 30
+    assert sorted(named - there) == []
+
+
+def test_every_table_of_the_export_is_a_word_of_the_glossary() -> None:
+    """An analyst finds what a file is about; parts of a word go with it."""
+    parts = {"joint_error_course", "clock_mapping", "calibrations"}
+    named = {name for row in entries() for name in SPAN.findall(row[4])}
+    assert sorted(set(TABLES) - named - parts) == []
+
+
+def test_the_words_that_stay_are_really_used() -> None:
+    """A list of old words that nothing uses any more would teach them for nothing."""
+    text = GLOSSARY.read_text(encoding="utf-8").partition("## Older words that stay")[2]
+    rows = [line.strip("|").split(" |")[0] for line in text.splitlines() if line.startswith("| `")]
+    words = [word for row in rows for word in SPAN.findall(row)]
+    assert len(words) > 8
+    assert [word for word in words if not re.search(rf"\b{word}\b", code())] == []
