@@ -57,7 +57,7 @@ export const editorEn = {
   "dryRun.replicate": "Replicate",
   "dryRun.language": "Language of the texts",
   "dryRun.total": "About {{total}} min, of which {{planned}} min are set by the study",
-  "dryRun.figure": "The visit as a bar of about {{total}} minutes; the table below says the same.",
+  "dryRun.figure": "The session as a bar of about {{total}} minutes; the table below says the same.",
   "dryRun.outside": "outside of the blocks",
   "dryRun.estimated": "estimated",
   "dryRun.axis": "Minutes from the begin",
@@ -132,7 +132,7 @@ export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {
   "dryRun.language": "Sprache der Texte",
   "dryRun.total": "Etwa {{total}} min, davon {{planned}} min durch die Studie festgelegt",
   "dryRun.figure":
-    "Der Besuch als Balken von etwa {{total}} Minuten; die Tabelle darunter sagt dasselbe.",
+    "Die Sitzung als Balken von etwa {{total}} Minuten; die Tabelle darunter sagt dasselbe.",
   "dryRun.outside": "außerhalb der Blöcke",
   "dryRun.estimated": "geschätzt",
   "dryRun.axis": "Minuten seit Beginn",

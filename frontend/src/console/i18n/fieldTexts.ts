@@ -79,7 +79,7 @@ export const fieldsEn = {
     "How the orders of the conditions are balanced over people. A change begins a new ledger.",
   "section.procedure": "Procedure",
   "section.procedure.lead":
-    "The steps of a visit. Alt with the arrow keys moves the step whose buttons have the focus.",
+    "The steps of a session. Alt with the arrow keys moves the step whose buttons have the focus.",
   "section.procedure.block": "In each block",
   "section.tasks": "Tasks",
   "section.tasks.lead":
@@ -184,13 +184,13 @@ export const fieldsDe: Readonly<Record<keyof typeof fieldsEn, string>> = {
   "section.basics.lead": "Wie die Studie heißt, ihre Sprachen, und woher sie kommt.",
   "section.conditions": "Bedingungen",
   "section.conditions.lead":
-    "Die Stufen des einen Faktors: die Verzögerung, die jedem verzögerten Körperteil hinzugefügt wird.",
+    "Die Stufen des einen Faktors: die Latenz, die jedem verzögerten Körperteil hinzugefügt wird.",
   "section.orders": "Reihenfolgen",
   "section.orders.lead":
     "Wie die Reihenfolgen der Bedingungen über die Personen ausbalanciert werden. Eine Änderung beginnt einen neuen Plan.",
   "section.procedure": "Ablauf",
   "section.procedure.lead":
-    "Die Schritte eines Besuchs. Alt mit den Pfeiltasten verschiebt den Schritt, dessen Knöpfe den Fokus haben.",
+    "Die Schritte einer Sitzung. Alt mit den Pfeiltasten verschiebt den Schritt, dessen Knöpfe den Fokus haben.",
   "section.procedure.block": "In jedem Block",
   "section.tasks": "Aufgaben",
   "section.tasks.lead": "Die Aufgaben jedes Blocks. Aktive Zeit: Pausen und Rückwege zählen nicht.",
@@ -216,10 +216,10 @@ export const fieldsDe: Readonly<Record<keyof typeof fieldsEn, string>> = {
   "field.notes": "Anmerkungen",
   "field.languages": "Sprachen",
   "field.conditions": "Bedingungen",
-  "field.latency_ms": "Zusätzliche Verzögerung (ms)",
+  "field.latency_ms": "Zusätzliche Latenz (ms)",
   "field.label": "Bezeichnung",
-  "field.latency": "Wie die Verzögerung wirkt",
-  "field.undelayed_parts": "Körperteile ohne Verzögerung",
+  "field.latency": "Wie die Latenz wirkt",
+  "field.undelayed_parts": "Körperteile ohne Latenz",
   "field.orders": "Reihenfolgen",
   "field.design": "Design",
   "field.replicates": "Wiederholungen",

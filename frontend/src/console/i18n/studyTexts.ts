@@ -14,7 +14,7 @@ const exportsEn = {
   "export.conventions":
     "UTF-8, one row per observation, times as UTC (ISO 8601) or seconds, angles in degrees, lengths in metres. Every table says whether it is simulated and which avatar was used.",
   "export.file.sessions": "sessions.csv",
-  "export.about.sessions": "One row per visit: participant code, order, version, times, outcome.",
+  "export.about.sessions": "One row per session: participant code, order, version, times, outcome.",
   "export.file.phases": "phases.csv",
   "export.about.phases":
     "One row per timed task: latency, limb, active time, completions, time in contact with the sides.",
@@ -69,7 +69,7 @@ const exportsDe: Readonly<Record<keyof typeof exportsEn, string>> = {
   "export.conventions":
     "UTF-8, eine Zeile je Beobachtung, Zeiten als UTC (ISO 8601) oder Sekunden, Winkel in Grad, Längen in Metern. Jede Tabelle sagt, ob sie simuliert ist und welcher Avatar benutzt wurde.",
   "export.file.sessions": "sessions.csv",
-  "export.about.sessions": "Eine Zeile je Besuch: Code, Reihenfolge, Version, Zeiten, Ausgang.",
+  "export.about.sessions": "Eine Zeile je Sitzung: Code, Reihenfolge, Version, Zeiten, Ausgang.",
   "export.file.phases": "phases.csv",
   "export.about.phases":
     "Eine Zeile je Aufgabe: Latenz, Gliedmaße, aktive Zeit, Erledigungen, Kontaktzeit mit den Seiten.",
@@ -125,7 +125,7 @@ export const studyEn = {
   "study.tab.dashboard": "Dashboard",
   "study.tab.export": "Export",
   "study.tab.protocol": "Protocol",
-  "overview.procedure": "One visit",
+  "overview.procedure": "One session",
   "overview.conditions": "Conditions",
   "overview.design": "Design",
   "overview.condition": "Condition",
@@ -158,7 +158,7 @@ export const studyEn = {
   "procedure.freeze": "Freeze",
   "procedure.legend": "Each task: preparation, active time (filled), freeze.",
   "procedure.total":
-    "A visit takes about {{minutes}} min, with our estimate of forms and texts; {{planned}} min of it are set by the protocol. Breaks come on top.",
+    "A session takes about {{minutes}} min, with our estimate of forms and texts; {{planned}} min of it are set by the protocol. Breaks come on top.",
   "slot.free": "Free",
   "slot.open": "Running",
   "slot.completed": "Completed",
@@ -207,7 +207,7 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "study.tab.dashboard": "Auswertung",
   "study.tab.export": "Export",
   "study.tab.protocol": "Protokoll",
-  "overview.procedure": "Ein Besuch",
+  "overview.procedure": "Eine Sitzung",
   "overview.conditions": "Bedingungen",
   "overview.design": "Versuchsplan",
   "overview.condition": "Bedingung",
@@ -240,7 +240,7 @@ export const studyDe: Readonly<Record<keyof typeof studyEn, string>> = {
   "procedure.freeze": "Stillstand",
   "procedure.legend": "Jede Aufgabe: Vorbereitung, aktive Zeit (gefüllt), Stillstand.",
   "procedure.total":
-    "Ein Besuch dauert etwa {{minutes}} min, Formulare und Texte geschätzt; {{planned}} min davon legt das Protokoll fest. Pausen kommen hinzu.",
+    "Eine Sitzung dauert etwa {{minutes}} min, Formulare und Texte geschätzt; {{planned}} min davon legt das Protokoll fest. Pausen kommen hinzu.",
   "slot.free": "Frei",
   "slot.open": "Läuft",
   "slot.completed": "Abgeschlossen",

@@ -29,7 +29,7 @@ export const tourEn = {
   "tour.skip": "Skip the tour",
   "tour.end": "Done",
   "tour.keys": "Arrow keys turn the pages, Esc ends the tour.",
-  "tour.timeline.title": "The whole visit",
+  "tour.timeline.title": "The whole session",
   "tour.timeline.body":
     "Every step from consent to the last question, with its length. The filled ring is where the participant is now; what was done shows what came out.",
   "tour.clock.title": "Active time",
@@ -49,7 +49,7 @@ export const tourEn = {
     "This bar never moves. It fills with colour as soon as something is wrong, from lost frames to a call, and says what to do. The figures beside it tell how good the data are.",
   "tour.replay.title": "See it again",
   "tour.replay.body":
-    "After each task a replay shows it in space, in step with touches, answers and notes. Replay is up here during a session, and beside every phase once it is over.",
+    "After each task a replay shows it in space, in step with contacts, answers and notes. Replay is up here during a session, and beside every phase once it is over.",
   "tour.csv.title": "The data",
   "tour.csv.body":
     "When the session is over it can be downloaded here as CSV with a codebook, and the whole study on its page Export. Simulated sessions stay apart. That is all: press Stop below, or watch on.",
@@ -86,7 +86,7 @@ export const tourDe: Readonly<Record<keyof typeof tourEn, string>> = {
   "tour.skip": "Rundgang beenden",
   "tour.end": "Fertig",
   "tour.keys": "Pfeiltasten blättern, Esc beendet den Rundgang.",
-  "tour.timeline.title": "Der ganze Besuch",
+  "tour.timeline.title": "Die ganze Sitzung",
   "tour.timeline.body":
     "Jeder Schritt von der Einwilligung bis zur letzten Frage, mit seiner Dauer. Der gefüllte Ring zeigt, wo die Person gerade ist; bei Erledigtem steht, was herauskam.",
   "tour.clock.title": "Aktive Zeit",
@@ -106,7 +106,7 @@ export const tourDe: Readonly<Record<keyof typeof tourEn, string>> = {
     "Diese Leiste bewegt sich nie. Sie füllt sich mit Farbe, sobald etwas nicht stimmt, vom verlorenen Bild bis zum Ruf, und sagt, was zu tun ist. Die Zahlen daneben sagen, wie gut die Daten sind.",
   "tour.replay.title": "Noch einmal ansehen",
   "tour.replay.body":
-    "Nach jeder Aufgabe zeigt eine Wiedergabe sie im Raum, im Takt mit Berührungen, Antworten und Notizen. Während der Sitzung steht sie hier oben, danach neben jeder Phase.",
+    "Nach jeder Aufgabe zeigt eine Wiedergabe sie im Raum, im Takt mit Kontakten, Antworten und Notizen. Während der Sitzung steht sie hier oben, danach neben jeder Phase.",
   "tour.csv.title": "Die Daten",
   "tour.csv.body":
     "Ist die Sitzung vorbei, lässt sie sich hier als CSV mit Codebuch herunterladen, und die ganze Studie auf ihrer Seite Export. Simulierte Sitzungen bleiben für sich. Das war alles: unten anhalten oder weiter zusehen.",

@@ -10,7 +10,7 @@ export const validityEn = {
   "field.forms": "Every one of these questionnaires was answered",
   "field.achieved_latency": "Latency that the avatar really had",
   "field.reported": "It could be measured",
-  "field.tolerance_ms": "At most this far off the ordered latency (ms)",
+  "field.tolerance_ms": "At most this far off the set latency (ms)",
   "validity.title": "This session does not count",
   "validity.body":
     "It lacks what the study asks for. Its data are kept and marked as not valid, and its slot is free for another participant.",
@@ -44,9 +44,9 @@ export const validityDe: Readonly<Record<keyof typeof validityEn, string>> = {
   "field.min_active_s": "Mindestens so viel aktive Zeit (s)",
   "field.min_active_share": "Mindestens dieser Anteil ihrer Zeit war aktiv (0 bis 1)",
   "field.forms": "Jeder dieser Fragebögen wurde ausgefüllt",
-  "field.achieved_latency": "Tatsächliche Verzögerung des Avatars",
+  "field.achieved_latency": "Erreichte Latenz des Avatars",
   "field.reported": "Sie konnte gemessen werden",
-  "field.tolerance_ms": "Höchstens so weit von der verlangten Verzögerung entfernt (ms)",
+  "field.tolerance_ms": "Höchstens so weit von der eingestellten Latenz entfernt (ms)",
   "validity.title": "Diese Sitzung zählt nicht",
   "validity.body":
     "Ihr fehlt, was die Studie verlangt. Ihre Daten bleiben erhalten und sind als ungültig markiert; ihr Platz ist frei für jemand anderen.",
@@ -66,8 +66,8 @@ export const validityDe: Readonly<Record<keyof typeof validityEn, string>> = {
   "validity.form_skipped": "Fragebogen {{instrument}} nicht ausgefüllt",
   "validity.phase_doubtful": "die Angaben des Headsets dazu können nicht stimmen",
   "validity.headset_doubtful": "Die Angaben des Headsets zur ganzen Sitzung können nicht stimmen",
-  "validity.latency_missing": "die tatsächliche Verzögerung ließ sich nicht messen",
+  "validity.latency_missing": "die erreichte Latenz ließ sich nicht messen",
   "validity.latency_off":
-    "tatsächliche Verzögerung um {{value}} ms daneben, erlaubt sind {{limit}} ms",
+    "erreichte Latenz um {{value}} ms daneben, erlaubt sind {{limit}} ms",
   "outcome.invalid": "Abgeschlossen, zählt nicht",
 };

@@ -31,7 +31,7 @@ export const de: Record<keyof typeof en, string> = {
     "Ein Headset, ein Controller in jeder Hand, Tracker an der Taille und an beiden Unterschenkeln",
   "picture.t_pose": "Aufrecht stehen, die Arme zur Seite gestreckt, die Füße zusammen",
   "picture.mirror":
-    "Der Spiegel vor Ihnen zeigt Ihren Körper, die übrige Zeit und die geschafften Aufgaben",
+    "Der Spiegel vor Ihnen zeigt Ihren Körper, die übrige Zeit und die erledigten Aufgaben",
   "picture.hand_boxes":
     "Vier offene Kästen in Brusthöhe; eine Hand berührt die Platte in einem; darüber ein Ziel",
   "picture.foot_boxes":
