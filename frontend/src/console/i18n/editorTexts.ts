@@ -57,7 +57,8 @@ export const editorEn = {
   "dryRun.replicate": "Replicate",
   "dryRun.language": "Language of the texts",
   "dryRun.total": "About {{total}} min, of which {{planned}} min are set by the study",
-  "dryRun.figure": "The session as a bar of about {{total}} minutes; the table below says the same.",
+  "dryRun.figure":
+    "The session as a bar of about {{total}} minutes; the table below says the same.",
   "dryRun.outside": "outside of the blocks",
   "dryRun.estimated": "estimated",
   "dryRun.axis": "Minutes from the begin",

@@ -67,7 +67,6 @@ export const validityDe: Readonly<Record<keyof typeof validityEn, string>> = {
   "validity.phase_doubtful": "die Angaben des Headsets dazu können nicht stimmen",
   "validity.headset_doubtful": "Die Angaben des Headsets zur ganzen Sitzung können nicht stimmen",
   "validity.latency_missing": "die erreichte Latenz ließ sich nicht messen",
-  "validity.latency_off":
-    "erreichte Latenz um {{value}} ms daneben, erlaubt sind {{limit}} ms",
+  "validity.latency_off": "erreichte Latenz um {{value}} ms daneben, erlaubt sind {{limit}} ms",
   "outcome.invalid": "Abgeschlossen, zählt nicht",
 };
