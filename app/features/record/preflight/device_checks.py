@@ -1,55 +1,35 @@
 """Tablet, headset, and how good what the headset sends is.
 
 The headset's figures are those of its live watch, so they exist only while it is connected.
-Movement comes from the avatar's appearance on: what cannot be told before that waits.
+Movement comes from the avatar's appearance on; until then what depends on it waits.
 """
-
-from collections.abc import Iterator, Mapping
-from typing import Any, Literal
-
-from sqlalchemy.orm import Session
 
 from app.features.record.alarms import WatchLimits, open_alarms
 from app.features.record.devices import TABLET_SILENT_AFTER_S, devices_of_session
-from app.features.record.preflight.schemas import Check
-from app.models import Device, StudySession
-from app.platform.context import AppContext
+from app.features.record.preflight.check import Finding, Found, Situation, StateCheck
+from app.models import Device
 from app.science.skeleton import JOINT_COUNT
+from app.words import Words
 
 LIMITS = WatchLimits()
 LEAST_RATE_HZ = 60.0
 """A headset that comes to less repeats pictures, however steady it is."""
 MS_PER_S = 1000.0
-_BROKEN: Mapping[str, Literal["trackers.frozen", "trackers.bad_values"]] = {
-    "frozen": "trackers.frozen",
-    "bad_values": "trackers.bad_values",
-}
+_BROKEN = frozenset({"frozen", "bad_values"})
+"""Alarms that say that joints are not sound; the check's findings have their names."""
 
 
-def device_checks(db: Session, context: AppContext, session: StudySession) -> Iterator[Check]:
-    """The checks of the devices, in the order of the list."""
-    paired = {device.kind: device for device in devices_of_session(db, session.id)}
-    yield _tablet(context, paired.get("tablet"))
-    connected = context.hub.headset_connected(session.id)
-    yield _headset(paired.get("headset"), connected=connected)
-    signal = context.hub.signal(session.id) or {}
-    yield _frame_rate(signal, connected=connected)
-    yield _clock(signal, connected=connected)
-    yield _trackers(db, session, signal)
-
-
-def _tablet(context: AppContext, tablet: Device | None) -> Check:
+def _tablet(situation: Situation) -> Found:
+    tablet = _paired(situation, "tablet")
     if tablet is None:
-        return Check(key="tablet", status="fail", code="tablet.unpaired")
+        return Found("unpaired")
+    context = situation.context
     seen = context.hub.last_seen(tablet.id) or tablet.last_seen_at
     if seen is None:
-        return Check(key="tablet", status="fail", code="tablet.away", details=_name(tablet))
+        return Found("away", details=_name(tablet))
     silent_s = max(0.0, (context.clock.utc_now() - seen).total_seconds())
-    away = silent_s >= TABLET_SILENT_AFTER_S
-    return Check(
-        key="tablet",
-        status="fail" if away else "ok",
-        code="tablet.away" if away else "tablet.ok",
+    return Found(
+        "away" if silent_s >= TABLET_SILENT_AFTER_S else "ok",
         value=round(silent_s, 1),
         unit="s",
         expected="at_most",
@@ -58,37 +38,88 @@ def _tablet(context: AppContext, tablet: Device | None) -> Check:
     )
 
 
-def _headset(headset: Device | None, *, connected: bool) -> Check:
+TABLET = StateCheck(
+    key="tablet",
+    title=Words(en="Tablet", de="Tablet"),
+    findings=(
+        Finding(
+            "unpaired",
+            "fail",
+            Words(en="Not paired", de="Nicht gekoppelt"),
+            remedy=Words(en="Pair it under Devices.", de="Unter Geräte koppeln."),
+        ),
+        Finding(
+            "away",
+            "fail",
+            Words(en="Not heard of for {{value}}", de="Seit {{value}} nichts gehört"),
+            remedy=Words(
+                en="Wake the tablet and check that its page is open.",
+                de="Tablet aufwecken; ist seine Seite offen?",
+            ),
+        ),
+        Finding(
+            "ok",
+            "ok",
+            Words(en="Paired, seen {{value}} ago", de="Gekoppelt, vor {{value}} gesehen"),
+        ),
+    ),
+    look=_tablet,
+)
+
+
+def _headset(situation: Situation) -> Found:
+    headset = _paired(situation, "headset")
     if headset is None:
-        return Check(key="headset", status="fail", code="headset.unpaired")
-    return Check(
-        key="headset",
-        status="ok" if connected else "fail",
-        code="headset.ok" if connected else "headset.away",
-        details=_name(headset),
-    )
+        return Found("unpaired")
+    return Found("ok" if situation.headset_connected else "away", details=_name(headset))
+
+
+HEADSET = StateCheck(
+    key="headset",
+    title=Words(en="Headset", de="Headset"),
+    findings=(
+        Finding(
+            "unpaired",
+            "fail",
+            Words(en="Not paired", de="Nicht gekoppelt"),
+            remedy=Words(en="Pair it under Devices.", de="Unter Geräte koppeln."),
+        ),
+        Finding(
+            "away",
+            "fail",
+            Words(en="Paired, not connected", de="Gekoppelt, nicht verbunden"),
+            remedy=Words(
+                en="Wake the headset and start its program.",
+                de="Headset aufwecken und sein Programm starten.",
+            ),
+        ),
+        Finding("ok", "ok", Words(en="Paired and connected", de="Gekoppelt und verbunden")),
+    ),
+    look=_headset,
+)
+
+
+def _paired(situation: Situation, kind: str) -> Device | None:
+    devices = devices_of_session(situation.db, situation.session.id)
+    return {device.kind: device for device in devices}.get(kind)
 
 
 def _name(device: Device) -> tuple[str, ...]:
     return (device.name,) if device.name else ()
 
 
-def _frame_rate(signal: Mapping[str, Any], *, connected: bool) -> Check:
-    if not connected:
-        return Check(key="frame_rate", status="wait", code="frame_rate.no_headset")
-    rate_hz, usual_hz = signal.get("frame_rate_hz"), signal.get("usual_rate_hz")
+def _frame_rate(situation: Situation) -> Found:
+    if not situation.headset_connected:
+        return Found("no_headset")
+    rate_hz = situation.signal.get("frame_rate_hz")
+    usual_hz = situation.signal.get("usual_rate_hz")
     if not rate_hz:
-        return Check(key="frame_rate", status="wait", code="frame_rate.no_movement")
+        return Found("no_movement")
     if usual_hz is None:
-        return Check(
-            key="frame_rate", status="wait", code="frame_rate.measuring", value=rate_hz, unit="Hz"
-        )
+        return Found("measuring", value=rate_hz, unit="Hz")
     least_hz = round(max(LEAST_RATE_HZ, LIMITS.low_rate_share * usual_hz), 1)
-    low = rate_hz < least_hz
-    return Check(
-        key="frame_rate",
-        status="fail" if low else "ok",
-        code="frame_rate.low" if low else "frame_rate.ok",
+    return Found(
+        "low" if rate_hz < least_hz else "ok",
         value=rate_hz,
         unit="Hz",
         expected="at_least",
@@ -96,18 +127,48 @@ def _frame_rate(signal: Mapping[str, Any], *, connected: bool) -> Check:
     )
 
 
-def _clock(signal: Mapping[str, Any], *, connected: bool) -> Check:
-    if not connected:
-        return Check(key="clock", status="wait", code="clock.no_headset")
-    uncertainty_ms = signal.get("clock_uncertainty_ms")
+FRAME_RATE = StateCheck(
+    key="frame_rate",
+    title=Words(en="Frame rate", de="Bildrate"),
+    findings=(
+        Finding("no_headset", "wait", Words(en="Needs the headset", de="Braucht das Headset")),
+        Finding(
+            "no_movement",
+            "wait",
+            Words(
+                en="Measured once the avatar appears",
+                de="Wird gemessen, sobald der Avatar erscheint",
+            ),
+        ),
+        Finding(
+            "measuring",
+            "wait",
+            Words(en="{{value}}, still settling", de="{{value}}, pendelt sich noch ein"),
+        ),
+        Finding(
+            "low",
+            "fail",
+            Words(en="{{value}}", de="{{value}}"),
+            remedy=Words(
+                en="Close other programs on the headset's computer; check that it is plugged in.",
+                de="Andere Programme auf dem Rechner des Headsets schließen; steckt das Netzteil?",
+            ),
+        ),
+        Finding("ok", "ok", Words(en="{{value}}", de="{{value}}")),
+    ),
+    look=_frame_rate,
+)
+
+
+def _clock(situation: Situation) -> Found:
+    if not situation.headset_connected:
+        return Found("no_headset")
+    uncertainty_ms = situation.signal.get("clock_uncertainty_ms")
     if uncertainty_ms is None:
-        return Check(key="clock", status="wait", code="clock.measuring")
+        return Found("measuring")
     most_ms = MS_PER_S * LIMITS.clock_uncertain_s
-    uncertain = uncertainty_ms > most_ms
-    return Check(
-        key="clock",
-        status="fail" if uncertain else "ok",
-        code="clock.uncertain" if uncertain else "clock.ok",
+    return Found(
+        "uncertain" if uncertainty_ms > most_ms else "ok",
         value=uncertainty_ms,
         unit="ms",
         expected="at_most",
@@ -115,24 +176,82 @@ def _clock(signal: Mapping[str, Any], *, connected: bool) -> Check:
     )
 
 
-def _trackers(db: Session, session: StudySession, signal: Mapping[str, Any]) -> Check:
+CLOCK = StateCheck(
+    key="clock",
+    title=Words(en="Clock", de="Uhr"),
+    findings=(
+        Finding("no_headset", "wait", Words(en="Needs the headset", de="Braucht das Headset")),
+        Finding(
+            "measuring",
+            "wait",
+            Words(en="The clocks are being compared", de="Die Uhren werden verglichen"),
+        ),
+        Finding(
+            "uncertain",
+            "fail",
+            Words(en="Known to ± {{value}} only", de="Nur auf ± {{value}} bekannt"),
+            remedy=Words(
+                en="The network is slow: use the 5 GHz band or a cable, and stop downloads.",
+                de="Das Netz ist langsam: 5-GHz-Band oder Kabel nehmen, Downloads anhalten.",
+            ),
+        ),
+        Finding("ok", "ok", Words(en="Known to ± {{value}}", de="Auf ± {{value}} bekannt")),
+    ),
+    look=_clock,
+)
+
+
+def _trackers(situation: Situation) -> Found:
     """Clients send joints, not trackers: one that is off shows in joints that are not sound."""
-    for alarm in open_alarms(db, session.id):
+    for alarm in open_alarms(situation.db, situation.session.id):
         if alarm.code in _BROKEN:
-            return Check(
-                key="trackers",
-                status="fail",
-                code=_BROKEN[alarm.code],
-                details=(alarm.message,),
-            )
-    if not signal.get("frame_rate_hz"):
-        return Check(key="trackers", status="wait", code="trackers.no_movement")
-    return Check(
-        key="trackers",
-        status="ok",
-        code="trackers.ok",
-        value=JOINT_COUNT,
-        unit="joints",
-        expected="at_least",
-        limit=JOINT_COUNT,
-    )
+            return Found(alarm.code, details=(alarm.message,))
+    if not situation.signal.get("frame_rate_hz"):
+        return Found("no_movement")
+    return Found("ok", value=JOINT_COUNT, unit="joints", expected="at_least", limit=JOINT_COUNT)
+
+
+TRACKERS = StateCheck(
+    key="trackers",
+    title=Words(en="Tracking", de="Tracking"),
+    findings=(
+        Finding(
+            "no_movement",
+            "wait",
+            Words(
+                en="Judged once the avatar appears",
+                de="Wird beurteilt, sobald der Avatar erscheint",
+            ),
+        ),
+        Finding(
+            "frozen",
+            "fail",
+            Words(en="Part of the body does not move", de="Ein Körperteil steht still"),
+            remedy=Words(
+                en="Switch the trackers on, and check that the cameras see them.",
+                de="Tracker einschalten und nachsehen, ob die Kameras sie sehen.",
+            ),
+        ),
+        Finding(
+            "bad_values",
+            "fail",
+            Words(
+                en="Joints arrive with impossible values",
+                de="Gelenke kommen mit unmöglichen Werten an",
+            ),
+            remedy=Words(
+                en="Restart the headset's program and calibrate again.",
+                de="Das Programm des Headsets neu starten und neu kalibrieren.",
+            ),
+        ),
+        Finding(
+            "ok",
+            "ok",
+            Words(
+                en="All {{value}} joints move and are valid",
+                de="Alle {{value}} Gelenke bewegen sich und sind gültig",
+            ),
+        ),
+    ),
+    look=_trackers,
+)

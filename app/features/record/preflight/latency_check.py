@@ -1,7 +1,7 @@
 """Whether the equipment delays by what it is told to: the newest phases that were measured.
 
 The added latency is measured in every phase that moves enough, practice included, so the session
-before is a self-test of today's. Where there is none yet, the equipment's calibrations are told.
+before is a self-test of today's. Where there is none yet, the equipment's calibrations are shown.
 Nothing here names a latency that was ordered or achieved: blinded operators see it too.
 """
 
@@ -9,15 +9,17 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.features.record.calibrations import calibrations
-from app.features.record.preflight.schemas import Check
+from app.features.record.preflight.check import Finding, Found, Situation, StateCheck
 from app.models import Phase, PhaseLatency, StudySession
+from app.words import Words
 
 
-def latency_check(db: Session, session: StudySession) -> Check:
-    """The check of the achieved latency, from sessions of the same study.
+def _latency(situation: Situation) -> Found:
+    """The achieved latency, from sessions of the same study.
 
     A scripted headset says nothing of a real one: simulated sessions are judged by their own kind.
     """
+    db, session = situation.db, situation.session
     simulated = session.kind == "simulated"
     measured = (
         select(PhaseLatency.session_id, PhaseLatency.flagged)
@@ -40,10 +42,8 @@ def latency_check(db: Session, session: StudySession) -> Check:
     of_session = measured.where(PhaseLatency.session_id == newest.session_id)
     off = [row.flagged for row in db.execute(of_session)]
     wrong = sum(off)
-    return Check(
-        key="latency",
-        status="fail" if wrong else "ok",
-        code="latency.off" if wrong else "latency.ok",
+    return Found(
+        "off" if wrong else "ok",
         value=len(off) - wrong,
         unit="phases",
         expected="at_least",
@@ -51,14 +51,57 @@ def latency_check(db: Session, session: StudySession) -> Check:
     )
 
 
-def _unmeasured(db: Session) -> Check:
+def _unmeasured(db: Session) -> Found:
     current = [one for one in calibrations(db) if one.current]
-    return Check(
-        key="latency",
-        status="wait",
-        code="latency.calibrated" if current else "latency.unmeasured",
+    return Found(
+        "calibrated" if current else "unmeasured",
         details=tuple(
             f"{one.equipment}: {one.motion_to_photon_ms:g} ms, {one.measured_on.isoformat()}"
             for one in current
         ),
     )
+
+
+LATENCY = StateCheck(
+    key="latency",
+    title=Words(en="Latency", de="Latenz"),
+    findings=(
+        Finding(
+            "unmeasured",
+            "wait",
+            Words(
+                en="Not measured yet; the first phase measures it",
+                de="Noch nicht gemessen; das tut die erste Phase",
+            ),
+        ),
+        Finding(
+            "calibrated",
+            "wait",
+            Words(
+                en="Equipment calibrated; the first phase measures",
+                de="Geräte kalibriert; die erste Phase misst",
+            ),
+        ),
+        Finding(
+            "off",
+            "fail",
+            Words(
+                en="{{value}} of {{limit}} phases of the last session within tolerance",
+                de="{{value}} von {{limit}} Phasen der letzten Sitzung innerhalb der Toleranz",
+            ),
+            remedy=Words(
+                en="Look at the last session's latencies, and measure the equipment again.",
+                de="Die Latenzen der letzten Sitzung ansehen und die Geräte neu vermessen.",
+            ),
+        ),
+        Finding(
+            "ok",
+            "ok",
+            Words(
+                en="{{value}} of {{limit}} phases of the last session within tolerance",
+                de="{{value}} von {{limit}} Phasen der letzten Sitzung innerhalb der Toleranz",
+            ),
+        ),
+    ),
+    look=_latency,
+)

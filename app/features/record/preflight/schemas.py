@@ -1,64 +1,21 @@
-"""The list of checks as pages see it. Words belong to the page: `code` names what was found."""
+"""The list of checks as pages see it. Its words are the page's: `code` names what was found."""
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, StringConstraints
 
-CheckKey = Literal[
-    "tablet",
-    "headset",
-    "frame_rate",
-    "clock",
-    "trackers",
-    "storage",
-    "disk",
-    "latency",
-    "instruments",
-    "configuration",
-    "language",
-]
+from app.features.record.preflight.check import Expected, Unit
+from app.features.record.preflight.checks import CHECKS
+
 CheckStatus = Literal["ok", "wait", "fail", "overridden"]
-CheckCode = Literal[
-    "tablet.unpaired",
-    "tablet.away",
-    "tablet.ok",
-    "headset.unpaired",
-    "headset.away",
-    "headset.ok",
-    "frame_rate.no_headset",
-    "frame_rate.no_movement",
-    "frame_rate.measuring",
-    "frame_rate.low",
-    "frame_rate.ok",
-    "clock.no_headset",
-    "clock.measuring",
-    "clock.uncertain",
-    "clock.ok",
-    "trackers.no_movement",
-    "trackers.frozen",
-    "trackers.bad_values",
-    "trackers.ok",
-    "storage.failing",
-    "storage.differs",
-    "storage.ok",
-    "disk.low",
-    "disk.elsewhere",
-    "disk.ok",
-    "latency.unmeasured",
-    "latency.calibrated",
-    "latency.off",
-    "latency.ok",
-    "instruments.damaged",
-    "instruments.none",
-    "instruments.ok",
-    "configuration.differs",
-    "configuration.ok",
-    "language.missing",
-    "language.ok",
-]
-Expected = Literal["at_least", "at_most"]
-Unit = Literal["s", "ms", "Hz", "GB", "joints", "phases", "instruments", "texts"]
+if TYPE_CHECKING:
+    CheckKey = str
+    CheckCode = str
+else:
+    # The interface lists what the registry holds; no type checker reads a computed Literal.
+    CheckKey = Literal[tuple(check.key for check in CHECKS)]
+    CheckCode = Literal[tuple(code for check in CHECKS for code in check.codes)]
 
 
 class Override(BaseModel):

@@ -1,7 +1,7 @@
-"""The pre-flight list: computed anew whenever it is asked for, never stored.
+"""The pre-flight list: made for every request, never stored.
 
 What is stored is that somebody went on although a check had failed: an event of the session, with
-the reason and the finding as content beside it, so that an erasure takes the words along.
+the reason and the finding as content of their own, so that an erasure takes the words along.
 """
 
 from collections.abc import Mapping
@@ -11,11 +11,15 @@ from sqlalchemy.orm import Session
 
 from app.errors import Conflict
 from app.features.people.audit import record
-from app.features.record.preflight.device_checks import device_checks
-from app.features.record.preflight.latency_check import latency_check
+from app.features.record.preflight.check import (
+    Found,
+    PreflightCheck,
+    Situation,
+    StateCheck,
+    TrialCheck,
+)
+from app.features.record.preflight.checks import CHECKS
 from app.features.record.preflight.schemas import Check, Override, OverrideRequest, Preflight
-from app.features.record.preflight.storage_checks import storage_checks
-from app.features.record.preflight.study_checks import study_checks
 from app.features.record.sessions import (
     OverrideCheck,
     apply_command,
@@ -37,8 +41,12 @@ async def preflight_of(context: AppContext, session_id: str) -> Preflight:
     It takes transactions of its own: the written row must be committed before it is read back.
     """
     await run_sync(_open_session, context, session_id)
-    stored = await storage_checks(context, session_id)
-    return await run_sync(_list, context, session_id, stored)
+    tried = {
+        check.key: await check.attempt(context, session_id)
+        for check in CHECKS
+        if isinstance(check, TrialCheck)
+    }
+    return await run_sync(_list, context, session_id, tried)
 
 
 def _open_session(context: AppContext, session_id: str) -> None:
@@ -46,22 +54,35 @@ def _open_session(context: AppContext, session_id: str) -> None:
         require_open(session_by_id(db, session_id))
 
 
-def _list(context: AppContext, session_id: str, stored: tuple[Check, ...]) -> Preflight:
+def _list(context: AppContext, session_id: str, found: dict[str, Found]) -> Preflight:
+    """The list, from what the trials have found and what the other checks read now."""
     with context.database.reading() as db:
         session = session_by_id(db, session_id)
         overrides = overrides_of(db, session_id)
-        checks = (
-            *device_checks(db, context, session),
-            *stored,
-            latency_check(db, session),
-            *study_checks(db, session),
-        )
+        situation = Situation(session, db, context, context.hub.signal(session_id) or {})
+        looked = {
+            check.key: check.look(situation) for check in CHECKS if isinstance(check, StateCheck)
+        }
+    checks = [_line(check, (found | looked)[check.key]) for check in CHECKS]
     shown = [_with(check, overrides) for check in checks]
     return Preflight(
         at=context.clock.utc_now(),
         clear=all(check.status != "fail" for check in shown),
         asks=session.kind == "people",
         checks=shown,
+    )
+
+
+def _line(check: PreflightCheck, found: Found) -> Check:
+    return Check(
+        key=check.key,
+        status=check.finding(found.finding).status,
+        code=check.code(found.finding),
+        value=found.value,
+        unit=found.unit,
+        expected=found.expected,
+        limit=found.limit,
+        details=found.details,
     )
 
 

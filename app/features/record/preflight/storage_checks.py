@@ -12,10 +12,17 @@ from sqlalchemy.orm import Session
 
 from app.database import Database
 from app.errors import NotDurable
-from app.features.record.preflight.schemas import Check
+from app.features.record.preflight.check import (
+    Finding,
+    Found,
+    Situation,
+    StateCheck,
+    TrialCheck,
+)
 from app.models import SessionContent
 from app.platform.context import AppContext
 from app.platform.trouble import explain
+from app.words import Words
 
 KIND = "write_test"
 WRITTEN_BYTES = 64 * 1024
@@ -28,24 +35,19 @@ class DiffersError(Exception):
     """What was read is not what was written."""
 
 
-async def storage_checks(context: AppContext, session_id: str) -> tuple[Check, ...]:
-    """The checks of the server's storage, in the order of the list."""
-    return await _written(context, session_id), await run_sync(_disk, context)
-
-
-async def _written(context: AppContext, session_id: str) -> Check:
+async def _written(context: AppContext, session_id: str) -> Found:
     """A row and a file are written, flushed to the disk, read back and removed."""
     began_ns = context.clock.monotonic_ns()
     try:
         await write_and_read_back(context, session_id)
     except DiffersError:
-        return Check(key="storage", status="fail", code="storage.differs")
+        return Found("differs")
     except (SQLAlchemyError, NotDurable, OSError) as error:
         trouble = explain(error)
-        told = str(error)[:200] if trouble is None else trouble.message
-        return Check(key="storage", status="fail", code="storage.failing", details=(told,))
+        message = str(error)[:200] if trouble is None else trouble.message
+        return Found("failing", details=(message,))
     took_ms = (context.clock.monotonic_ns() - began_ns) / NS_PER_MS
-    return Check(key="storage", status="ok", code="storage.ok", value=round(took_ms, 1), unit="ms")
+    return Found("ok", value=round(took_ms, 1), unit="ms")
 
 
 async def write_and_read_back(context: AppContext, session_id: str) -> None:
@@ -106,19 +108,77 @@ def _file(folder: Path, content: bytes) -> None:
         file.unlink(missing_ok=True)
 
 
-def _disk(context: AppContext) -> Check:
-    storage = context.storage
+STORAGE = TrialCheck(
+    key="storage",
+    title=Words(en="Test write", de="Schreibtest"),
+    findings=(
+        Finding(
+            "failing",
+            "fail",
+            Words(en="Cannot be written", de="Kann nicht geschrieben werden"),
+            remedy=Words(
+                en="Free space, or plug the disk in again. Until then nothing is recorded.",
+                de="Platz schaffen oder die Platte wieder anschließen. Sonst wird nichts "
+                "aufgezeichnet.",
+            ),
+        ),
+        Finding(
+            "differs",
+            "fail",
+            Words(
+                en="What was read back differs from what was written",
+                de="Gelesen wurde etwas anderes als geschrieben",
+            ),
+            remedy=Words(
+                en="Do not start. Check the disk, then restart the server.",
+                de="Nicht starten. Platte prüfen, dann den Server neu starten.",
+            ),
+        ),
+        Finding(
+            "ok",
+            "ok",
+            Words(
+                en="Written, read back and compared in {{value}}",
+                de="In {{value}} geschrieben, gelesen und verglichen",
+            ),
+        ),
+    ),
+    attempt=_written,
+)
+
+
+def _disk(situation: Situation) -> Found:
+    storage = situation.context.storage
     try:
         free = storage.free_bytes(storage.folder)
     except OSError:
-        return Check(key="disk", status="ok", code="disk.elsewhere")
-    low = free < storage.low_disk_bytes
-    return Check(
-        key="disk",
-        status="fail" if low else "ok",
-        code="disk.low" if low else "disk.ok",
+        return Found("elsewhere")
+    return Found(
+        "low" if free < storage.low_disk_bytes else "ok",
         value=round(free / BYTES_PER_GB, 1),
         unit="GB",
         expected="at_least",
         limit=round(storage.low_disk_bytes / BYTES_PER_GB, 1),
     )
+
+
+DISK = StateCheck(
+    key="disk",
+    title=Words(en="Disk", de="Platte"),
+    findings=(
+        Finding(
+            "low",
+            "fail",
+            Words(en="{{value}} free", de="{{value}} frei"),
+            remedy=Words(
+                en="Free some space before a session is recorded.",
+                de="Platz schaffen, bevor eine Sitzung aufgezeichnet wird.",
+            ),
+        ),
+        Finding(
+            "elsewhere", "ok", Words(en="On a database server", de="Auf einem Datenbankserver")
+        ),
+        Finding("ok", "ok", Words(en="{{value}} free", de="{{value}} frei")),
+    ),
+    look=_disk,
+)

@@ -1,7 +1,5 @@
 """Whether what the session will be shown is what the study says, word for word."""
 
-from collections.abc import Iterator
-
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
@@ -9,25 +7,27 @@ from app.errors import ReembodyError
 from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for, protocol_of
 from app.features.movement.avatar import configuration_by_hash
-from app.features.record.preflight.schemas import Check
+from app.features.record.preflight.check import Finding, Found, Situation, StateCheck
 from app.features.record.sessions import plan_of
-from app.models import AvatarVersion, StudySession, StudyVersion
+from app.models import AvatarVersion, StudyVersion
 from app.protocol import sha256_of
+from app.words import Words
 
 SHORT = 12
 """Hexadecimal digits of a hash that people compare."""
+_RESTORE = Words(
+    en="The database was changed by hand. Restore it from a backup.",
+    de="Die Datenbank wurde von Hand geändert. Aus einem Backup wiederherstellen.",
+)
 
 
-def study_checks(db: Session, session: StudySession) -> Iterator[Check]:
-    """The checks of the study's content, in the order of the list."""
-    version = db.get_one(StudyVersion, session.study_version_id)
-    yield _instruments(db, version)
-    yield _configuration(db, session, version)
-    yield _language(db, session, version)
+def _version(situation: Situation) -> StudyVersion:
+    return situation.db.get_one(StudyVersion, situation.session.study_version_id)
 
 
-def _instruments(db: Session, version: StudyVersion) -> Check:
+def _instruments(situation: Situation) -> Found:
     """Each stored as it was when the study took it up, and readable."""
+    db, version = situation.db, _version(situation)
     kept: list[str] = []
     damaged: list[str] = []
     for key in sorted(version.instruments):
@@ -42,37 +42,36 @@ def _instruments(db: Session, version: StudyVersion) -> Check:
         else:
             damaged.append(key)
     if damaged:
-        return Check(
-            key="instruments",
-            status="fail",
-            code="instruments.damaged",
-            value=len(damaged),
-            unit="instruments",
-            details=tuple(damaged),
-        )
-    return Check(
-        key="instruments",
-        status="ok",
-        code="instruments.ok" if kept else "instruments.none",
-        value=len(kept),
-        unit="instruments",
-        details=tuple(kept),
-    )
+        return Found("damaged", value=len(damaged), unit="instruments", details=tuple(damaged))
+    return Found("ok" if kept else "none", value=len(kept), unit="instruments", details=tuple(kept))
 
 
-def _configuration(db: Session, session: StudySession, version: StudyVersion) -> Check:
+INSTRUMENTS = StateCheck(
+    key="instruments",
+    title=Words(en="Instruments", de="Instrumente"),
+    findings=(
+        Finding(
+            "damaged",
+            "fail",
+            Words(en="{{value}} not as stored", de="{{value}} nicht wie gespeichert"),
+            remedy=_RESTORE,
+        ),
+        Finding("none", "ok", Words(en="The study has none", de="Die Studie hat keine")),
+        Finding("ok", "ok", Words(en="{{value}} as stored", de="{{value}} wie gespeichert")),
+    ),
+    look=_instruments,
+)
+
+
+def _configuration(situation: Situation) -> Found:
     """The study's content, and the avatar's if it has one, still have the hashes on record."""
+    db, session, version = situation.db, situation.session, _version(situation)
     details = [f"study v{version.number} {version.content_hash[:SHORT]}"]
     sound = sha256_of(version.canonical_json) == version.content_hash
     if session.avatar_configuration_hash is not None:
         details.append(f"avatar {session.avatar_configuration_hash[:SHORT]}")
         sound = sound and _is_kept(db, session.avatar_configuration_hash)
-    return Check(
-        key="configuration",
-        status="ok" if sound else "fail",
-        code="configuration.ok" if sound else "configuration.differs",
-        details=tuple(details),
-    )
+    return Found("ok" if sound else "differs", details=tuple(details))
 
 
 def _is_kept(db: Session, content_hash: str) -> bool:
@@ -88,8 +87,25 @@ def _is_kept(db: Session, content_hash: str) -> bool:
     return True
 
 
-def _language(db: Session, session: StudySession, version: StudyVersion) -> Check:
+CONFIGURATION = StateCheck(
+    key="configuration",
+    title=Words(en="Configuration", de="Konfiguration"),
+    findings=(
+        Finding(
+            "differs",
+            "fail",
+            Words(en="Not as stored", de="Nicht wie gespeichert"),
+            remedy=_RESTORE,
+        ),
+        Finding("ok", "ok", Words(en="As stored", de="Wie gespeichert")),
+    ),
+    look=_configuration,
+)
+
+
+def _language(situation: Situation) -> Found:
     """Every text of the study and every instrument exists in the session's language."""
+    db, session, version = situation.db, situation.session, _version(situation)
     language = session.language
     texts = {f"text {key}": text for key, text in protocol_of(version).texts.items()}
     texts |= {f"step {step.key}": step.title for step in plan_of(db, session)}
@@ -98,24 +114,33 @@ def _language(db: Session, session: StudySession, version: StudyVersion) -> Chec
         try:
             languages = instrument_of(instrument_for(db, version, key)).languages
         except (ReembodyError, ValueError):
-            continue  # Told by the check of the instruments.
+            continue  # The check of the instruments says so.
         if language not in languages:
             missing.append(f"instrument {key}")
     if missing:
-        return Check(
-            key="language",
-            status="fail",
-            code="language.missing",
-            value=len(missing),
-            unit="texts",
-            details=(language, *missing),
-        )
+        return Found("missing", value=len(missing), unit="texts", details=(language, *missing))
     count = len(texts) + len(version.instruments)
-    return Check(
-        key="language",
-        status="ok",
-        code="language.ok",
-        value=count,
-        unit="texts",
-        details=(language,),
-    )
+    return Found("ok", value=count, unit="texts", details=(language,))
+
+
+LANGUAGE = StateCheck(
+    key="language",
+    title=Words(en="Language", de="Sprache"),
+    findings=(
+        Finding(
+            "missing",
+            "fail",
+            Words(en="{{value}} texts missing", de="{{value}} Texte fehlen"),
+            remedy=Words(
+                en="Add the texts in a new version of the study, or run the session in another "
+                "language.",
+                de="Die Texte in einer neuen Version der Studie ergänzen oder in anderer Sprache "
+                "durchführen.",
+            ),
+        ),
+        Finding(
+            "ok", "ok", Words(en="All {{value}} texts there", de="Alle {{value}} Texte vorhanden")
+        ),
+    ),
+    look=_language,
+)

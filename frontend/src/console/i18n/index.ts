@@ -26,6 +26,7 @@ import { networkDe, networkEn } from "./networkTexts";
 import { peopleDe, peopleEn } from "./peopleTexts";
 import { preflightDe, preflightEn } from "./preflightTexts";
 import { preregistrationDe, preregistrationEn } from "./preregistrationTexts";
+import { registryDe, registryEn } from "./registryTexts.generated";
 import { replayDe, replayEn } from "./replayTexts";
 import { rightsDe, rightsEn } from "./rightsTexts";
 import { safetyDe, safetyEn } from "./safetyTexts";
@@ -63,6 +64,7 @@ const allEn = {
   ...walkSetEn,
   ...jointMapEn,
   ...verificationEn,
+  ...registryEn,
   ...preflightEn,
   ...liveEn,
   ...replayEn,
@@ -97,6 +99,7 @@ const allDe = {
   ...walkSetDe,
   ...jointMapDe,
   ...verificationDe,
+  ...registryDe,
   ...preflightDe,
   ...liveDe,
   ...replayDe,

@@ -1,6 +1,6 @@
 import type { Check } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { preflightEn } from "../../i18n/preflightTexts";
+import { registryEn } from "../../i18n/registryTexts.generated";
 import { againAfter, amountOf, expectationOf, failing, todoOf, valuesOf } from "./words";
 
 const check = (more: Partial<Check>): Check => ({
@@ -27,7 +27,7 @@ describe("the words of a check", () => {
   });
 
   it("say what to do about everything that can fail", () => {
-    const failures = Object.keys(preflightEn)
+    const failures = Object.keys(registryEn)
       .filter((key) => key.startsWith("preflight.todo."))
       .map((key) => key.slice("preflight.todo.".length));
     expect(failures).toContain("storage.failing");
@@ -35,7 +35,7 @@ describe("the words of a check", () => {
       "preflight.todo.clock.uncertain",
     );
     expect(todoOf(check({ status: "overridden", code: "clock.uncertain" }))).toBeNull();
-    const found = Object.keys(preflightEn).filter((key) => key.startsWith("preflight.found."));
+    const found = Object.keys(registryEn).filter((key) => key.startsWith("preflight.found."));
     for (const code of failures) expect(found).toContain(`preflight.found.${code}`);
   });
 
