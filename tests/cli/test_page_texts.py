@@ -32,7 +32,7 @@ def test_words_that_cannot_be_shown_are_refused(en: str, de: str, said: str) -> 
 
 def test_a_table_quotes_what_typescript_would_read_otherwise() -> None:
     """Quotes and line breaks are escaped; letters beyond ASCII stay as they are."""
-    table = typescript_table({"a.b": Words('say "no"', "ü\n")}, name="x", about="A.", command="c")
+    table = typescript_table("x", {"a.b": Words('say "no"', "ü\n")})
     assert '  "a.b": "say \\"no\\"",' in table
     assert '  "a.b": "ü\\n",' in table
     assert "export const xDe: Readonly<Record<keyof typeof xEn, string>> = {" in table

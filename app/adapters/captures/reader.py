@@ -1,55 +1,16 @@
 """Reading a capture: bytes or a file of any known format in, a `Capture` out."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from importlib import import_module
+from dataclasses import replace
 from pathlib import Path
-from typing import Protocol, cast
 
 from app.adapters.captures.capture import Capture, CaptureError, Limits, Reading
-from app.adapters.captures.sniffing import format_of, what_it_looks_like
+from app.adapters.captures.formats import FORMATS, format_of
+from app.adapters.captures.sniffing import what_it_looks_like
 from app.science.rig import RigError
 from app.science.rotations import RotationError
 
 _AS_IT_IS = Reading()
 _LIMITS = Limits()
-
-
-@dataclass(frozen=True)
-class CaptureFormat:
-    """A format that can be read: its key, what people call it, and how its files end."""
-
-    key: str
-    title: str
-    extensions: tuple[str, ...]
-
-
-FORMATS: tuple[CaptureFormat, ...] = (
-    CaptureFormat("bvh", "BVH (Biovision Hierarchy)", (".bvh",)),
-    CaptureFormat("motive-csv", "OptiTrack Motive CSV", (".csv",)),
-    CaptureFormat("asf-amc", "Acclaim ASF and AMC", (".amc", ".asf")),
-    CaptureFormat("c3d", "C3D markers", (".c3d",)),
-    CaptureFormat("trc", "TRC markers", (".trc",)),
-    CaptureFormat("vicon-tracker-csv", "Vicon Tracker CSV", (".csv",)),
-    CaptureFormat("uxf-tracker", "UXF tracker CSV (Unity)", (".csv",)),
-    CaptureFormat("quest-log", "Quest movement log", (".csv",)),
-)
-
-# Read from a module only when a file of that kind comes: a server starts without them.
-_READERS = {
-    "bvh": ("bvh_capture", "read_bvh_capture"),
-    "motive-csv": ("motive", "read_motive"),
-    "asf-amc": ("asf_amc", "read_asf_amc"),
-    "c3d": ("c3d", "read_c3d"),
-    "trc": ("trc", "read_trc"),
-    "vicon-tracker-csv": ("vicon_tracker", "read_vicon_tracker"),
-    "uxf-tracker": ("uxf_tracker", "read_uxf_tracker"),
-    "quest-log": ("quest_log", "read_quest_log"),
-}
-
-
-class _Reader(Protocol):
-    def __call__(self, data: bytes, *, name: str, reading: Reading, limits: Limits) -> Capture: ...
 
 
 def read_capture(
@@ -72,12 +33,12 @@ def read_capture(
     if len(data) > limits.bytes:
         raise CaptureError(f"the file has {len(data)} bytes, up to {limits.bytes} are read.")
     _check_reading(reading)
-    key = format_of(data, name)
-    if key is None:
+    found = format_of(data, name)
+    if found is None:
         valid = ", ".join(known.title for known in FORMATS)
         raise CaptureError(f"{what_it_looks_like(data)}; captures that can be read are {valid}.")
     try:
-        return _reader(key)(data, name=name, reading=reading, limits=limits)
+        return found.load_reader()(data, name=name, reading=reading, limits=limits)
     except (RigError, RotationError) as error:
         # The body itself is impossible, which no single line is to blame for.
         raise CaptureError(str(error)) from error
@@ -87,14 +48,6 @@ def _check_reading(reading: Reading) -> None:
     scale = reading.metres_per_unit
     if scale is not None and not 1e-6 <= scale <= 1e3:
         raise CaptureError(f"{scale} m per unit: 0.000001 to 1000 is valid, such as 0.01 for cm.")
-
-
-def _reader(key: str) -> _Reader:
-    module, function = _READERS[key]
-    reader: Callable[..., Capture] = getattr(
-        import_module(f"app.adapters.captures.{module}"), function
-    )
-    return cast("_Reader", reader)
 
 
 def read_capture_file(

@@ -17,7 +17,9 @@ def retarget(
         str | None,
         typer.Option(help="130cm, 165cm, 190cm, any other stature, or a file with a skeleton."),
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Write the result as .bvh or .csv.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Write the result; its ending is the format, as .bvh.")
+    ] = None,
     lock_feet: Annotated[
         bool, typer.Option("--lock-feet", help="Hold feet at their places while they stand.")
     ] = False,

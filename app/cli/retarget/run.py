@@ -1,11 +1,10 @@
 """Bringing a capture onto an avatar from the command line."""
 
 import os
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.adapters.captures import to_bvh, to_csv
+from app.adapters.captures import WRITERS
 from app.cli.errors import require_folder_of
 from app.cli.retarget.inputs import (
     Clip,
@@ -25,7 +24,7 @@ from app.science.retargeting import (
 )
 from app.science.rig import RigMotion
 
-_WRITTEN = (".bvh", ".csv")
+_WRITERS = {one.suffix: one for one in WRITERS}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,7 +34,7 @@ class RetargetOrder:
     Attributes:
         clip: the capture.
         to: `165cm` and the like, or a file with a skeleton.
-        out: .bvh or .csv to write; None to only measure.
+        out: file to write, its ending one of a writer's; None to only measure.
         ground: see `app.cli.retarget.inputs`.
         lock_feet: hold the feet while they stand.
         joint_map: JSON file for the clip; None to go by its joints' names.
@@ -91,8 +90,8 @@ def carry_out(order: RetargetOrder) -> Done:
 
 
 def write_motion(path: Path, motion: RigMotion) -> None:
-    """Write BVH or CSV as the name ends, whole or not at all; raises OSError."""
-    pieces: Iterable[str] = [to_bvh(motion)] if path.suffix.lower() == ".bvh" else to_csv(motion)
+    """Write in the format that the name ends with, whole or not at all; raises OSError."""
+    pieces = _WRITERS[path.suffix.lower()].write(motion)
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         with part.open("x", encoding="utf-8", newline="\n") as file:
@@ -105,8 +104,9 @@ def write_motion(path: Path, motion: RigMotion) -> None:
 def _check_out(order: RetargetOrder) -> None:
     if order.out is None:
         return
-    if order.out.suffix.lower() not in _WRITTEN:
-        raise ValueError(f"--out {order.out}: names ending with .bvh or .csv are valid")
+    if order.out.suffix.lower() not in _WRITERS:
+        valid = " or ".join(_WRITERS)
+        raise ValueError(f"--out {order.out}: names ending with {valid} are valid")
     require_folder_of(order.out)
     if order.out.exists() and order.clip.exists() and order.out.samefile(order.clip):
         raise ValueError(f"--out {order.out}: that is the clip itself, give another name")

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from app.adapters.captures import FORMATS, CaptureError, Limits, Reading, read_capture
-from app.adapters.captures.sniffing import format_of
+from app.adapters.captures.formats import format_of
 
 _HEADS = {
     "bvh": b"\xef\xbb\xbfHIERARCHY\r\nROOT Hips\r\n",
@@ -19,21 +19,37 @@ _HEADS = {
 }
 
 
+def _key_of(data: bytes, name: str) -> str | None:
+    found = format_of(data, name)
+    return None if found is None else found.key
+
+
 @pytest.mark.parametrize("key", _HEADS)
 def test_the_content_tells_the_format_whatever_the_name(key: str) -> None:
     """Half of the formats end in .csv, and people rename files."""
-    assert format_of(_HEADS[key], "recording.txt") == key
+    assert _key_of(_HEADS[key], "recording.txt") == key
     assert key in {known.key for known in FORMATS}
 
 
 def test_a_blank_before_the_first_word_makes_no_binary_file() -> None:
     """A C3D's second byte is "P", and so may be a text's."""
-    assert format_of(b"\nPathFileType\t4\n", "walk.csv") == "trc"
+    assert _key_of(b"\nPathFileType\t4\n", "walk.csv") == "trc"
 
 
 def test_every_format_can_be_told_by_its_content() -> None:
     """No format depends on its file's name."""
     assert {known.key for known in FORMATS} == set(_HEADS)
+
+
+def test_every_format_names_a_function_that_reads() -> None:
+    """Readers are named in words, so that a server starts without them; each name is right."""
+    assert all(callable(known.load_reader()) for known in FORMATS)
+
+
+def test_an_extension_of_several_formats_tells_none() -> None:
+    """Four formats end in .csv, and content decides between them; .trc is one format's own."""
+    assert _key_of(b"a,b\n1,2\n", "table.csv") is None
+    assert _key_of(b"a,b\n1,2\n", "table.TRC") == "trc"
 
 
 def test_an_extension_helps_where_the_content_is_broken() -> None:

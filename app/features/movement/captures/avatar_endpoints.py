@@ -10,6 +10,7 @@ from fastapi.responses import FileResponse
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
+from app.adapters.captures import WRITERS, writer_of
 from app.features.movement.captures.joint_maps import (
     joint_map_view,
     mapped_capture,
@@ -37,7 +38,7 @@ from app.platform.dependencies import Context, Reading, SignedIn, Writing
 from app.platform.half_made import uploads_of
 
 router = APIRouter(prefix="/captures", tags=["captures"])
-MEDIA_TYPES: dict[ExportFormat, str] = {"bvh": "text/plain", "csv": "text/csv"}
+WRITTEN = " or ".join(one.name.en for one in WRITERS)
 
 
 @router.get("/{capture_id}/joint-map")
@@ -93,8 +94,8 @@ async def get_verification(
     response_class=FileResponse,
     responses={
         200: {
-            "content": {MEDIA_TYPES["bvh"]: BINARY, MEDIA_TYPES["csv"]: BINARY},
-            "description": "The movement on the avatar, as a BVH or CSV file.",
+            "content": {one.media_type: BINARY for one in WRITERS},
+            "description": f"The movement on the avatar, as a {WRITTEN} file.",
         }
     },
 )
@@ -104,7 +105,7 @@ async def get_retargeted(
     _: SignedIn,
     *,
     avatar: Avatar,
-    format: ExportFormat = "bvh",  # noqa: A002 - the word of the address
+    format: ExportFormat = WRITERS[0].key,  # noqa: A002 - the word of the address
     lock_feet: bool = False,
 ) -> FileResponse:
     """The movement on an avatar, to keep."""
@@ -112,8 +113,8 @@ async def get_retargeted(
     path = await _retargeted_file(context, mapped, avatar, format, lock_feet=lock_feet)
     return FileResponse(
         path,
-        media_type=MEDIA_TYPES[format],
-        headers=attachment(f"{Path(mapped.source.name).stem}-{avatar}.{format}"),
+        media_type=writer_of(format).media_type,
+        headers=attachment(f"{Path(mapped.source.name).stem}-{avatar}{writer_of(format).suffix}"),
         background=BackgroundTask(path.unlink),
     )
 

@@ -7,15 +7,16 @@ legs. Its series are thinned for drawing and share `times_s`.
 """
 
 from datetime import datetime
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from app.adapters.captures import WRITERS
 
 Kind = Literal["skeleton", "markers", "bodies"]
 Up = Literal["x", "y", "z"]
 Origin = Literal["file", "format", "guessed", "chosen"]
 Shown = Literal["recorded", "skeleton"]
-ExportFormat = Literal["bvh", "csv"]
 JointSource = Literal["name", "hierarchy", "chosen"]
 AVATAR = r"^[0-9]{2,3}(\.[0-9])?cm$"
 Avatar = Annotated[str, StringConstraints(pattern=AVATAR)]
@@ -26,6 +27,11 @@ JointName = Annotated[str, StringConstraints(min_length=1, max_length=200)]
 MAX_AVATARS = 6
 MAX_BODY_JOINTS = 64
 Side = Literal["left", "right"]
+if TYPE_CHECKING:
+    ExportFormat = str
+else:
+    # The interface lists what the registry holds; no type checker reads a computed Literal.
+    ExportFormat = Literal[tuple(one.key for one in WRITERS)]
 
 
 class ReadingChoice(BaseModel):

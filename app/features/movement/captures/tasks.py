@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.adapters.captures import to_bvh, to_csv
+from app.adapters.captures import writer_of
 from app.features.movement.captures.opening import Mapped, Store, on_avatar, open_stored
 from app.features.movement.captures.preview import encode, points_of, skeleton_points, step_for
 from app.features.movement.captures.schemas import (
@@ -171,7 +171,4 @@ def write_retargeted(
     """The movement on an avatar as a file of that format; raises Cannot."""
     motion = on_avatar(mapped, avatar, lock_feet=lock_feet).motion
     with to.open("w", encoding="utf-8", newline="\n") as file:
-        if format_ == "csv":
-            file.writelines(to_csv(motion))
-        else:
-            file.write(to_bvh(motion))
+        file.writelines(writer_of(format_).write(motion))

@@ -3,9 +3,11 @@ import { Button, FileButton } from "@mantine/core";
 import { Icon } from "@shared/ui/Icon";
 import { type DragEvent, type JSX, useState } from "react";
 import { useTexts } from "../i18n";
+import { CAPTURE_EXTENSIONS, CAPTURE_FORMATS } from "../i18n/registries.generated";
 import classes from "./Captures.module.css";
 
-const ACCEPTED = ".bvh,.csv,.amc,.asf,.c3d,.trc,.txt";
+/** A table may have been saved as text. */
+const ACCEPTED = [...CAPTURE_EXTENSIONS, ".txt"].join(",");
 
 export function DropZone({
   onFiles,
@@ -14,6 +16,7 @@ export function DropZone({
 }): JSX.Element {
   const { t } = useTexts();
   const [over, setOver] = useState(false);
+  const formats = CAPTURE_FORMATS.map((format) => t(`format.${format}`)).join(", ");
   const stop = (event: DragEvent, isOver: boolean) => {
     event.preventDefault();
     setOver(isOver);
@@ -42,20 +45,16 @@ export function DropZone({
             )}
           </FileButton>
         </div>
-        <span className={classes.soft}>{t("captures.drop.hint")}</span>
+        <span className={classes.soft}>{t("captures.drop.hint", { formats })}</span>
       </div>
     </section>
   );
 }
 
-/** What can be brought, and which programs write it. */
-const FORMATS = [
-  ...(["bvh", "motive-csv", "asf-amc", "c3d", "trc"] as const),
-  ...(["vicon-tracker-csv", "uxf-tracker", "quest-log"] as const),
-];
-type Format = (typeof FORMATS)[number];
+type Format = (typeof CAPTURE_FORMATS)[number];
 
-const isFormat = (key: string): key is Format => (FORMATS as readonly string[]).includes(key);
+const isFormat = (key: string): key is Format =>
+  (CAPTURE_FORMATS as readonly string[]).includes(key);
 
 /** The name of a format; of one that this page does not know, its key. */
 export function useFormatName(): (format: string) => string {
@@ -63,11 +62,12 @@ export function useFormatName(): (format: string) => string {
   return (format) => (isFormat(format) ? t(`format.${format}`) : format);
 }
 
+/** What can be brought in, and which programs write it. */
 export function Formats(): JSX.Element {
   const { t } = useTexts();
   return (
     <dl className={classes.formats}>
-      {FORMATS.map((format) => (
+      {CAPTURE_FORMATS.map((format) => (
         <div key={format}>
           <dt>{t(`format.${format}`)}</dt>
           <dd>{t(`format.${format}.from`)}</dd>

@@ -4,6 +4,7 @@ import {
   type AvatarWalker,
   type Capture,
   captures,
+  type MovementFormat,
   type Verification,
   type Walker,
 } from "@shared/api/captures";
@@ -12,6 +13,7 @@ import { Icon } from "@shared/ui/Icon";
 import type { JSX, ReactNode } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
+import { MOVEMENT_FORMATS } from "../i18n/registries.generated";
 import { useDownload } from "../pages/study/useDownload";
 import { statureOf } from "./avatars";
 import { liftsOf } from "./Verdict";
@@ -178,7 +180,7 @@ function Slide({ walker, avatar, metres }: SlideProps): JSX.Element {
 
 interface ExportsProps {
   readonly name: string;
-  readonly onExport: (format: "bvh" | "csv") => void;
+  readonly onExport: (format: MovementFormat) => void;
 }
 
 function Exports({ name, onExport }: ExportsProps): JSX.Element {
@@ -186,16 +188,16 @@ function Exports({ name, onExport }: ExportsProps): JSX.Element {
   const avatar = t("capture.avatar.cm", { value: number(statureOf(name), language) });
   return (
     <span className={classes.exports}>
-      {(["bvh", "csv"] as const).map((format) => (
+      {MOVEMENT_FORMATS.map((format) => (
         <Button
           key={format}
           size="compact-xs"
           variant="default"
-          aria-label={t("verify.export", { avatar, format: format.toUpperCase() })}
+          aria-label={t("verify.export", { avatar, format: t(`movement.format.${format}`) })}
           leftSection={<Icon name="download" size={13} />}
           onClick={() => onExport(format)}
         >
-          {format.toUpperCase()}
+          {t(`movement.format.${format}`)}
         </Button>
       ))}
     </span>

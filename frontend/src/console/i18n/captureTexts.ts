@@ -4,8 +4,7 @@ export const capturesEn = {
   "captures.lead": "Recorded movement, and what becomes of it on avatars of any size.",
   "captures.drop": "Drop capture files here, or",
   "captures.choose": "Choose files",
-  "captures.drop.hint":
-    "BVH, Motive CSV, AMC with its ASF, C3D, TRC, Vicon Tracker CSV, UXF and Quest logs. Several at once are fine.",
+  "captures.drop.hint": "{{formats}}. Several at once are fine.",
   "captures.uploads": "Files being brought in",
   "captures.upload.waits": "Waits for its turn",
   "captures.upload.sends": "{{percent}} % sent",
@@ -59,23 +58,6 @@ export const capturesEn = {
   "captures.delete.title": "Delete this capture?",
   "captures.delete.body":
     "{{name}} goes for good, with the file it came from. The joint map of its skeleton stays for other captures.",
-  "format.bvh": "BVH",
-  "format.motive-csv": "Motive CSV",
-  "format.asf-amc": "AMC and ASF",
-  "format.c3d": "C3D",
-  "format.trc": "TRC",
-  "format.vicon-tracker-csv": "Vicon Tracker CSV",
-  "format.uxf-tracker": "UXF tracker CSV",
-  "format.quest-log": "Quest log",
-  "format.bvh.from": "Skeleton. Exported by Motive, MVN, Rokoko Studio, Blender, MotionBuilder.",
-  "format.motive-csv.from":
-    "Skeleton, rigid bodies or markers. OptiTrack Motive: File, Export Tracking Data.",
-  "format.asf-amc.from": "Skeleton. Two files; the CMU motion capture database has them.",
-  "format.c3d.from": "Markers. Vicon Nexus, Qualisys, Motive.",
-  "format.trc.from": "Markers. OpenSim, Motion Analysis Cortex.",
-  "format.vicon-tracker-csv.from": "Rigid bodies. Vicon Tracker: export as CSV.",
-  "format.uxf-tracker.from": "One tracker. Written by the Unity Experiment Framework.",
-  "format.quest-log.from": "Headset and hands. Movement logs of Quest applications.",
 } as const;
 
 export const capturesDe: Readonly<Record<keyof typeof capturesEn, string>> = {
@@ -83,8 +65,7 @@ export const capturesDe: Readonly<Record<keyof typeof capturesEn, string>> = {
   "captures.lead": "Aufgezeichnete Bewegung, und was auf Avataren jeder Größe daraus wird.",
   "captures.drop": "Aufnahmen hier ablegen, oder",
   "captures.choose": "Dateien wählen",
-  "captures.drop.hint":
-    "BVH, Motive CSV, AMC mit ihrer ASF, C3D, TRC, Vicon Tracker CSV, UXF- und Quest-Logs. Gern mehrere zugleich.",
+  "captures.drop.hint": "{{formats}}. Gern mehrere zugleich.",
   "captures.uploads": "Dateien auf dem Weg",
   "captures.upload.waits": "Wartet, bis sie an der Reihe ist",
   "captures.upload.sends": "{{percent}} % gesendet",
@@ -138,21 +119,4 @@ export const capturesDe: Readonly<Record<keyof typeof capturesEn, string>> = {
   "captures.delete.title": "Diese Aufnahme löschen?",
   "captures.delete.body":
     "{{name}} geht für immer, samt der Datei, aus der sie kam. Die Gelenkzuordnung ihres Skeletts bleibt für andere Aufnahmen.",
-  "format.bvh": "BVH",
-  "format.motive-csv": "Motive CSV",
-  "format.asf-amc": "AMC und ASF",
-  "format.c3d": "C3D",
-  "format.trc": "TRC",
-  "format.vicon-tracker-csv": "Vicon Tracker CSV",
-  "format.uxf-tracker": "UXF-Tracker-CSV",
-  "format.quest-log": "Quest-Log",
-  "format.bvh.from": "Skelett. Aus Motive, MVN, Rokoko Studio, Blender, MotionBuilder.",
-  "format.motive-csv.from":
-    "Skelett, Starrkörper oder Marker. OptiTrack Motive: File, Export Tracking Data.",
-  "format.asf-amc.from": "Skelett. Zwei Dateien; die Bewegungsdatenbank der CMU hat sie.",
-  "format.c3d.from": "Marker. Vicon Nexus, Qualisys, Motive.",
-  "format.trc.from": "Marker. OpenSim, Motion Analysis Cortex.",
-  "format.vicon-tracker-csv.from": "Starrkörper. Vicon Tracker: als CSV exportieren.",
-  "format.uxf-tracker.from": "Ein Tracker. Geschrieben vom Unity Experiment Framework.",
-  "format.quest-log.from": "Headset und Hände. Bewegungslogs von Quest-Anwendungen.",
 };

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { liveDe, liveEn } from "./liveTexts";
 import { preflightDe, preflightEn } from "./preflightTexts";
-import { registryDe, registryEn } from "./registryTexts.generated";
+import { registryDe, registryEn } from "./registries.generated";
 
 const placeholders = (text: string | undefined) =>
   [...(text ?? "").matchAll(/{{(\w+)}}/g)].map(([, name]) => name).sort();

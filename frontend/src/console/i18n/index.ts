@@ -26,7 +26,7 @@ import { networkDe, networkEn } from "./networkTexts";
 import { peopleDe, peopleEn } from "./peopleTexts";
 import { preflightDe, preflightEn } from "./preflightTexts";
 import { preregistrationDe, preregistrationEn } from "./preregistrationTexts";
-import { registryDe, registryEn } from "./registryTexts.generated";
+import { registryDe, registryEn } from "./registries.generated";
 import { replayDe, replayEn } from "./replayTexts";
 import { rightsDe, rightsEn } from "./rightsTexts";
 import { safetyDe, safetyEn } from "./safetyTexts";

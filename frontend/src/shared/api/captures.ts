@@ -1,7 +1,7 @@
 /** Requests about captures of movement, and about what becomes of them on avatars. */
 import { decodeMotion, type PointMotion } from "../stage/motion";
 import { answer, errorFromBody, server, Unreachable } from "./request";
-import type { components } from "./schema";
+import type { components, operations } from "./schema";
 
 type Schemas = components["schemas"];
 export type CaptureListed = Schemas["CaptureListed"];
@@ -16,6 +16,9 @@ export type JointSource = JointMapView["sources"][string];
 export type Verification = Schemas["VerificationView"];
 export type Walker = Schemas["WalkerView"];
 export type AvatarWalker = Schemas["AvatarWalkerView"];
+export type MovementFormat = NonNullable<
+  operations["get_retargeted_api_captures__capture_id__retargeted_get"]["parameters"]["query"]["format"]
+>;
 export type Shown = "recorded" | "skeleton";
 
 /** One or two files that make a capture: an AMC goes with its ASF. */
@@ -67,7 +70,7 @@ export const captures = {
       }),
     ),
   fileUrl: (id: string, companion: boolean) => `${path(id)}/file?companion=${companion}`,
-  exportUrl: (id: string, avatar: string, format: "bvh" | "csv", lockFeet: boolean) =>
+  exportUrl: (id: string, avatar: string, format: MovementFormat, lockFeet: boolean) =>
     `${path(id)}/retargeted?avatar=${avatar}&format=${format}&lock_feet=${lockFeet}`,
 };
 

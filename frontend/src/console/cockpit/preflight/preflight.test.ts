@@ -1,6 +1,6 @@
 import type { Check } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { registryEn } from "../../i18n/registryTexts.generated";
+import { registryEn } from "../../i18n/registries.generated";
 import { againAfter, amountOf, expectationOf, failing, todoOf, valuesOf } from "./words";
 
 const check = (more: Partial<Check>): Check => ({
