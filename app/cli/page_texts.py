@@ -9,6 +9,7 @@ from pathlib import Path
 
 from app.adapters.captures import FORMATS, WRITERS, extensions, format_texts, writer_texts
 from app.features.record.preflight.checks import check_texts
+from app.science.statistical_tests import texts_of_tests
 from app.words import Words, typescript_list, typescript_table
 
 TARGET = "frontend/src/console/i18n/registries.generated.ts"
@@ -19,7 +20,7 @@ COMMAND = "python -m app.cli.page_texts"
 def texts() -> dict[str, Words]:
     """Every text of every registry, by its key in the pages; raises ValueError for a key twice."""
     found: dict[str, Words] = {}
-    for registry in (check_texts(), format_texts(), writer_texts()):
+    for registry in (check_texts(), format_texts(), writer_texts(), texts_of_tests()):
         if twice := found.keys() & registry.keys():
             raise ValueError(
                 f"The texts {sorted(twice)} stand in two registries; give one of them another key."

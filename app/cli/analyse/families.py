@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import combinations
 from typing import TypeVar
 
 import numpy as np
 
+from app.science.statistical_tests import TESTS, Outcome, Sample
 from app.science.statistics import (
     AgainstReference,
     Cells,
@@ -27,6 +29,8 @@ from app.science.statistics import (
 )
 
 T = TypeVar("T")
+TOLD = frozenset({"friedman", "page_trend", "rm_anova", "against_reference"})
+"""Tests of the registry that have figures of their own in the output."""
 _MOST_FACTORS = 2
 _TWO = 2
 
@@ -54,6 +58,7 @@ class Family:
         page: of three levels or more.
         intervals: of each pair's mean difference, in the order of `pairs`.
         planned: each level against the reference, if one was named; its own use of Holm's rule.
+        further: by key, what the tests of the registry gave that have no place above.
     """
 
     question: Question
@@ -62,6 +67,7 @@ class Family:
     pairs: tuple[Comparison, ...]
     intervals: tuple[Interval | None, ...]
     planned: AgainstReference | None
+    further: dict[str, Outcome]
 
 
 def families_of(
@@ -116,7 +122,23 @@ def _family_of(
         planned=tried(lambda: against_reference(values, levels, reference), warnings, where)
         if reference is not None
         else None,
+        further=_further(whole, levels, warnings, where),
     )
+
+
+def _further(
+    whole: FloatArray, levels: tuple[str, ...], warnings: list[str], where: str
+) -> dict[str, Outcome]:
+    """Every other test that compares levels as they are, by its key."""
+    found = {}
+    for test in TESTS:
+        if test.key in TOLD or test.needs_reference or len(levels) < test.fewest_conditions:
+            continue
+        sample = Sample(whole, levels, test.directions[0])
+        outcome = tried(partial(test.load(), sample), warnings, where)
+        if outcome is not None:
+            found[test.key] = outcome
+    return found
 
 
 def tried(compute: Callable[[], T], warnings: list[str], where: str = "") -> T | None:

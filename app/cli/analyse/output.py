@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from app.cli.analyse.families import Family
 from app.cli.analyse.run import Analysis
+from app.science.statistical_tests import statistical_test
 from app.science.statistics import AgainstReference, AlignedRanks, Interval, RmAnova
 
 _NONE = "-"
@@ -74,6 +75,8 @@ def _family(family: Family) -> Iterator[str]:
             f"  Page      L = {page.statistic:g}, one-sided {_p(page.p)} that it rises,"
             f" {_p(page.p_falling)} that it falls, {page.method}"
         )
+    for key, outcome in family.further.items():
+        yield f"  {statistical_test(key).name.en}  {outcome.sentence}"
     if family.pairs:
         yield from _pairs(family)
     if family.planned is not None:

@@ -86,6 +86,10 @@ def _family_json(family: Family) -> dict[str, Any]:
         ],
         "page": _page(family.page),
         "against_reference": _planned(family.planned),
+        **{
+            key: {"n": outcome.n, "p": outcome.p, "words": outcome.sentence}
+            for key, outcome in family.further.items()
+        },
     }
 
 

@@ -7,16 +7,11 @@ from app.features.design.studies import protocol_of
 from app.features.results.preregistration.schemas import DeclarationView
 from app.models import StudyVersion
 from app.protocol import ExclusionRule, Preregistration, PrimaryTest
+from app.science.statistical_tests import statistical_test
 
 MEASURES = {
     "contact_time": "contact time (s)",
     "completions": "completed tasks",
-}
-TESTS = {
-    "friedman": "Friedman's test",
-    "page_trend": "Page's trend test",
-    "rm_anova": "analysis of variance with repeated measures (Greenhouse-Geisser)",
-    "against_reference": "exact Wilcoxon signed-rank tests against the reference",
 }
 DIRECTIONS = {"two_sided": "two-sided", "rises": "it rises", "falls": "it falls"}
 RULES = {
@@ -78,7 +73,7 @@ def primary_words(primary: PrimaryTest) -> str:
     else:
         measure = MEASURES[primary.measure]
     limb = {"both": "the mean of both tasks"}.get(primary.limb, f"the {primary.limb} task")
-    words = f"{TESTS[primary.test]} of {measure} in {limb}, by added latency"
+    words = f"{statistical_test(primary.test).phrase} of {measure} in {limb}, by added latency"
     if primary.reference is not None:
         words += f", against {primary.reference}"
     corrected = ", corrected by Holm's rule" if primary.correction == "holm" else ""

@@ -80,6 +80,10 @@ export const registryEn = {
   "format.quest-log.from": "Headset and hands. Movement logs of Quest applications.",
   "movement.format.bvh": "BVH",
   "movement.format.csv": "CSV",
+  "value.friedman": "Friedman’s test",
+  "value.page_trend": "Page’s trend test",
+  "value.rm_anova": "Repeated-measures ANOVA (Greenhouse-Geisser)",
+  "value.against_reference": "Exact Wilcoxon tests against a reference",
 } as const;
 export const registryDe: Readonly<Record<keyof typeof registryEn, string>> = {
   "preflight.check.tablet": "Tablet",
@@ -162,6 +166,10 @@ export const registryDe: Readonly<Record<keyof typeof registryEn, string>> = {
   "format.quest-log.from": "Headset und Hände. Bewegungslogs von Quest-Anwendungen.",
   "movement.format.bvh": "BVH",
   "movement.format.csv": "CSV",
+  "value.friedman": "Friedman-Test",
+  "value.page_trend": "Trendtest nach Page",
+  "value.rm_anova": "Varianzanalyse mit Messwiederholung (Greenhouse-Geisser)",
+  "value.against_reference": "Exakte Wilcoxon-Tests gegen einen Bezug",
 };
 
 export const CAPTURE_FORMATS = [

@@ -5,8 +5,9 @@ the measure goes one way along latency (Page, one-sided where that was predicted
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -22,6 +23,7 @@ from app.features.results.analysis.questions.words import (
     p_cell,
     p_words,
 )
+from app.science.statistical_tests import TESTS, Sample, StatisticalTest, statistical_test
 from app.science.statistics import (
     AgainstReference,
     Comparison,
@@ -38,15 +40,10 @@ from app.science.statistics import (
     page_trend,
 )
 
-WILCOXON_SOURCE = (
-    "Wilcoxon 1945, Biometrics Bull. 1:80; Holm 1979, Scand. J. Stat. 6:65; Kerby 2014, Compr. "
-    "Psychol. 3:1; Efron 1987, J. Am. Stat. Assoc. 82:171."
-)
-PAGE_SOURCE = "Page 1963, J. Am. Stat. Assoc. 58:216."
-FRIEDMAN_SOURCE = (
-    "Friedman 1937, J. Am. Stat. Assoc. 32:675; Kendall and Babington Smith 1939, Ann. Math. Stat. "
-    "10:275."
-)
+WILCOXON, PAGE = statistical_test("against_reference"), statistical_test("page_trend")
+FRIEDMAN = statistical_test("friedman")
+REPORTED = frozenset({"friedman", "page_trend", "against_reference", "rm_anova"})
+"""Tests whose report says more than their outcome; `models` has the analysis of variance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,7 +135,7 @@ def _open(asked: Asked, found: PageTrend) -> Said:
         columns=("L", "p (rises)", "p (falls)", "p (two-sided)", "n"),
         rows=[(*cells, str(found.n))],
         method=f"Page’s trend test, {found.method}, doubled one-sided p. {listwise(asked)}",
-        source=PAGE_SOURCE,
+        source=PAGE.source,
         warnings=(measured("page"),),
         exploratory=True,
         brief=Brief(p_words(p), way),
@@ -183,26 +180,55 @@ def _predicted(asked: Asked, found: DirectionalHypothesis) -> Said:
             "Page’s trend test, one-sided, exact given the ties, then one-sided signed-rank tests "
             f"against {asked.measure.levels[0]} ms with Holm’s rule. {listwise(asked)}"
         ),
-        source=f"{PAGE_SOURCE} {WILCOXON_SOURCE} Direction: Waltemate et al. 2016.",
+        source=f"{PAGE.source} {WILCOXON.source} Direction: Waltemate et al. 2016.",
         warnings=(signed_floor(found.against_first), measured("page_given_ties")),
         brief=Brief(p_words(found.p), _way(found.trend)),
     )
 
 
 def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[Said]:
-    """Friedman, planned comparisons and the trend; what cannot be tested says why."""
+    """Friedman, planned comparisons, the trend and every further test of the registry.
+
+    What cannot be tested says why.
+    """
     asked = Asked(measure, limb, measure.table(limb).to_numpy(dtype=np.float64), alpha)
-    for test, title in (
-        (_friedman, "Do the latencies differ?"),
-        (_planned, f"Each latency against {measure.levels[0]} ms"),
-        (trend, "Is there a trend along latency?"),
-    ):
+    reports: list[tuple[Callable[[Asked], Said], str, str]] = [
+        (_friedman, "friedman", FRIEDMAN.question),
+        (_planned, "planned", f"Each latency against {measure.levels[0]} ms"),
+        (trend, "trend", PAGE.question),
+        *((partial(_further, one), one.key, one.question) for one in further_tests()),
+    ]
+    for report, key, title in reports:
         try:
-            yield test(asked)
+            yield report(asked)
         except StatisticsError as error:
-            key = f"{test.__name__.strip('_')}_{limb}"
             heading = f"{limb.capitalize()}: {title}"
-            yield Said(key, heading, f"This cannot be tested. {error}", "", (), (), "", "")
+            yield Said(
+                f"{key}_{limb}", heading, f"This cannot be tested. {error}", "", (), (), "", ""
+            )
+
+
+def further_tests() -> list[StatisticalTest]:
+    """The tests of the registry that have no report of their own, here or in `models`."""
+    return [one for one in TESTS if one.key not in REPORTED]
+
+
+def _further(test: StatisticalTest, asked: Asked) -> Said:
+    """The report of a test that the registry alone knows; it was declared by nobody."""
+    sample = Sample(asked.complete, asked.measure.levels, test.directions[0], alpha=asked.alpha)
+    found = test.load()(sample)
+    return Said(
+        key=f"{test.key}_{asked.limb}",
+        title=f"{asked.limb.capitalize()}: {test.question}",
+        sentence=f"With {found.n} participants {against(found.p, asked.alpha)} ({test.phrase}).",
+        apa=f"{asked.name}, {test.phrase}: {found.sentence}",
+        columns=found.columns,
+        rows=found.rows,
+        method=f"{found.method} {listwise(asked)}",
+        source=test.source,
+        exploratory=True,
+        brief=Brief(p_words(found.p)),
+    )
 
 
 def _friedman(asked: Asked) -> Said:
@@ -225,7 +251,7 @@ def _friedman(asked: Asked) -> Said:
         columns=("latency (ms)", "mean rank"),
         rows=[(at, number(rank)) for at, rank in zip(levels, found.mean_ranks, strict=True)],
         method=f"Friedman’s test with ties, {found.method} p. {listwise(asked)} {found.note}",
-        source=FRIEDMAN_SOURCE,
+        source=FRIEDMAN.source,
         warnings=(
             friedman_floor(found, asked.alpha),
             measured(f"friedman_{found.method}"),
@@ -270,7 +296,7 @@ def _planned(asked: Asked) -> Said:
             "missing value are left out of their comparison. Positive: larger than at "
             f"{levels[0]} ms. {measured('bca_mean')}"
         ),
-        source=WILCOXON_SOURCE,
+        source=WILCOXON.source,
         warnings=(floor, measured("wilcoxon_holm")),
         brief=None if floor else Brief(f"{first} ms" if first else ""),
     )

@@ -15,6 +15,7 @@ from app.features.results.analysis.questions.words import (
     p_cell,
     p_words,
 )
+from app.science.statistical_tests import statistical_test
 from app.science.statistics import (
     Effect,
     StatisticsError,
@@ -29,10 +30,6 @@ from app.science.statistics.mixed import (
     term_tests,
 )
 
-ANOVA_SOURCE = (
-    "Winer, Brown and Michels 1991, ch. 7; Greenhouse and Geisser 1959, Psychometrika 24:95; "
-    "Olejnik and Algina 2003, Psychol. Methods 8:434."
-)
 MIXED_SOURCE = (
     "Laird and Ware 1982, Biometrics 38:963; Kuznetsova et al. 2017, J. Stat. Softw. 82(13)."
 )
@@ -136,7 +133,7 @@ def _anova(measure: Measure, alpha: float, key: str, title: str) -> Said:
             "correction; participants without every cell are left out. Limb is confounded with "
             "time where one limb always came first."
         ),
-        source=ANOVA_SOURCE,
+        source=statistical_test("rm_anova").source,
         warnings=(measured("rm_anova_gg"), measured("rm_anova_gg_interaction")),
     )
 

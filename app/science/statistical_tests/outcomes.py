@@ -1,0 +1,125 @@
+"""The tests that can be declared, made: complete values in, an outcome as papers print it out.
+
+The computations are those of `app.science.statistics`; what stands here is which of their figures a
+declared test reports, and how. Loads numpy and scipy.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+
+from app.science.statistical_tests.sample import Direction, Outcome, Sample
+from app.science.statistics import (
+    against_reference,
+    friedman,
+    page_trend,
+    rm_anova,
+)
+
+_ALTERNATIVES: dict[Direction, Literal["two-sided", "greater", "less"]] = {
+    "two_sided": "two-sided",
+    "rises": "greater",
+    "falls": "less",
+}
+
+
+def friedman_outcome(sample: Sample) -> Outcome:
+    """Friedman's test; raises StatisticsError."""
+    one = friedman(sample.values)
+    return Outcome(
+        n=one.n,
+        p=one.p,
+        sentence=f"χ²({one.df}) = {one.statistic:.2f}, {p_words(one.p)}, W = {one.kendall_w:.3f}, "
+        f"n = {one.n}",
+        columns=("condition", "mean rank"),
+        rows=by_level(sample, one.mean_ranks),
+        method=f"Friedman's test, {one.method}. {one.note}".strip(),
+    )
+
+
+def page_outcome(sample: Sample) -> Outcome:
+    """Page's trend test, one-sided in the declared direction; raises StatisticsError."""
+    falls = sample.direction == "falls"
+    # The p given ties is of a rise; a fall is a rise of the reversed order.
+    one = page_trend(sample.values[:, ::-1] if falls else sample.values)
+    p = one.p_given_ties if math.isfinite(one.p_given_ties) else one.p
+    return Outcome(
+        n=one.n,
+        p=p,
+        sentence=f"L = {one.statistic:g}, {p_words(p)}, one-sided ({sample.direction}), "
+        f"n = {one.n}",
+        columns=("condition", "median"),
+        rows=by_level(sample, np.median(sample.values, axis=0).tolist()),
+        method="Page's trend test; p by permutation of these ranks, ties included."
+        if math.isfinite(one.p_given_ties)
+        else "Page's trend test; asymptotic p.",
+    )
+
+
+def anova_outcome(sample: Sample) -> Outcome:
+    """Analysis of variance with repeated measures; raises StatisticsError."""
+    whole = rm_anova(sample.values, ("latency",))
+    effect = whole.effects[0]
+    return Outcome(
+        n=whole.n,
+        p=effect.p_gg,
+        sentence=f"F({effect.df * effect.epsilon:.2f}, {effect.df_error * effect.epsilon:.2f}) = "
+        f"{effect.f:.2f}, {p_words(effect.p_gg)}, generalised η² = "
+        f"{effect.generalised_eta_squared:.3f}, n = {whole.n}",
+        columns=("condition", "mean"),
+        rows=by_level(sample, sample.values.mean(axis=0).tolist()),
+        method="Analysis of variance with repeated measures, Greenhouse-Geisser.",
+    )
+
+
+def reference_outcome(sample: Sample) -> Outcome:
+    """Signed-rank tests of every level against the reference; raises StatisticsError."""
+    alternative = _ALTERNATIVES[sample.direction]
+    one = against_reference(
+        sample.values,
+        sample.levels,
+        sample.reference or sample.levels[0],
+        alternative=alternative,
+        alpha=sample.alpha,
+    )
+    p_values = [pair.p_holm if sample.holm else pair.test.p for pair in one.comparisons]
+    lowest = min(p_values)
+    return Outcome(
+        n=len(sample.values),
+        p=lowest,
+        sentence=f"smallest {p_words(lowest)} of {len(p_values)} comparisons with {one.reference}, "
+        f"{alternative}, n = {len(sample.values)}",
+        columns=("comparison", "n", "median difference", "r (rank-biserial)", "p", "p declared"),
+        rows=[
+            (
+                f"{pair.a} – {pair.b}",
+                str(pair.test.n),
+                two_decimals(pair.median_difference),
+                two_decimals(pair.test.rank_biserial),
+                f"{pair.test.p:.3f}",
+                f"{p:.3f}",
+            )
+            for pair, p in zip(one.comparisons, p_values, strict=True)
+        ],
+        method="Exact Wilcoxon signed-rank tests"
+        + (", p adjusted by Holm's rule." if sample.holm else ", p not adjusted."),
+    )
+
+
+def by_level(sample: Sample, figures: Sequence[float]) -> list[tuple[str, str]]:
+    """A row for each level with its figure, for tables of an outcome."""
+    return [
+        (level, two_decimals(figure)) for level, figure in zip(sample.levels, figures, strict=True)
+    ]
+
+
+def two_decimals(value: float) -> str:
+    """Two decimals, and a minus as print has it."""
+    return f"{value:.2f}".replace("-", "\u2212")
+
+
+def p_words(p: float) -> str:
+    """ "p = .012", "p < .001"."""
+    return "p < .001" if p < 0.001 else f"p = {p:.3f}".replace("0.", ".", 1)

@@ -1,0 +1,133 @@
+"""The tests that a study can declare as its primary one, each an object that knows its words.
+
+Whoever adds a test writes a module with its computation, a function from `Sample` to `Outcome`, and
+its entry in `TESTS`. A study can then declare it, the editor and the page of the preregistration
+name it in both languages, the page of results makes it for every measure, and `reembody analyse`
+for every table.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import cast
+
+from app.science.statistical_tests.sample import Direction, Outcome, Sample
+from app.words import Words
+
+
+@dataclass(frozen=True)
+class StatisticalTest:
+    """A test of one within-subject factor, the added latency.
+
+    Attributes:
+        key: in study files, so it is never renamed.
+        name: as lists and fields show it.
+        phrase: in an English sentence, such as "Friedman's test of the score agency".
+        question: what it answers, as a heading.
+        directions: of the measure along the factor; what a study may declare.
+        fewest_conditions: levels of the factor that it needs.
+        needs_reference: whether it compares every level with one that is named.
+        assumptions: what must hold for its p value to be right.
+        effect_size: what its outcome gives beside p.
+        source: where it was published.
+        outcome: "module.function" below `app.science.statistical_tests`, loaded when the test is
+            made.
+    """
+
+    key: str
+    name: Words
+    phrase: str
+    question: str
+    directions: tuple[Direction, ...]
+    fewest_conditions: int
+    needs_reference: bool
+    assumptions: str
+    effect_size: str
+    source: str
+    outcome: str
+
+    def load(self) -> Callable[[Sample], Outcome]:
+        """Import the function that makes the test; it raises StatisticsError where it cannot."""
+        module, _, function = self.outcome.rpartition(".")
+        found = getattr(import_module(f"app.science.statistical_tests.{module}"), function)
+        return cast("Callable[[Sample], Outcome]", found)
+
+
+FRIEDMAN = StatisticalTest(
+    key="friedman",
+    name=Words(en="Friedman’s test", de="Friedman-Test"),
+    phrase="Friedman's test",
+    question="Do the latencies differ?",
+    directions=("two_sided",),
+    fewest_conditions=3,
+    needs_reference=False,
+    assumptions="Without an effect every order of a participant's values is equally likely.",
+    effect_size="Kendall's W",
+    source=(
+        "Friedman 1937, J. Am. Stat. Assoc. 32:675; Kendall and Babington Smith 1939, Ann. Math. "
+        "Stat. 10:275."
+    ),
+    outcome="outcomes.friedman_outcome",
+)
+PAGE_TREND = StatisticalTest(
+    key="page_trend",
+    name=Words(en="Page’s trend test", de="Trendtest nach Page"),
+    phrase="Page's trend test",
+    question="Is there a trend along latency?",
+    directions=("rises", "falls"),
+    fewest_conditions=3,
+    needs_reference=False,
+    assumptions="The order of the conditions is fixed beforehand.",
+    effect_size="Page's L",
+    source="Page 1963, J. Am. Stat. Assoc. 58:216.",
+    outcome="outcomes.page_outcome",
+)
+RM_ANOVA = StatisticalTest(
+    key="rm_anova",
+    name=Words(
+        en="Repeated-measures ANOVA (Greenhouse-Geisser)",
+        de="Varianzanalyse mit Messwiederholung (Greenhouse-Geisser)",
+    ),
+    phrase="analysis of variance with repeated measures (Greenhouse-Geisser)",
+    question="Do the means differ?",
+    directions=("two_sided",),
+    fewest_conditions=2,
+    needs_reference=False,
+    assumptions="Differences between conditions are normal; sphericity is corrected for.",
+    effect_size="generalised eta squared",
+    source=(
+        "Winer, Brown and Michels 1991, ch. 7; Greenhouse and Geisser 1959, Psychometrika 24:95; "
+        "Olejnik and Algina 2003, Psychol. Methods 8:434."
+    ),
+    outcome="outcomes.anova_outcome",
+)
+AGAINST_REFERENCE = StatisticalTest(
+    key="against_reference",
+    name=Words(
+        en="Exact Wilcoxon tests against a reference",
+        de="Exakte Wilcoxon-Tests gegen einen Bezug",
+    ),
+    phrase="exact Wilcoxon signed-rank tests against the reference",
+    question="Which latencies differ from the reference?",
+    directions=("two_sided", "rises", "falls"),
+    fewest_conditions=2,
+    needs_reference=True,
+    assumptions="Without an effect differences are symmetric around zero.",
+    effect_size="matched rank-biserial correlation",
+    source=(
+        "Wilcoxon 1945, Biometrics Bull. 1:80; Holm 1979, Scand. J. Stat. 6:65; Kerby 2014, Compr. "
+        "Psychol. 3:1; Efron 1987, J. Am. Stat. Assoc. 82:171."
+    ),
+    outcome="outcomes.reference_outcome",
+)
+TESTS: tuple[StatisticalTest, ...] = (FRIEDMAN, PAGE_TREND, RM_ANOVA, AGAINST_REFERENCE)
+
+
+def statistical_test(key: str) -> StatisticalTest:
+    """The test with this key; raises KeyError where there is none."""
+    return {one.key: one for one in TESTS}[key]
+
+
+def texts_of_tests() -> dict[str, Words]:
+    """The names of the tests, by their keys in the tables of the pages."""
+    return {f"value.{one.key}": one.name for one in TESTS}

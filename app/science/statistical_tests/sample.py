@@ -1,0 +1,51 @@
+"""What a declared test gets and what it gives. Loads no numpy: the registry names these types."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from app.science.statistics import FloatArray
+
+Direction = Literal["two_sided", "rises", "falls"]
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """What is tested, and how it was declared.
+
+    Attributes:
+        values: (n participants, k levels), complete; any unit.
+        levels: names of the columns, in the order of the factor.
+        direction: of the measure along the factor.
+        reference: the level that the others are compared with; None for the first.
+        holm: whether several comparisons are adjusted by Holm's rule.
+        alpha: what p is compared with.
+    """
+
+    values: "FloatArray"
+    levels: tuple[str, ...]
+    direction: Direction = "two_sided"
+    reference: str | None = None
+    holm: bool = False
+    alpha: float = 0.05
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a test gave.
+
+    Attributes:
+        n: participants in it.
+        p: the one that decides, compared with alpha.
+        sentence: statistic, p, effect size and n, as papers print them.
+        columns, rows: figures of each level or comparison, as text.
+        method: how p was computed.
+    """
+
+    n: int
+    p: float
+    sentence: str
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    method: str
