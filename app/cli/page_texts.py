@@ -10,7 +10,7 @@ from pathlib import Path
 from app.adapters.captures import FORMATS, WRITERS, extensions, format_texts, writer_texts
 from app.features.record.preflight.checks import check_texts
 from app.science.statistical_tests import texts_of_tests
-from app.words import Words, typescript_list, typescript_table
+from app.texts import Words, typescript_list, typescript_table
 
 TARGET = "frontend/src/console/i18n/registries.generated.ts"
 """Below the folder of the repository."""

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from app.cli.page_texts import TARGET, page_texts, texts
-from app.words import Words, typescript_table
+from app.texts import Words, typescript_table
 from tests.architecture.trees import REPOSITORY
 
 

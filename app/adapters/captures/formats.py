@@ -13,7 +13,7 @@ from typing import Protocol, cast
 
 from app.adapters.captures.capture import Capture, Limits, Reading
 from app.adapters.captures.sniffing import Head
-from app.words import Words
+from app.texts import Words
 
 
 class Reader(Protocol):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from app.adapters.captures.bvh_export import to_bvh
 from app.adapters.captures.table_export import to_csv
 from app.science.rig import RigMotion
-from app.words import Words
+from app.texts import Words
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from importlib import import_module
 from typing import cast
 
 from app.science.statistical_tests.sample import Direction, Outcome, Sample
-from app.words import Words
+from app.texts import Words
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from sqlalchemy.orm import Session
 
 from app.models import StudySession
 from app.platform.context import AppContext
-from app.words import Words
+from app.texts import Words
 
 Expected = Literal["at_least", "at_most"]
 Unit = Literal["s", "ms", "Hz", "GB", "joints", "phases", "instruments", "texts"]

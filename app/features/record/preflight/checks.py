@@ -15,7 +15,7 @@ from app.features.record.preflight.device_checks import (
 from app.features.record.preflight.latency_check import LATENCY
 from app.features.record.preflight.storage_checks import DISK, STORAGE
 from app.features.record.preflight.study_checks import CONFIGURATION, INSTRUMENTS, LANGUAGE
-from app.words import Words
+from app.texts import Words
 
 CHECKS: tuple[PreflightCheck, ...] = (
     TABLET,

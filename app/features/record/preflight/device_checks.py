@@ -9,7 +9,7 @@ from app.features.record.devices import TABLET_SILENT_AFTER_S, devices_of_sessio
 from app.features.record.preflight.check import Finding, Found, Situation, StateCheck
 from app.models import Device
 from app.science.skeleton import JOINT_COUNT
-from app.words import Words
+from app.texts import Words
 
 LIMITS = WatchLimits()
 LEAST_RATE_HZ = 60.0

@@ -11,7 +11,7 @@ from sqlalchemy.orm import Session
 from app.features.record.calibrations import calibrations
 from app.features.record.preflight.check import Finding, Found, Situation, StateCheck
 from app.models import Phase, PhaseLatency, StudySession
-from app.words import Words
+from app.texts import Words
 
 
 def _latency(situation: Situation) -> Found:

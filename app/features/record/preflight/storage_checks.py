@@ -22,7 +22,7 @@ from app.features.record.preflight.check import (
 from app.models import SessionContent
 from app.platform.context import AppContext
 from app.platform.trouble import explain
-from app.words import Words
+from app.texts import Words
 
 KIND = "write_test"
 WRITTEN_BYTES = 64 * 1024

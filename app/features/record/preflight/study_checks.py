@@ -11,7 +11,7 @@ from app.features.record.preflight.check import Finding, Found, Situation, State
 from app.features.record.sessions import plan_of
 from app.models import AvatarVersion, StudyVersion
 from app.protocol import sha256_of
-from app.words import Words
+from app.texts import Words
 
 SHORT = 12
 """Hexadecimal digits of a hash that people compare."""
