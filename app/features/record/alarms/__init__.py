@@ -1,6 +1,7 @@
 """What the operator has to know now: raised, cleared, and kept."""
 
 from app.features.record.alarms.alarm import STANDING, Alarm, Change, Condition, Moment, WatchLimits
+from app.features.record.alarms.kinds import ALARMS, alarm_texts
 from app.features.record.alarms.service import (
     AlarmView,
     clear_all,
@@ -12,6 +13,7 @@ from app.features.record.alarms.service import (
 from app.features.record.alarms.watch import QualityWatch
 
 __all__ = [
+    "ALARMS",
     "STANDING",
     "Alarm",
     "AlarmView",
@@ -20,6 +22,7 @@ __all__ = [
     "Moment",
     "QualityWatch",
     "WatchLimits",
+    "alarm_texts",
     "clear_all",
     "open_alarms",
     "open_rows",

@@ -5,48 +5,13 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Literal
 
+from app.features.record.alarms.kinds import ALARMS, Severity
 from app.science.stream_quality import USUAL, QualityLimits
 
-Severity = Literal["info", "warning", "critical"]
 State = Literal["raised", "cleared"]
 
-SEVERITIES: dict[str, Severity] = {
-    "silent": "critical",
-    "disconnected": "critical",
-    "backlog": "warning",
-    "bad_values": "warning",
-    "frozen": "warning",
-    "low_frame_rate": "warning",
-    "gap": "warning",
-    "jump": "warning",
-    "clock_unknown": "warning",
-    "clock_uncertain": "info",
-    "storage": "critical",
-    "writer_failed": "critical",
-    "background_failed": "warning",
-    "stop_rule_met": "critical",
-    "stop_rule_near": "warning",
-    "stop_rule_unknown": "warning",
-    "help_asked": "critical",
-    "question_asked": "critical",
-    "consent_refused": "critical",
-    "refusal_retracted": "warning",
-    "impossible": "warning",
-    "doubtful": "warning",
-}
-"""Every alarm there is. Critical: data are being lost, a phase stands, or somebody is unwell, calls
-or does not want to take part. What a headset said is `impossible` where only its connection could
-see it; a phase that has ended is `doubtful` where its record holds what cannot be true."""
-
-STANDING = (
-    "stop_rule_met",
-    "stop_rule_near",
-    "stop_rule_unknown",
-    "help_asked",
-    "question_asked",
-    "consent_refused",
-    "refusal_retracted",
-)
+SEVERITIES: dict[str, Severity] = {one.key: one.severity for one in ALARMS}
+STANDING = tuple(one.key for one in ALARMS if one.of_person)
 """Alarms about the participant: they hold until a person or a form says otherwise, whatever becomes
 of the server and the headset in between."""
 

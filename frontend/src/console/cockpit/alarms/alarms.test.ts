@@ -1,7 +1,8 @@
 import type { Alarm, LiveAlarm, SessionView, StorageNews, TelemetryNews } from "@shared/api/types";
 import { milliseconds } from "@shared/units";
 import { describe, expect, it } from "vitest";
-import { en } from "../../i18n/en";
+import { en as pages } from "../../i18n/en";
+import { registryEn } from "../../i18n/registries.generated";
 import { at, session } from "../example";
 import { TelemetryStore } from "../session/telemetryStore";
 import {
@@ -14,6 +15,7 @@ import {
   titleKey,
 } from "./alarms";
 
+const en = { ...pages, ...registryEn };
 const live = (code: string, more: Partial<LiveAlarm> = {}): LiveAlarm => ({
   code,
   severity: "warning",

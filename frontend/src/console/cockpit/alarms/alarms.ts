@@ -4,6 +4,7 @@ import { clockFace, number } from "@shared/format";
 import { type Milliseconds, milliseconds, seconds } from "@shared/units";
 import { useEffect, useState } from "react";
 import type { Key } from "../../i18n";
+import { ALARMS, ALARMS_OF_PERSON, ALARMS_THAT_PAUSE } from "../../i18n/registries.generated";
 import { type Quality, type TelemetryStore, useQuality } from "../session/telemetryStore";
 
 /** An alarm as it is shown, whether it was told live or read with the session. */
@@ -40,7 +41,7 @@ export function currentAlarms(
 }
 
 /** About the participant, not the headset: the headset's news never tell of them. */
-const isOfPerson = (code: string): boolean => OF_PERSON.some((one) => one === code);
+const isOfPerson = (code: string): boolean => ALARMS_OF_PERSON.some((one) => one === code);
 
 const SEVERITIES = ["info", "warning", "critical"] as const;
 const urgency = (alarm: ShownAlarm): number => SEVERITIES.indexOf(alarm.severity);
@@ -73,39 +74,9 @@ export function mostUrgent(
 export const stateOf = (session: SessionView): string =>
   session.alarms.map((alarm) => alarm.id).join(" ");
 
-const OF_PERSON = [
-  "stop_rule_met",
-  "stop_rule_near",
-  "stop_rule_unknown",
-  "help_asked",
-  "question_asked",
-  "consent_refused",
-  "refusal_retracted",
-] as const;
+type Code = (typeof ALARMS)[number];
 
-const CODES = [
-  "silent",
-  "disconnected",
-  "backlog",
-  "bad_values",
-  "frozen",
-  "low_frame_rate",
-  "gap",
-  "jump",
-  "clock_unknown",
-  "clock_uncertain",
-  "storage",
-  "low_disk",
-  "writer_failed",
-  "background_failed",
-  ...OF_PERSON,
-  "impossible",
-  "doubtful",
-] as const;
-
-type Code = (typeof CODES)[number];
-
-const known = (code: string): Code | "other" => CODES.find((one) => one === code) ?? "other";
+const known = (code: string): Code | "other" => ALARMS.find((one) => one === code) ?? "other";
 
 export const titleKey = (alarm: ShownAlarm): Key => `alarm.${known(alarm.code)}`;
 
@@ -117,7 +88,8 @@ export const isCall = (alarm: ShownAlarm | undefined): boolean =>
 export function remedyKey(alarm: ShownAlarm, session: SessionView): Key {
   const code = known(alarm.code);
   const stands = session.current?.status === "paused";
-  if (stands && (code === "silent" || code === "disconnected")) return `alarm.${code}.paused`;
+  const paused = ALARMS_THAT_PAUSE.find((one) => one === code);
+  if (stands && paused !== undefined) return `alarm.${paused}.paused`;
   return `alarm.${code}.do`;
 }
 
