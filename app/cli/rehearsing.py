@@ -20,6 +20,7 @@ from typing import Any, TypeVar
 import numpy as np
 from httpx2 import Client, HTTPError
 
+from app.protocol import COUNTED_KINDS, UNCOUNTED_KINDS
 from app.rehearsal.body import make_person
 from app.rehearsal.headset import WITHDRAWN
 from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, Visit, rehearse, visit_of
@@ -201,9 +202,11 @@ def _free_port() -> int:
 
 def report_text(report: RehearsalReport) -> str:
     """What came of one participant's session, a line for each task phase."""
-    phases = [phase for phase in report.phases if phase["kind"] == "task"]
+    phases = [phase for phase in report.phases if phase["kind"] in COUNTED_KINDS]
     voided = sum(phase["status"] == "voided" for phase in phases)
-    practised = sum(phase["kind"] == "practice" for phase in report.phases)
+    practised = sum(
+        phase["kind"] in UNCOUNTED_KINDS and phase["limb"] is not None for phase in report.phases
+    )
     lines = [
         f"SIMULATED session {report.session_id}: {report.duration_s:.1f} s at {report.speed:g}x",
         *_ended(report),
@@ -216,7 +219,7 @@ def report_text(report: RehearsalReport) -> str:
         f"{report.side_contacts} contacts with the sides of boxes",
     ]
     lines += [
-        f"  {phase['limb']:4}  {_latency(phase['latency_ms'])}  {phase['active_s']:6.2f} s  "
+        f"  {phase['limb'] or '-':4}  {_latency(phase['latency_ms'])}  {phase['active_s']:6.2f} s  "
         f"{phase['completions']:2d} completions  {phase['side_contacts']:3d} side contacts"
         + ("  voided" if phase["status"] == "voided" else "")
         for phase in phases

@@ -29,21 +29,37 @@ from app.protocol.loading import (
     study_schema,
 )
 from app.protocol.orders import LedgerRow, ledger_block, sequences
-from app.protocol.plan import TIMED_KINDS, Step, StepKind, compile_plan
+from app.protocol.plan import Step, compile_plan
 from app.protocol.preregistration import ExclusionRule, Preregistration, PrimaryTest
 from app.protocol.procedure import ConsentStep
 from app.protocol.safety import StopRule
 from app.protocol.source import Path, Plain, Source, path_text, read_source
+from app.protocol.step_kinds import (
+    COUNTED_KINDS,
+    FORM_KINDS,
+    PHASES,
+    STEP_KINDS,
+    TIMED_KINDS,
+    UNCOUNTED_KINDS,
+    StepKind,
+    StepKindSpec,
+    kinds_with_command,
+)
 from app.protocol.study import StudyProtocol
 from app.protocol.tasks import Tasks
 from app.protocol.validity import LatencyRule, ValidWhen
 
 __all__ = [
     "BY_HAND_S",
+    "COUNTED_KINDS",
+    "FORM_KINDS",
     "ITEM_S",
     "OPENING_S",
+    "PHASES",
     "READING_WORDS_PER_S",
+    "STEP_KINDS",
     "TIMED_KINDS",
+    "UNCOUNTED_KINDS",
     "Condition",
     "ConfigError",
     "ConfigProblem",
@@ -61,6 +77,7 @@ __all__ = [
     "Source",
     "Step",
     "StepKind",
+    "StepKindSpec",
     "StopRule",
     "StudyProtocol",
     "Tasks",
@@ -74,6 +91,7 @@ __all__ = [
     "explain",
     "form_s",
     "instrument_as_json",
+    "kinds_with_command",
     "ledger_block",
     "load_instrument",
     "load_study",

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from app.protocol.orders import sequences
 from app.protocol.plan import Step, compile_plan
+from app.protocol.step_kinds import STEP_KINDS
 from app.protocol.study import StudyProtocol
 from app.science.instruments import Instrument
 
@@ -18,7 +19,7 @@ READING_WORDS_PER_S = 3.0
 """Unhurried silent reading of instructions, about 180 words a minute."""
 OPENING_S = 10.0
 """Finding the way into a page or a form."""
-BY_HAND_S = {"height": 60.0, "materialise": 60.0}
+BY_HAND_S = {kind: one.takes_s for kind, one in STEP_KINDS.items() if one.takes_s is not None}
 """Steps in which the experimenter and the participant do something together."""
 ITEM_S = {"likert": 6.0, "boolean": 4.0, "choice": 5.0, "integer": 8.0, "number": 8.0, "text": 20.0}
 """One answer of each kind, reading the question included."""

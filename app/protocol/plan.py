@@ -5,61 +5,19 @@ followed by its questionnaire, and the block's own forms, then the closing steps
 during a session.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 from app.protocol.common import Text
 from app.protocol.conditions import Condition
 from app.protocol.errors import PlanError
-from app.protocol.procedure import (
-    ClosingStep,
-    ConsentStep,
-    FormStep,
-    FreeRoamStep,
-    PracticeStep,
-    SetupStep,
-    TaskPhase,
-)
+from app.protocol.procedure import ClosingStep, ConsentStep, FormStep, SetupStep, TaskPhase
+from app.protocol.step_kinds import STEP_KINDS, StepKind, StepKindSpec
 from app.protocol.study import StudyProtocol
 from app.science.tasks import Limb
 
-DEFAULT_TITLES: dict[str, dict[str, str]] = {
-    "consent": {"en": "Consent", "de": "Einwilligung"},
-    "form": {"en": "Questions", "de": "Fragen"},
-    "instructions": {"en": "Instructions", "de": "Anleitung"},
-    "height": {"en": "Height", "de": "Körpergröße"},
-    "materialise": {"en": "Entering the body", "de": "Eintritt in den Körper"},
-    "free_roam": {"en": "Free movement", "de": "Freies Bewegen"},
-    "practice_hand": {"en": "Practice with the hand", "de": "Übung mit der Hand"},
-    "practice_foot": {"en": "Practice with the foot", "de": "Übung mit dem Fuß"},
-    "hand": {"en": "Hand task", "de": "Handaufgabe"},
-    "foot": {"en": "Foot task", "de": "Fußaufgabe"},
-    "questionnaire": {"en": "Questionnaire", "de": "Fragebogen"},
-    "debrief": {"en": "Debriefing", "de": "Abschluss"},
-}
-DEFAULT_LANGUAGES = frozenset({"en", "de"})
-StepKind = Literal[
-    "consent",
-    "form",
-    "instructions",
-    "height",
-    "materialise",
-    "free_roam",
-    "practice",
-    "task",
-    "questionnaire",
-    "debrief",
-]
-
-
-TIMED_KINDS: tuple[StepKind, ...] = ("free_roam", "practice", "task")
-"""Steps that are phases: they run on the headset's clock and are recorded as such."""
-
-
-def title_of(kind: str, given: Mapping[str, str] | None) -> Mapping[str, str]:
-    """The given title, or the built-in one of the step's kind (of its limb for a task)."""
-    return DEFAULT_TITLES[kind] if given is None else given
+_OF_TIMED_STEPS = ("latency_ms", "limb", "preparation_s", "duration_s", "freeze_s")
+"""What a step of the plan takes over from a timed step of the study, as far as that has it."""
 
 
 @dataclass(frozen=True)
@@ -90,17 +48,14 @@ class Step:
     consent: ConsentStep | None = None
 
     @property
+    def spec(self) -> StepKindSpec:
+        """What is true of every step of this kind."""
+        return STEP_KINDS[self.kind]
+
+    @property
     def phase_key(self) -> str | None:
         """What rules call a timed step: hand, foot, free_roam, practice_hand, practice_foot."""
-        match self.kind:
-            case "task":
-                return str(self.limb)
-            case "practice":
-                return f"practice_{self.limb}"
-            case "free_roam":
-                return "free_roam"
-            case _:
-                return None
+        return self.spec.key_of_phase(self.limb)
 
 
 def compile_plan(
@@ -143,34 +98,27 @@ def compile_plan(
 
 def _simple(step: SetupStep | ClosingStep) -> Step:
     """A step outside the blocks."""
-    if isinstance(step, PracticeStep):
-        return _practice(step)
-    title = title_of(step.step, step.title)
+    kind = step.step
     if isinstance(step, FormStep):
-        key = f"form.{step.instrument}"
-        return Step(0, key, "form", title, instrument=step.instrument)
-    plain = Step(0, step.step, step.step, title, text=step.text)
-    if isinstance(step, ConsentStep):
-        return replace(plain, consent=step)
-    if isinstance(step, FreeRoamStep):
-        return replace(plain, latency_ms=step.latency_ms, duration_s=step.duration_s)
-    return plain
-
-
-def _practice(step: PracticeStep) -> Step:
+        title = _title(kind, None, step.title)
+        return Step(0, f"form.{step.instrument}", kind, title, instrument=step.instrument)
+    timed = {name: getattr(step, name) for name in _OF_TIMED_STEPS if hasattr(step, name)}
+    limb = timed.get("limb")
     return Step(
         0,
-        f"practice.{step.limb}",
-        "practice",
-        title_of(f"practice_{step.limb}", step.title),
-        latency_ms=step.latency_ms,
-        limb=step.limb,
-        preparation_s=step.preparation_s,
-        duration_s=step.duration_s,
-        freeze_s=step.freeze_s,
+        kind if limb is None else f"{kind}.{limb}",
+        kind,
+        _title(kind, limb, step.title),
         text=step.text,
-        until_completions=step.repeat_until_completions,
+        until_completions=getattr(step, "repeat_until_completions", None),
+        consent=step if isinstance(step, ConsentStep) else None,
+        **timed,
     )
+
+
+def _title(kind: StepKind, limb: Limb | None, given: Text | None) -> Text:
+    """The title that the study gives, or the built-in one of the kind, with its limb."""
+    return STEP_KINDS[kind].title(limb) if given is None else given
 
 
 def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Iterator[Step]:
@@ -180,7 +128,7 @@ def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Ite
             0,
             key,
             "task",
-            title_of(phase.limb, phase.title),
+            _title("task", phase.limb, phase.title),
             block=block,
             condition=condition.key,
             latency_ms=condition.latency_ms,
@@ -195,7 +143,7 @@ def _block(block: int, condition: Condition, phases: Sequence[TaskPhase]) -> Ite
             task,
             key=f"{key}.{phase.questionnaire}",
             kind="questionnaire",
-            title=title_of("questionnaire", phase.questionnaire_title),
+            title=_title("questionnaire", None, phase.questionnaire_title),
             preparation_s=None,
             duration_s=None,
             freeze_s=None,

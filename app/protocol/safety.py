@@ -12,6 +12,7 @@ from pydantic import Field, StringConstraints, model_validator
 
 from app.protocol.common import Key, Strict, refusal
 from app.protocol.source import Path, Plain
+from app.protocol.step_kinds import STEP_KINDS
 from app.science.instruments import DefinitionProblem, Instrument, Score
 
 FormKey = Annotated[
@@ -65,13 +66,14 @@ def safety_problems(
 
 
 def practice_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
-    """Practice without a body to practise with."""
+    """A phase before the participant has the body that it needs, such as practice."""
     before = [_dict(step).get("step") for step in _list(_dict(tree.get("procedure")).get("before"))]
     for at, kind in enumerate(before):
-        if kind == "practice" and "materialise" not in before[:at]:
+        spec = STEP_KINDS.get(str(kind))
+        if spec is not None and spec.needs_body and "materialise" not in before[:at]:
             yield DefinitionProblem(
                 ("procedure", "before", at, "step"),
-                "The practice comes before the participant has a body.",
+                f"The {spec.name['en'].lower()} comes before the participant has a body.",
                 kind,
                 "a place behind the step materialise",
                 "Move it behind the step materialise.",

@@ -12,6 +12,7 @@ from pydantic import Field, StringConstraints, model_validator
 
 from app.protocol.common import Key, Strict, refusal
 from app.protocol.source import Path, Plain
+from app.protocol.step_kinds import PHASES, STEP_KINDS
 from app.science.instruments import DefinitionProblem
 
 _MAX_TOLERANCE_MS = 10_000.0
@@ -20,7 +21,7 @@ _AT: Path = ("valid_when",)
 PhaseKey = Annotated[
     str,
     StringConstraints(min_length=1, max_length=40),
-    Field(description="hand or foot, free_roam, practice_hand or practice_foot: one of the study"),
+    Field(description=f"one of the study's phases: {', '.join(PHASES)}"),
 ]
 
 
@@ -148,16 +149,16 @@ def _unknown(path: Path, what: str, key: str, known: list[str]) -> DefinitionPro
 def _durations(tree: Mapping[str, Plain]) -> dict[str, float | None]:
     """The keys of all timed phases of the procedure, each with the least active time it is given.
 
-    A practice that can end early has no such time.
+    A phase that can end early has no such time.
     """
     procedure = _dict(tree.get("procedure"))
     phases: list[tuple[str, Plain, bool]] = []
     for step in map(_dict, _list(procedure.get("before"))):
-        if step.get("step") == "free_roam":
-            phases.append(("free_roam", step.get("duration_s"), False))
-        elif step.get("step") == "practice":
+        spec = STEP_KINDS.get(str(step.get("step")))
+        key = None if spec is None else spec.key_of_phase(step.get("limb"))
+        if key is not None:
             early = step.get("repeat_until_completions") is not None
-            phases.append((f"practice_{step.get('limb')}", step.get("duration_s"), early))
+            phases.append((key, step.get("duration_s"), early))
     block = [_dict(phase) for phase in _list(_dict(procedure.get("block")).get("phases"))]
     phases += [(str(phase.get("limb")), phase.get("duration_s"), False) for phase in block]
     if len({str(phase.get("limb")) for phase in block}) < len(block):

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 
 from app.client import Operator, ServerRefusedError, Tablet
-from app.protocol import TIMED_KINDS
+from app.protocol import STEP_KINDS, TIMED_KINDS
 from app.rehearsal.answers import agreement, fill_in
 from app.rehearsal.body import Person
 from app.rehearsal.headset import WITHDRAWN, Headset
@@ -130,18 +130,20 @@ def _next_action(view: Json, person: Person) -> tuple[str, Json] | None:
     current = view["current"]
     step = view["steps"][current["index"]]
     connected = any(one["kind"] == "headset" and one["connected"] for one in view["devices"])
-    match step["kind"]:
-        case "height":
-            height = {"stated": round(person.stature_m, 2), "matched": round(person.stature_m, 3)}
-            return "complete_step", {"height_m": height}
-        case "debrief":
-            return "complete_step", {}
-        case "free_roam" | "practice" | "task":
-            if current["status"] == "ready" and connected:
-                return "begin_phase", {}
-            if current["status"] == "paused" and connected and not current["resuming"]:
-                return "resume", {}
+    spec = STEP_KINDS[step["kind"]]
+    if spec.command == "complete_step" and spec.screen == "waiting":
+        return "complete_step", _measured(person) if spec.key == "height" else {}
+    if spec.family == "timed" and connected:
+        if current["status"] == "ready":
+            return "begin_phase", {}
+        if current["status"] == "paused" and not current["resuming"]:
+            return "resume", {}
     return None
+
+
+def _measured(person: Person) -> Json:
+    stated_m, matched_m = round(person.stature_m, 2), round(person.stature_m, 3)
+    return {"height_m": {"stated": stated_m, "matched": matched_m}}
 
 
 async def answer(cast: Cast) -> None:

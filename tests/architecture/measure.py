@@ -17,7 +17,7 @@ upward_imports, floors
 files_le_50
     Python files of `app`, without `__init__.py`, of at most 50 physical lines.
 code_lines
-    Lines of `app/**/*.py` and of `frontend/src` (tests and generated files left out;
+    Lines of `app/**/*.py` and of `frontend/src` (tests and `GENERATED` files left out;
     translations are data files and not counted) that hold code: not blank, not a comment alone,
     not part of a docstring (a string that stands alone as a statement).
 """

@@ -100,4 +100,4 @@ def test_heights_that_differ_are_asked_about(
     experimenter.press("Save heights")
     expect(page.get_by_text("differ by 12 cm")).to_be_visible()
     experimenter.press("Both are right: save")
-    expect(page.get_by_role("heading", name="Enter the body").first).to_be_visible()
+    expect(page.get_by_role("heading", name="Entering the body").first).to_be_visible()

@@ -1,58 +1,36 @@
-/** Names and signs of the steps of a procedure. */
-import type { PhaseSummary, SessionView, Step } from "@shared/api/types";
+/** What the steps of a procedure are called, and their icons; the kinds are in `stepKinds.ts`. */
+import type { Limb, PhaseSummary, SessionView, Step } from "@shared/api/types";
 import { latency } from "@shared/format";
 import type { IconName } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import { type Key, useTexts } from "./i18n";
-
-const STEP_ICONS: Readonly<Record<string, IconName>> = {
-  consent: "check",
-  form: "form",
-  instructions: "talk",
-  height: "height",
-  materialise: "body",
-  free_roam: "walk",
-  practice: "hand",
-  task: "hand",
-  questionnaire: "form",
-  debrief: "flag",
-};
-
-const NAMES = new Set([
-  "consent",
-  "form",
-  "instructions",
-  "height",
-  "materialise",
-  "free_roam",
-  "questionnaire",
-  "debrief",
-]);
-
-/** The text key of a kind of step; an unknown kind is called a step. */
-export function stepNameKey(kind: string): Key {
-  return (NAMES.has(kind) ? `step.${kind}` : "step.other") as Key;
-}
+import { STEP_KINDS } from "./stepKinds";
 
 type Named = Pick<Step, "kind" | "limb">;
+type OfKind = Pick<Step, "kind">;
 
-/** Steps that are done with a hand or a foot, at the boxes. */
-const hasBoxes = (kind: string): kind is "task" | "practice" =>
-  kind === "task" || kind === "practice";
+/** The limb that a step is done with, at the boxes; null if its kind needs none. */
+const limbOf = ({ kind, limb }: Named): Limb | null =>
+  limb !== null && STEP_KINDS[kind].limbs.includes(limb) ? limb : null;
 
-export const stepName = ({ kind, limb }: Named): Key =>
-  hasBoxes(kind) && limb !== null ? `step.${kind}.${limb}` : stepNameKey(kind);
+/** The key of the step's text of this group, such as `step` for its name. */
+export function stepText(group: "step" | "guide" | "do.begin", step: Named): Key {
+  const limb = limbOf(step);
+  return (limb === null ? `${group}.${step.kind}` : `${group}.${step.kind}.${limb}`) as Key;
+}
 
-export const stepIcon = ({ kind, limb }: Named): IconName =>
-  hasBoxes(kind) && limb !== null ? limb : (STEP_ICONS[kind] ?? "flag");
+export const stepName = (step: Named): Key => stepText("step", step);
+
+export const stepIcon = (step: Named): IconName => limbOf(step) ?? STEP_KINDS[step.kind].icon;
 
 /** Steps that run on the phase clock, in the headset. */
-export const isTimed = (step: Pick<Step, "kind">): boolean =>
-  hasBoxes(step.kind) || step.kind === "free_roam";
+export const isTimed = ({ kind }: OfKind): boolean => STEP_KINDS[kind].family === "timed";
 
 /** Steps that are answered at the tablet (or read out by the operator). */
-export const isForm = (step: Pick<Step, "kind">): boolean =>
-  step.kind === "form" || step.kind === "questionnaire";
+export const isForm = ({ kind }: OfKind): boolean => STEP_KINDS[kind].family === "form";
+
+/** Phases that are the study's data; all others are in no figure or test. */
+export const isCounted = ({ kind }: OfKind): boolean => STEP_KINDS[kind].counts;
 
 /** How the phases of a session are named: block, task, and the latency where it may be known. */
 export const isOver = ({ status }: PhaseSummary): boolean =>

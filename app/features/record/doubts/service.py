@@ -38,11 +38,10 @@ from app.models import (
     StudySession,
     TelemetryStream,
 )
-from app.protocol import StudyProtocol
+from app.protocol import STEP_KINDS, StudyProtocol
 
 OBSERVED = "impossible"
 """The alarm of what a connection itself sees and the record would not show."""
-TASKS = ("task", "practice")
 _MOMENTS = (
     "phase_prepared",
     "phase_paused",
@@ -311,7 +310,7 @@ def _lasted_s(first: datetime, last: datetime, created: datetime, ended: datetim
 
 def _boxes(protocol: StudyProtocol, phase: Phase) -> int:
     """How many boxes a phase has; none where there is no task."""
-    if phase.kind not in TASKS:
+    if not STEP_KINDS[phase.kind].has_boxes:
         return 0
     task = protocol.tasks.hand if phase.limb == "hand" else protocol.tasks.foot
     return 0 if task is None else len(task.boxes)

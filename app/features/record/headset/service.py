@@ -105,8 +105,8 @@ def headset_state(db: Session, session: StudySession) -> HeadsetState:
 def _records(state: SessionState, step: Step | None) -> bool:
     """Recording runs from the avatar's appearance to the debriefing, and never of somebody who
     does not want to take part."""
-    is_debriefing = step is not None and step.kind == "debrief"
-    return state.materialised and state.refused_consent is None and not is_debriefing
+    is_after_it = step is not None and not step.spec.records_movement
+    return state.materialised and state.refused_consent is None and not is_after_it
 
 
 def participant_info(db: Session, session: StudySession) -> ParticipantInfo:

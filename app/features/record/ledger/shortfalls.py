@@ -5,6 +5,8 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, TypeAdapter
 
+from app.protocol import PHASES
+
 ShortfallCode = Literal[
     "consent_skipped",
     "phase_skipped",
@@ -15,13 +17,6 @@ ShortfallCode = Literal[
     "latency_off",
     "headset_doubtful",
 ]
-_PHASE_WORDS = {
-    "hand": "hand task",
-    "foot": "foot task",
-    "free_roam": "free movement",
-    "practice_hand": "practice with the hand",
-    "practice_foot": "practice with the foot",
-}
 
 
 class Shortfall(BaseModel):
@@ -47,7 +42,7 @@ class Shortfall(BaseModel):
         """The shortfall as a clause in English."""
         parts = (
             None if self.block is None else f"block {self.block}",
-            None if self.phase is None else _PHASE_WORDS.get(self.phase, self.phase),
+            None if self.phase is None else _name(self.phase),
         )
         place = ", ".join(part for part in parts if part)
         return f"{place}: {self._what()}" if place else self._what()
@@ -70,6 +65,11 @@ class Shortfall(BaseModel):
                 return "no achieved latency could be measured"
             case "latency_off":
                 return f"achieved latency off by {self.value:.0f} ms (limit {self.limit:g} ms)"
+
+
+def _name(phase: str) -> str:
+    """What a sentence calls the phase; its key where it is of no kind that we still know."""
+    return PHASES[phase].in_a_sentence["en"] if phase in PHASES else phase
 
 
 _STORED = TypeAdapter(tuple[Shortfall, ...])

@@ -37,11 +37,10 @@ from app.features.record.sessions import (
 )
 from app.models import Answer, ScoreValue, StudySession, Submission, new_id
 from app.platform.context import AppContext
-from app.protocol import Step
+from app.protocol import FORM_KINDS, Step
 from app.rows import insert_rows
 from app.science.instruments import Instrument, item_order, score_answers, validate_answers
 
-FORM_KINDS = ("form", "questionnaire")
 CONTENT = "refused_form"
 Row = dict[str, Any]
 ANSWERS = cast("Table", Answer.__table__)

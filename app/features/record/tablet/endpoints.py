@@ -45,12 +45,16 @@ from app.platform.dependencies import (
     write,
 )
 from app.platform.tokens import device_of_token, read_cookie
-from app.protocol import Step
+from app.protocol import STEP_KINDS, Step
 
 calls = APIRouter(tags=["sessions"])
 """The console's side of a call."""
 router = APIRouter(prefix="/tablet", tags=["tablet"])
 HEARTBEAT_S = 10.0
+_READ_KINDS = tuple(
+    kind for kind, spec in STEP_KINDS.items() if spec.screen in ("consent", "instructions")
+)
+"""Steps that the participant reads on the tablet and completes there."""
 
 
 @router.get("/state", response_model=TabletState)
@@ -153,7 +157,7 @@ def post_acknowledge(
 ) -> TabletState:
     """Consent given, or instructions read; sending it twice does no harm."""
     session = session_by_id(db, tablet.session_id, lock=True)
-    step = _own_step(db, session, request.step_index, ("consent", "instructions"))
+    step = _own_step(db, session, request.step_index, _READ_KINDS)
     given = ConsentGiven(step_index=step.index) if step.kind == "consent" else None
     _complete(db, context, session, step, f"tablet:{tablet.id}", given)
     return tablet_state(db, session)

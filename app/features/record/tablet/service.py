@@ -33,12 +33,6 @@ _CALL_WORDS = {
     "taken_back": "The participant no longer needs help.",
     "answered": "The experimenter went to the participant.",
 }
-_SCREENS: dict[str, Screen] = {
-    "consent": "consent",
-    "instructions": "instructions",
-    "form": "form",
-    "questionnaire": "form",
-}
 
 
 def tablet_state(db: Session, session: StudySession) -> TabletState:
@@ -78,7 +72,7 @@ def _screen(step: Step | None, state: SessionState, *, ended: bool) -> Screen:
         return "refused"
     if state.held is not None:
         return "held"
-    return "waiting" if step is None else _SCREENS.get(step.kind, "waiting")
+    return "waiting" if step is None else step.spec.screen
 
 
 def _own_text(step: Step | None, screen: Screen) -> Step | None:

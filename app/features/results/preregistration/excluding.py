@@ -20,7 +20,7 @@ from app.features.results.analysis.tables import (
 )
 from app.features.results.preregistration.schemas import ExclusionView
 from app.models import InstrumentVersion
-from app.protocol import ExclusionRule
+from app.protocol import COUNTED_KINDS, ExclusionRule
 
 FEWEST_ALIKE = 5
 """Ratings of a form from which on being all alike says something."""
@@ -40,7 +40,7 @@ class Tables:
     @property
     def tasks(self) -> pd.DataFrame:
         """Task phases that count."""
-        return self.phases[(self.phases["phase_kind"] == "task") & self.phases["valid"]]
+        return self.phases[self.phases["phase_kind"].isin(COUNTED_KINDS) & self.phases["valid"]]
 
 
 @dataclass
@@ -156,7 +156,9 @@ _JUDGES: dict[str, Judge] = {
 
 def _quality(tables: Tables, session_id: str) -> pd.DataFrame:
     rows = _of(tables.quality, session_id)
-    return rows[(rows["stream"] == "actual") & (rows["phase_kind"] == "task") & rows["valid"]]
+    return rows[
+        (rows["stream"] == "actual") & rows["phase_kind"].isin(COUNTED_KINDS) & rows["valid"]
+    ]
 
 
 def _of(frame: pd.DataFrame, session_id: str) -> pd.DataFrame:

@@ -4,6 +4,7 @@ import { createContext, useContext, useEffect, useRef, useState } from "react";
 import { type Key, useTexts } from "../i18n";
 import { fieldsEn } from "../i18n/fieldTexts";
 import { preregistrationEn } from "../i18n/preregistrationTexts";
+import { stepKindsEn } from "../stepKinds";
 import { type Change, type JsonObject, type Path, pathText, valueAt } from "./paths";
 
 export interface FormState {
@@ -37,7 +38,11 @@ export function useProblem(path: Path): string | null {
 export const useValue = (path: Path) => valueAt(useForm().tree, path);
 
 /** What fields and their values are called: in the reader's language where we have a word for them. */
-const NAMED: Readonly<Record<string, string>> = { ...fieldsEn, ...preregistrationEn };
+const NAMED: Readonly<Record<string, string>> = {
+  ...fieldsEn,
+  ...preregistrationEn,
+  ...stepKindsEn,
+};
 const UNITS: Readonly<Record<string, string>> = { s: "s", ms: "ms", m: "m", cm: "cm", deg: "°" };
 
 /** `freeze_s` as `Freeze (s)`: for a setting that is newer than the tables of words. */
@@ -61,7 +66,7 @@ export function useLabels(): Labels {
   return {
     field: (name) => known(`field.${name}`) ?? readable(name),
     hint: (name) => known(`hint.${name}`),
-    value: (value) => known(`value.${value}`) ?? value,
+    value: (value) => known(`value.${value}`) ?? known(`step.${value}`) ?? value,
   };
 }
 

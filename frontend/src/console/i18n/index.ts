@@ -5,6 +5,7 @@ import {
   type Texts,
   useTranslations,
 } from "@shared/i18n/i18n";
+import { stepKindsDe, stepKindsEn } from "../stepKinds";
 import { analysisDe, analysisEn } from "./analysisTexts";
 import { auditDe, auditEn } from "./auditTexts";
 import { capturesDe, capturesEn } from "./captureTexts";
@@ -42,6 +43,7 @@ import { walkSetDe, walkSetEn } from "./walkSetTexts";
 
 const allEn = {
   ...en,
+  ...stepKindsEn,
   ...peopleEn,
   ...joinEn,
   ...auditEn,
@@ -77,6 +79,7 @@ const allEn = {
 };
 const allDe = {
   ...de,
+  ...stepKindsDe,
   ...peopleDe,
   ...joinDe,
   ...auditDe,

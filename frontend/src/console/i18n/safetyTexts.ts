@@ -1,9 +1,5 @@
 /** Practice, stop rules, heights that differ. */
 export const safetyEn = {
-  "step.practice.hand": "Practice with the hand",
-  "step.practice.foot": "Practice with the foot",
-  "do.begin.practice": "Begin the practice",
-  "guide.practice": "A task to try. It is not analysed; let the participant ask.",
   "practice.until_one": "Ends after {{count}} completed task",
   "practice.until_other": "Ends after {{count}} completed tasks",
   "held.title": "Stop: see how the participant is",
@@ -28,10 +24,6 @@ export const safetyEn = {
 };
 
 export const safetyDe: Readonly<Record<keyof typeof safetyEn, string>> = {
-  "step.practice.hand": "Übung mit der Hand",
-  "step.practice.foot": "Übung mit dem Fuß",
-  "do.begin.practice": "Übung beginnen",
-  "guide.practice": "Eine Aufgabe zum Ausprobieren. Sie wird nicht ausgewertet; Fragen sind gut.",
   "practice.until_one": "Endet nach {{count}} erledigter Aufgabe",
   "practice.until_other": "Endet nach {{count}} erledigten Aufgaben",
   "held.title": "Halt: Sehen Sie nach der Person",

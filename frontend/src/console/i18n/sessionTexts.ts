@@ -19,19 +19,6 @@ export const sessionEn = {
   "guide.completed": "Everything is stored. Thank the participant.",
   "guide.aborted": "The session was ended early. Its data are kept and its slot is free again.",
   "guide.withdrawn": "The participant withdrew. The slot is free again.",
-  "guide.consent":
-    "The participant reads and agrees on the tablet. Record it here only if consent was given on paper.",
-  "guide.form": "The participant answers on the tablet.",
-  "guide.questionnaire":
-    "The participant answers on the tablet, or you read the items aloud and enter the answers.",
-  "guide.instructions": "The participant reads on the tablet. Invite questions before going on.",
-  "guide.height": "Ask for the height, then match the avatar by eye. Both values are kept.",
-  "guide.materialise":
-    "The participant stands inside the transparent body in T-pose and presses both grips.",
-  "guide.free_roam": "Let the participant look around, down and into the mirror.",
-  "guide.task.hand": "Check the stand on the start square and the writing hand, then begin.",
-  "guide.task.foot": "Check the stand on the start square, then begin.",
-  "guide.debrief": "Help out of the headset and tell what the study was about.",
   "guide.preparing": "The headset counts down.",
   "guide.running": "The task runs in the headset. Stay within reach.",
   "guide.paused": "The clock stands. Resume when the participant is ready.",
@@ -117,20 +104,6 @@ export const sessionDe: Readonly<Record<keyof typeof sessionEn, string>> = {
   "guide.aborted":
     "Die Sitzung wurde vorzeitig beendet. Ihre Daten bleiben, ihr Platz ist wieder frei.",
   "guide.withdrawn": "Die Person hat sich zurückgezogen. Der Platz ist wieder frei.",
-  "guide.consent":
-    "Die Person liest und willigt am Tablet ein. Hier nur festhalten, wenn auf Papier eingewilligt wurde.",
-  "guide.form": "Die Person antwortet am Tablet.",
-  "guide.questionnaire":
-    "Die Person antwortet am Tablet, oder Sie lesen vor und geben die Antworten ein.",
-  "guide.instructions": "Die Person liest am Tablet. Laden Sie zu Fragen ein, bevor es weitergeht.",
-  "guide.height":
-    "Fragen Sie nach der Größe und gleichen Sie den Avatar nach Augenmaß an. Beide Werte bleiben erhalten.",
-  "guide.materialise":
-    "Die Person steht in T-Haltung im durchsichtigen Körper und drückt beide Griffe.",
-  "guide.free_roam": "Lassen Sie die Person umherschauen, an sich hinab und in den Spiegel.",
-  "guide.task.hand": "Prüfen Sie den Stand auf dem Startfeld und die Schreibhand, dann beginnen.",
-  "guide.task.foot": "Prüfen Sie den Stand auf dem Startfeld, dann beginnen.",
-  "guide.debrief": "Helfen Sie aus dem Headset und erzählen Sie, worum es in der Studie ging.",
   "guide.preparing": "Das Headset zählt herunter.",
   "guide.running": "Die Aufgabe läuft im Headset. Bleiben Sie in Reichweite.",
   "guide.paused": "Die Uhr steht. Setzen Sie fort, wenn die Person bereit ist.",

@@ -4,7 +4,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useEffect, useState } from "react";
 import { useTexts } from "../i18n";
 import { sessionQuery } from "../queries";
-import { isOver } from "../steps";
+import { isCounted, isOver } from "../steps";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";
@@ -23,7 +23,7 @@ function Found({ session }: { readonly session: SessionView }): JSX.Element {
   const { t } = useTexts();
   const { wanted, arrival, setWanted } = useWanted(session.id);
   useTitle(t("replay.page", { code: session.participant_code }));
-  const first = session.phases.find((phase) => phase.status === "done" && phase.kind === "task");
+  const first = session.phases.find((phase) => phase.status === "done" && isCounted(phase));
   const phase = wanted.phase ?? (first ?? session.phases.find(isOver))?.phase_id ?? null;
   if (phase === null) {
     return (

@@ -75,7 +75,7 @@ export interface Condition {
 }
 
 export interface SetupStep {
-  readonly step: string;
+  readonly step: StepKind;
   readonly text?: string | null;
   readonly instrument?: string;
   /** Of a practice. */

@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from app.features.record.sessions.engine.state import PhaseStatus, SessionState, SessionStatus
 from app.protocol import TIMED_KINDS, Step
 
-_DONE_BY_HAND = ("consent", "instructions", "height", "debrief")
-
 
 def allowed_commands(plan: Sequence[Step], state: SessionState) -> list[str]:
     """Command types in the order a page shows them: the next action first."""
@@ -35,10 +33,4 @@ def _next_actions(step: Step, state: SessionState) -> list[str]:
         if phase.status is PhaseStatus.PAUSED and not phase.resuming:
             return ["resume"]
         return []
-    if step.kind in _DONE_BY_HAND:
-        return ["complete_step"]
-    if step.kind == "materialise":
-        return ["materialise"]
-    if step.kind in TIMED_KINDS:
-        return ["begin_phase"]
-    return ["enter_answers"]
+    return [step.spec.command]

@@ -13,9 +13,8 @@ from app.features.record.sessions.engine.state import (
     SessionState,
     SessionStatus,
 )
-from app.protocol import TIMED_KINDS, Step
+from app.protocol import FORM_KINDS, TIMED_KINDS, Step, kinds_with_command
 
-FORMS = ("form", "questionnaire")
 GOES_ON = (c.BeginPhase, c.CompleteStep, c.Materialise, c.Redo, c.Resume, c.Skip)
 """What moves a participant on: nothing of it is done while a stop rule or a refused consent holds
 the session."""
@@ -88,7 +87,7 @@ def _decide_step(step: Step, state: SessionState, command: c.Command) -> list[e.
         case c.SubmitForm():
             return _submit(step, command)
         case c.Materialise():
-            _require_kind(step, ("materialise",), "materialise the avatar")
+            _require_kind(step, kinds_with_command("materialise"), "materialise the avatar")
             _require_headset(
                 "nothing could show the body or record it", connected=command.headset_connected
             )
@@ -109,7 +108,7 @@ def _decide_step(step: Step, state: SessionState, command: c.Command) -> list[e.
 
 
 def _complete(step: Step, command: c.CompleteStep) -> list[e.Event]:
-    _require_kind(step, ("consent", "instructions", "height", "debrief"), "mark the step as done")
+    _require_kind(step, kinds_with_command("complete_step"), "mark the step as done")
     if command.step is not None and command.step != step.index:
         raise Refused(
             f"step {command.step} is not the current one",
@@ -129,7 +128,7 @@ def _complete(step: Step, command: c.CompleteStep) -> list[e.Event]:
 
 
 def _submit(step: Step, command: c.SubmitForm) -> list[e.Event]:
-    _require_kind(step, FORMS, "submit a form")
+    _require_kind(step, FORM_KINDS, "submit a form")
     if command.step != step.index:
         raise Refused(
             f"the form of step {command.step} is not the current one",

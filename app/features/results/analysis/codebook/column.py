@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 from typing import Literal
 
+from app.protocol import TIMED_KINDS
+
 _PHASE = "Whether the row may be analysed: the phase was finished and not redone or skipped"
 ColumnType = Literal["text", "integer", "number", "boolean", "time"]
 
@@ -110,7 +112,7 @@ def phase_columns(table: str) -> tuple[Column, ...]:
     of = Describe(table)
     return (
         of.integer("phase_id", "The phase within its session.", levels="1 and up"),
-        of.text("phase_kind", "What kind of phase.", "free_roam, practice, task"),
+        of.text("phase_kind", "What kind of phase.", ", ".join(TIMED_KINDS)),
         *place_columns(table),
         of.integer(
             "attempt", "Which attempt at the step; redone steps count up.", levels="1 and up"

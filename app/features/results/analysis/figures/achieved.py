@@ -19,6 +19,7 @@ from app.features.results.analysis.figures.theme import (
     latency_axis,
     new_figure,
 )
+from app.protocol import COUNTED_KINDS
 
 KEY, TITLE = "achieved_latency", "Achieved against ordered latency"
 WHAT = (
@@ -38,7 +39,7 @@ _COLUMNS = (
 
 def achieved_drawing(phases: pd.DataFrame) -> Drawing:
     """From valid rows of the table of phases."""
-    tasks = phases[phases["phase_kind"] == "task"]
+    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     measured = tasks.dropna(subset=["achieved_latency_ms", "latency_ms"])
     n = participants(measured)
     if n < FEWEST_PARTICIPANTS:

@@ -19,6 +19,7 @@ from app.features.results.analysis.figures.drawing import (
     participants,
     too_few,
 )
+from app.protocol import COUNTED_KINDS
 
 KEY, TITLE = "completions", "Completed tasks by added latency"
 LEARNING_KEY, LEARNING_TITLE = "learning", "Completed tasks over the blocks of a session"
@@ -44,7 +45,7 @@ def learning_drawing(phases: pd.DataFrame) -> Drawing:
 def _drawing(
     key: str, title: str, words: str, phases: pd.DataFrame, across: Across = LATENCY
 ) -> Drawing:
-    tasks = phases[phases["phase_kind"] == "task"].astype({"completions": "float64"})
+    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)].astype({"completions": "float64"})
     n = participants(tasks)
     if n < FEWEST_PARTICIPANTS:
         return too_few(key, title, words, n, "a finished hand or foot phase")

@@ -15,6 +15,7 @@ from app.features.results.analysis.figures.drawing import (
     too_few,
 )
 from app.features.results.analysis.figures.theme import new_figure
+from app.protocol import COUNTED_KINDS
 
 KEY, TITLE = "contacts_map", "Contact time by side of the box and body part"
 WHAT = (
@@ -28,7 +29,7 @@ _APART = "\u001f"
 
 def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
     """From valid rows of the tables of phases and contacts; one panel a limb and latency."""
-    tasks = phases[phases["phase_kind"] == "task"]
+    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     sides = contacts[contacts["surface_kind"] == "side"]
     n = participants(tasks)
     if n < FEWEST_PARTICIPANTS:

@@ -18,6 +18,7 @@ from app.features.results.analysis.figures.drawing import (
 )
 from app.features.results.analysis.figures.theme import COLOURS, PATTERNS, hatched, new_figure
 from app.features.results.analysis.tables.tasks import red_spans, total_s
+from app.protocol import COUNTED_KINDS
 
 Contact = tuple[str, float, float]
 KEY, TITLE = "contacts", "Time at the sides of the boxes by added latency"
@@ -31,7 +32,7 @@ WHAT = (
 
 def contacts_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
     """From valid rows of the tables of phases and contacts."""
-    tasks = phases[phases["phase_kind"] == "task"]
+    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     sides = contacts[contacts["surface_kind"] == "side"]
     n = participants(tasks)
     if n < FEWEST_PARTICIPANTS:

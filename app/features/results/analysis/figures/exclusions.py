@@ -5,6 +5,7 @@ import plotly.graph_objects as go
 
 from app.features.results.analysis.figures.drawing import Drawing, drawn, participants
 from app.features.results.analysis.figures.theme import BLUE, ORANGE, hatched, new_figure
+from app.protocol import COUNTED_KINDS
 
 KEY, TITLE = "exclusions", "What counts and what is left out"
 WHAT = (
@@ -26,7 +27,7 @@ def exclusions_drawing(
     if sessions.empty:
         empty = "No session has joined the study yet."
         return Drawing(KEY, TITLE, WHAT, 0, empty=empty, group="quality")
-    rows = _counts(sessions, phases[phases["phase_kind"] == "task"], scores)
+    rows = _counts(sessions, phases[phases["phase_kind"].isin(COUNTED_KINDS)], scores)
     figure = _figure(rows)
     caption = f"{WHAT} n = {n} participant{'s' if n != 1 else ''}."
     return drawn(KEY, TITLE, caption, n, figure, rows).of_group("quality")

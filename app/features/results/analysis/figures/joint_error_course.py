@@ -19,6 +19,7 @@ from app.features.results.analysis.figures.theme import (
     new_figure,
     see_through,
 )
+from app.protocol import COUNTED_KINDS
 
 KEY, TITLE = "joint_error_course", "Joint error over the active time of a phase"
 HOW = (
@@ -38,7 +39,7 @@ _NAMES = (*_KEYS, "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
 
 def joint_error_course_drawing(courses: pd.DataFrame) -> Drawing:
     """Mean angle by active time, a line a latency and a panel a limb, from rows that count."""
-    chosen = courses["reference"].eq("present") & courses["phase_kind"].eq("task")
+    chosen = courses["reference"].eq("present") & courses["phase_kind"].isin(COUNTED_KINDS)
     rows = courses[chosen].dropna(subset=[*_KEYS, "mean_deg"])
     n = participants(rows)
     if n < FEWEST_PARTICIPANTS:

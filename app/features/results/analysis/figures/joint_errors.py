@@ -21,6 +21,7 @@ from app.features.results.analysis.figures.theme import (
     latency_axis,
     new_figure,
 )
+from app.protocol import COUNTED_KINDS
 from app.science.joint_error import ERROR_JOINTS
 
 _LIMB_PARTS = {
@@ -171,7 +172,7 @@ def _clipped_note(shares: pd.DataFrame) -> str:
 def task_angles(errors: pd.DataFrame) -> pd.DataFrame:
     """Whole angles against the present pose, of the tasks."""
     chosen = errors["axis"].eq("angle") & errors["reference"].eq("present")
-    return errors[chosen & errors["phase_kind"].eq("task")].dropna(subset=["mean_deg"])
+    return errors[chosen & errors["phase_kind"].isin(COUNTED_KINDS)].dropna(subset=["mean_deg"])
 
 
 def _by_part(rows: pd.DataFrame) -> dict[str, pd.DataFrame]:

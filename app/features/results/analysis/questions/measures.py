@@ -14,6 +14,7 @@ import pandas as pd
 from app.features.results.analysis.figures.by_latency import per_participant
 from app.features.results.analysis.figures.joint_errors import task_angles
 from app.features.results.analysis.material import Material
+from app.protocol import COUNTED_KINDS
 from app.science.instruments import Instrument, names_in
 from app.science.statistics import Direction, FloatArray
 
@@ -90,7 +91,7 @@ def measures_of(material: Material) -> Iterator[Measure]:
     tested = completed(material)
     yield from _scores(tested)
     tasks = tested.counting(tested.phases)
-    tasks = tasks[tasks["phase_kind"] == "task"].astype({"completions": "float64"})
+    tasks = tasks[tasks["phase_kind"].isin(COUNTED_KINDS)].astype({"completions": "float64"})
     yield from _one(
         "contact_time",
         ("Contact time", "s"),

@@ -9,6 +9,7 @@ from app.features.results.analysis.figures.contacts import part_side_times
 from app.features.results.analysis.material import Material
 from app.features.results.analysis.questions.measures import Measure, completed
 from app.features.results.analysis.questions.words import Said, bounded, p_cell
+from app.protocol import COUNTED_KINDS
 from app.science.statistics import (
     Spearman,
     StatisticsError,
@@ -46,7 +47,7 @@ def contact_share_results(material: Material) -> Iterator[Said]:
     """The share of contact time by finger, hand and arm, at each latency; one result a limb."""
     tested = completed(material)
     phases, contacts = tested.counting(tested.phases), tested.counting(tested.contacts)
-    tasks = phases[phases["phase_kind"] == "task"]
+    tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     sides = contacts[contacts["surface_kind"] == "side"]
     if sides.empty:
         return

@@ -158,7 +158,7 @@ def steps_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
         skipped = {
             (step.block, step.limb)
             for step in plan
-            if step.kind == "task" and state.steps[step.index].status == "skipped"
+            if step.spec.counts and state.steps[step.index].status == "skipped"
         }
         for step in plan:
             own = state.steps[step.index]
@@ -261,7 +261,7 @@ def _positions(plan: Sequence[Step]) -> dict[tuple[int | None, str | None], int]
     """Place of each task within its block, counted from 1; steps outside blocks have none."""
     positions: dict[tuple[int | None, str | None], int] = {}
     for step in plan:
-        if step.kind == "task":
+        if step.spec.counts:
             earlier = sum(block == step.block for block, _ in positions)
             positions[step.block, step.limb] = earlier + 1
     return positions

@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 
 from app import __version__
 from app.features.people.audit import TrailHead
+from app.protocol import UNCOUNTED_KINDS
 
 MARK = "Reembody export"
 """How an export's README begins, by which we know our own folders again."""
@@ -40,9 +41,11 @@ Reading the files
   records hold names: they stay with the lab and are in no export.
   Audit head is the newest entry of the lab's audit trail when this was written. The lab proves with
   it that nothing was cut from the trail since: ./run verify --head SEQ:HASH.
-  Rows with phase_kind = practice or free_roam come before the blocks: never analyse them with
-  those of tasks.
 """
+_UNCOUNTED = (
+    f"  Rows with phase_kind = {' or '.join(UNCOUNTED_KINDS)} come before the blocks: never "
+    "analyse them with\n  those of tasks.\n"
+)
 
 
 @dataclass(frozen=True)
@@ -77,6 +80,7 @@ def readme_text(origin: Origin, files: Sequence[FileCount], *, rules: bool = Tru
     `rules`: there are sessions of a version that says when a session counts.
     """
     reading = _READING.replace(_BROKEN_OFF, _BROKEN_OFF + _NOT_VALID) if rules else _READING
+    reading += _UNCOUNTED
     when = origin.now.astimezone(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
     statuses = ", ".join(f"{count} {status}" for status, count in sorted(origin.statuses.items()))
     head = [

@@ -7,6 +7,7 @@ import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { SessionDownload } from "../../downloads/DownloadsButton";
 import { useTexts } from "../../i18n";
+import { stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";
 import classes from "../Panels.module.css";
 import { AchievedLatency } from "./AchievedLatency";
@@ -79,9 +80,7 @@ function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
   return (
     <tr className={voided ? classes.voided : undefined}>
       <td className={classes.phase}>
-        {phase.limb !== null && (
-          <span className={classes.nowrap}>{t(`step.task.${phase.limb}`)}</span>
-        )}
+        {phase.limb !== null && <span className={classes.nowrap}>{t(stepName(phase))}</span>}
         {phase.attempt > 1 && ` · ${t("timeline.attempt", { number: phase.attempt })}`}
         {voided && ` · ${t("recorded.voided")}`}
       </td>
@@ -104,7 +103,7 @@ function PhaseRow({ session, phase }: PhaseRowProps): JSX.Element {
 
 function ReplayLink({ session, phase }: PhaseRowProps): JSX.Element {
   const { t } = useTexts();
-  const name = phase.limb === null ? "" : t(`step.task.${phase.limb}`);
+  const name = phase.limb === null ? "" : t(stepName(phase));
   return (
     <ActionIcon
       component="a"

@@ -9,7 +9,7 @@ import type { JSX } from "react";
 import { useTexts } from "../../i18n";
 import { useMay } from "../../may";
 import { AnswersDrawer } from "../../rights/AnswersDrawer";
-import { stepName } from "../../steps";
+import { isCounted, stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";
 import classes from "../Panels.module.css";
 import answerHintsClasses from "./AnswerHints.module.css";
@@ -85,7 +85,7 @@ function whereOf(
   if (step === undefined) return one.instrument;
   const task = session.steps
     .slice(0, one.step_index)
-    .findLast((before) => before.kind === "task" && before.block === step.block);
+    .findLast((before) => isCounted(before) && before.block === step.block);
   const name = task === undefined || step.block === null ? t(stepName(step)) : t(stepName(task));
   return step.latency_ms === null ? name : `${name} · ${latency(milliseconds(step.latency_ms))}`;
 }

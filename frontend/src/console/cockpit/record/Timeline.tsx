@@ -4,7 +4,7 @@ import { duration, latency } from "@shared/format";
 import { milliseconds, seconds } from "@shared/units";
 import { type JSX, useEffect, useRef } from "react";
 import { useTexts } from "../../i18n";
-import { stepName } from "../../steps";
+import { isCounted, stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";
 import { AchievedInBrief } from "./AchievedLatency";
 import classes from "./Timeline.module.css";
@@ -91,7 +91,7 @@ function Sub({ step, phase }: StepRowProps): JSX.Element | null {
   const { t } = useTexts();
   const parts: string[] = [];
   if (step.status === "skipped") parts.push(step.reason ?? t("timeline.skipped"));
-  else if (phase !== undefined && step.status === "done" && step.kind === "task") {
+  else if (phase !== undefined && step.status === "done" && isCounted(step)) {
     parts.push(t("timeline.completions", { count: phase.completions }));
     parts.push(t("timeline.contacts", { count: phase.side_contacts }));
   } else if (step.duration_s !== null && step.status !== "done") {

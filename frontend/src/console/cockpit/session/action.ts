@@ -2,7 +2,8 @@
 import type { Command, CommandType, Device, SessionView, Step } from "@shared/api/types";
 import type { IconName } from "@shared/ui/Icon";
 import type { Key } from "../../i18n";
-import { isTimed } from "../../steps";
+import { STEP_KINDS } from "../../stepKinds";
+import { isTimed, stepText } from "../../steps";
 
 interface PrimaryAction {
   readonly command: Command;
@@ -27,24 +28,16 @@ export function primaryAction(session: SessionView): PrimaryAction | null {
   if (step === null) return null;
   if (may("resume")) return { command: { type: "resume" }, label: "do.resume", icon: "play" };
   if (may("begin_phase")) {
-    return { command: { type: "begin_phase" }, label: beginLabel(step), icon: "play" };
+    return { command: { type: "begin_phase" }, label: stepText("do.begin", step), icon: "play" };
   }
   if (may("materialise")) {
     return { command: { type: "materialise" }, label: "do.materialise", icon: "body" };
   }
-  if (may("complete_step")) {
-    const label = COMPLETE[step.kind];
-    if (label !== undefined) {
-      const command: Command = { type: "complete_step", step_index: step.index };
-      return { command, label, icon: "check" };
-    }
+  if (may("complete_step") && STEP_KINDS[step.kind].isCompletedByButton) {
+    const command: Command = { type: "complete_step", step_index: step.index };
+    return { command, label: `do.complete.${step.kind}` as Key, icon: "check" };
   }
   return null;
-}
-
-function beginLabel(step: Step): Key {
-  if (step.kind === "practice") return "do.begin.practice";
-  return step.limb === null ? "do.begin.free_roam" : `do.begin.${step.limb}`;
 }
 
 const NEEDS_HEADSET: readonly CommandType[] = ["materialise", "begin_phase", "resume"];
@@ -57,21 +50,13 @@ export const lacksHeadset = (session: SessionView): boolean =>
 export const isConnected = ({ devices }: SessionView, device: Device): boolean =>
   devices.some(({ kind, connected }) => kind === device && connected);
 
-const COMPLETE: Readonly<Partial<Record<Step["kind"], Key>>> = {
-  instructions: "do.complete.instructions",
-  debrief: "do.complete.debrief",
-  free_roam: "do.complete.other",
-  materialise: "do.complete.other",
-};
-
 /** What to say or do now, for the operator's eye. */
 export function guidance(session: SessionView): Key {
   const step = currentStep(session);
   if (session.status !== "active" && session.status !== "planned") return `guide.${session.status}`;
   if (step === null || session.current === null) return "guide.planned";
   if (session.current.status !== "ready") return `guide.${session.current.status}`;
-  if (step.kind === "task") return step.limb === "foot" ? "guide.task.foot" : "guide.task.hand";
-  return `guide.${step.kind}`;
+  return stepText("guide", step);
 }
 
 export type Reasoned = Extract<

@@ -1,11 +1,11 @@
 /** The procedure of one visit from left to right; timed parts carry their seconds, phases to scale. */
-import type { SetupStep, StepKind, StudyDetail, StudyProtocol, TaskPhase } from "@shared/api/types";
+import type { SetupStep, StudyDetail, StudyProtocol, TaskPhase } from "@shared/api/types";
 import { duration, number } from "@shared/format";
 import { Icon, type IconName } from "@shared/ui/Icon";
 import { seconds } from "@shared/units";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
-import { stepIcon, stepName, stepNameKey } from "../../steps";
+import { stepIcon, stepName } from "../../steps";
 import classes from "./Procedure.module.css";
 
 interface ProcedureProps {
@@ -30,7 +30,7 @@ export function Procedure({ study, protocol }: ProcedureProps): JSX.Element {
             ))}
             {(block.after ?? []).map((step, index) => (
               // biome-ignore lint/suspicious/noArrayIndexKey: the steps of a protocol never change places
-              <SmallStep key={index} icon="form" name={stepNameKey(step.step)} />
+              <SmallStep key={index} icon={stepIcon(named(step))} name={stepName(named(step))} />
             ))}
           </ol>
         </div>
@@ -56,7 +56,9 @@ interface PartProps {
 }
 
 /** A step of the file as the plan would name it. */
-const named = ({ step, limb }: SetupStep) => ({ kind: step as StepKind, limb: limb ?? null });
+const named = ({ step, limb }: SetupStep) => ({ kind: step, limb: limb ?? null });
+
+const QUESTIONNAIRE = { kind: "questionnaire", limb: null } as const;
 
 function Part({ name, kind, steps }: PartProps): JSX.Element {
   return (
@@ -109,7 +111,7 @@ function Phase({ phase }: { readonly phase: TaskPhase }): JSX.Element {
       <li className={`${classes.step} ${classes.phase}`}>
         <span className={classes.phaseName}>
           <Icon name={phase.limb} />
-          {t(`step.task.${phase.limb}`)}
+          {t(stepName({ kind: "task", limb: phase.limb }))}
         </span>
         <span className={`${classes.scale} numbers`}>
           {segments.map(([name, time]) => (
@@ -124,7 +126,9 @@ function Phase({ phase }: { readonly phase: TaskPhase }): JSX.Element {
           ))}
         </span>
       </li>
-      {phase.questionnaire !== null && <SmallStep icon="form" name="step.questionnaire" />}
+      {phase.questionnaire !== null && (
+        <SmallStep icon={stepIcon(QUESTIONNAIRE)} name={stepName(QUESTIONNAIRE)} />
+      )}
     </>
   );
 }

@@ -1,0 +1,304 @@
+"""The kinds of steps a session is made of: the one place that says what each kind is.
+
+A step belongs to one of three families. A *timed* step is a phase: the headset runs it on its own
+clock, and its movement and touches are recorded as such. A *form* is answered at the tablet. A step
+*by hand* is over when the experimenter, or the participant at the tablet, says so.
+
+Everything that differs between kinds is a field of `StepKindSpec`, and everything else is derived
+from the table: plans, commands, tablet screens, checks of study files, tables and figures. The
+pages have the same table in `frontend/src/console/stepKinds.ts`, which is generated:
+
+    python -m app.protocol > frontend/src/console/stepKinds.ts
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+from app.science.tasks import Limb
+
+StepKind = Literal[
+    "consent",
+    "form",
+    "instructions",
+    "height",
+    "materialise",
+    "free_roam",
+    "practice",
+    "task",
+    "questionnaire",
+    "debrief",
+]
+Family = Literal["timed", "form", "by hand"]
+StepCommand = Literal["begin_phase", "enter_answers", "complete_step", "materialise"]
+"""What the experimenter can do to carry out a step."""
+StepScreen = Literal["consent", "instructions", "form", "waiting"]
+Words = Mapping[str, str]
+"""Language code -> wording, in English and German."""
+
+TITLE_LANGUAGES = frozenset({"en", "de"})
+"""Languages in which every kind has its words."""
+
+
+def _words(en: str, de: str) -> Words:
+    return {"en": en, "de": de}
+
+
+@dataclass(frozen=True)
+class PhaseWords:
+    """What people read of a timed phase, for one limb or for a phase without one.
+
+    `title` heads the step, `in_a_sentence` names it within one ("block 2, hand task: skipped"),
+    `begin` stands on the experimenter's button, and `guidance` says what to see to before it.
+    """
+
+    title: Words
+    in_a_sentence: Words
+    begin: Words
+    guidance: Words
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepKindSpec:
+    """One kind of step.
+
+    Args:
+        key: the word in study files, plans, events and tables.
+        name: its title, where the study gives none and it is not done with a limb.
+        icon: of the pages' icons, whose names are in `frontend/src/shared/ui/Icon.tsx`. A step that
+            is done with a limb shows the limb.
+        guidance: for the experimenter while the step is current; None where `phases` says it.
+        screen: what the tablet shows meanwhile.
+        command: what the experimenter does to carry it out; it decides the family.
+        done: what stands on the button that completes it; None where it has a form of its own, or
+            another command.
+        takes_s: our estimate of the time it takes besides reading its text, seconds; None where the
+            study sets it, or nothing but reading is done.
+        phases: of a timed kind, its words by limb; the key None stands for a phase without a limb.
+        phase_key: of a timed kind, what the rules of a study call the phase; `{limb}` is filled in.
+        counts: its phases are the study's data. All others are recorded, but in no figure or test.
+        needs_body: it must come after the step in which the participant gets a body.
+        records_movement: movement is recorded in it, once the participant has a body.
+    """
+
+    key: StepKind
+    name: Words
+    icon: str
+    guidance: Words | None = None
+    screen: StepScreen = "waiting"
+    command: StepCommand = "complete_step"
+    done: Words | None = None
+    takes_s: float | None = None
+    phases: Mapping[Limb | None, PhaseWords] = field(default_factory=dict)
+    phase_key: str | None = None
+    counts: bool = False
+    needs_body: bool = False
+    records_movement: bool = True
+
+    @property
+    def family(self) -> Family:
+        """Whether it is timed, a form, or done by hand."""
+        match self.command:
+            case "begin_phase":
+                return "timed"
+            case "enter_answers":
+                return "form"
+            case _:
+                return "by hand"
+
+    @property
+    def has_boxes(self) -> bool:
+        """Whether a limb reaches for the boxes of a task."""
+        return bool(self.phases) and None not in self.phases
+
+    def title(self, limb: str | None) -> Words:
+        """The title of a step of this kind that is done with `limb`, or with none."""
+        words = next((words for own, words in self.phases.items() if own == limb), None)
+        return self.name if words is None else words.title
+
+    def key_of_phase(self, limb: object) -> str | None:
+        """What rules call a phase of this kind (hand, practice_foot); None for untimed kinds."""
+        return None if self.phase_key is None else self.phase_key.format(limb=limb)
+
+
+_TO_TRY = _words(
+    "A task to try out, which is not analysed. Let the participant ask questions.",
+    "Eine Aufgabe zum Ausprobieren, die nicht ausgewertet wird. Ermuntern Sie zu Fragen.",
+)
+_BEGIN_PRACTICE = _words("Begin the practice", "Übung beginnen")
+_FREE_MOVEMENT = _words("Free movement", "Freies Bewegen")
+
+_TABLE = (
+    StepKindSpec(
+        key="consent",
+        name=_words("Consent", "Einwilligung"),
+        icon="check",
+        screen="consent",
+        guidance=_words(
+            "The participant reads and agrees on the tablet. Record it here only if consent was "
+            "given on paper.",
+            "Die Person liest und willigt am Tablet ein. Hier nur festhalten, wenn auf Papier "
+            "eingewilligt wurde.",
+        ),
+    ),
+    StepKindSpec(
+        key="form",
+        name=_words("Questions", "Fragen"),
+        icon="form",
+        screen="form",
+        command="enter_answers",
+        guidance=_words(
+            "The participant answers on the tablet.", "Die Person antwortet am Tablet."
+        ),
+    ),
+    StepKindSpec(
+        key="instructions",
+        name=_words("Instructions", "Anleitung"),
+        icon="talk",
+        screen="instructions",
+        done=_words("Instructions are clear", "Anleitung ist klar"),
+        guidance=_words(
+            "The participant reads on the tablet. Invite questions before going on.",
+            "Die Person liest am Tablet. Laden Sie zu Fragen ein, bevor es weitergeht.",
+        ),
+    ),
+    StepKindSpec(
+        key="height",
+        name=_words("Height", "Körpergröße"),
+        icon="height",
+        takes_s=60.0,
+        guidance=_words(
+            "Ask for the height, then match the avatar by eye. Both values are kept.",
+            "Fragen Sie nach der Größe und gleichen Sie den Avatar nach Augenmaß an. Beide Werte "
+            "bleiben erhalten.",
+        ),
+    ),
+    StepKindSpec(
+        key="materialise",
+        name=_words("Entering the body", "Eintritt in den Körper"),
+        icon="body",
+        command="materialise",
+        takes_s=60.0,
+        guidance=_words(
+            "The participant stands inside the transparent body in T-pose and presses both grips.",
+            "Die Person steht in T-Haltung im durchsichtigen Körper und drückt beide Griffe.",
+        ),
+    ),
+    StepKindSpec(
+        key="free_roam",
+        name=_FREE_MOVEMENT,
+        icon="walk",
+        command="begin_phase",
+        phase_key="free_roam",
+        phases={
+            None: PhaseWords(
+                title=_FREE_MOVEMENT,
+                in_a_sentence=_words("free movement", "freies Bewegen"),
+                begin=_words("Begin free movement", "Freies Bewegen beginnen"),
+                guidance=_words(
+                    "Let the participant look around, down at the body and into the mirror.",
+                    "Lassen Sie die Person umherschauen, an sich hinab und in den Spiegel.",
+                ),
+            ),
+        },
+    ),
+    StepKindSpec(
+        key="practice",
+        name=_words("Practice", "Übung"),
+        icon="hand",
+        command="begin_phase",
+        phase_key="practice_{limb}",
+        needs_body=True,
+        phases={
+            Limb.HAND: PhaseWords(
+                title=_words("Practice with the hand", "Übung mit der Hand"),
+                in_a_sentence=_words("practice with the hand", "Übung mit der Hand"),
+                begin=_BEGIN_PRACTICE,
+                guidance=_TO_TRY,
+            ),
+            Limb.FOOT: PhaseWords(
+                title=_words("Practice with the foot", "Übung mit dem Fuß"),
+                in_a_sentence=_words("practice with the foot", "Übung mit dem Fuß"),
+                begin=_BEGIN_PRACTICE,
+                guidance=_TO_TRY,
+            ),
+        },
+    ),
+    StepKindSpec(
+        key="task",
+        name=_words("Task", "Aufgabe"),
+        icon="hand",
+        command="begin_phase",
+        phase_key="{limb}",
+        counts=True,
+        phases={
+            Limb.HAND: PhaseWords(
+                title=_words("Hand task", "Handaufgabe"),
+                in_a_sentence=_words("hand task", "Handaufgabe"),
+                begin=_words("Begin hand task", "Handaufgabe beginnen"),
+                guidance=_words(
+                    "See that the participant stands on the start square and uses the writing "
+                    "hand, then begin.",
+                    "Achten Sie darauf, dass die Person auf dem Startfeld steht und die "
+                    "Schreibhand benutzt; dann beginnen Sie.",
+                ),
+            ),
+            Limb.FOOT: PhaseWords(
+                title=_words("Foot task", "Fußaufgabe"),
+                in_a_sentence=_words("foot task", "Fußaufgabe"),
+                begin=_words("Begin foot task", "Fußaufgabe beginnen"),
+                guidance=_words(
+                    "See that the participant stands on the start square, then begin.",
+                    "Achten Sie darauf, dass die Person auf dem Startfeld steht; dann beginnen "
+                    "Sie.",
+                ),
+            ),
+        },
+    ),
+    StepKindSpec(
+        key="questionnaire",
+        name=_words("Questionnaire", "Fragebogen"),
+        icon="form",
+        screen="form",
+        command="enter_answers",
+        guidance=_words(
+            "The participant answers on the tablet, or you read the items aloud and enter the "
+            "answers.",
+            "Die Person antwortet am Tablet, oder Sie lesen vor und geben die Antworten ein.",
+        ),
+    ),
+    StepKindSpec(
+        key="debrief",
+        name=_words("Debriefing", "Abschluss"),
+        icon="flag",
+        records_movement=False,
+        done=_words("Finish session", "Sitzung abschließen"),
+        guidance=_words(
+            "Help the participant out of the headset and explain what the study was about.",
+            "Helfen Sie der Person aus dem Headset und erklären Sie, worum es in der Studie ging.",
+        ),
+    ),
+)
+
+STEP_KINDS: Mapping[str, StepKindSpec] = MappingProxyType({one.key: one for one in _TABLE})
+"""Every kind by its key, in the order in which kinds are listed anywhere."""
+
+TIMED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.family == "timed")
+"""Steps that are phases: they run on the headset's clock and are recorded as such."""
+FORM_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.family == "form")
+COUNTED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.counts)
+"""Phases that are the study's data."""
+UNCOUNTED_KINDS: tuple[StepKind, ...] = tuple(
+    one.key for one in _TABLE if one.family == "timed" and not one.counts
+)
+"""Phases that are recorded, but in no figure or test."""
+PHASES: Mapping[str, PhaseWords] = MappingProxyType(
+    {str(one.key_of_phase(limb)): words for one in _TABLE for limb, words in one.phases.items()}
+)
+"""The words of every timed phase, by what the rules of a study call it."""
+
+
+def kinds_with_command(command: StepCommand) -> tuple[StepKind, ...]:
+    """The kinds that the experimenter carries out in this way."""
+    return tuple(one.key for one in _TABLE if one.command == command)

@@ -1,0 +1,86 @@
+"""The kinds of steps are said once, and everything that lists them follows."""
+
+import re
+from pathlib import Path
+from typing import get_args
+
+from app.protocol import STEP_KINDS, TIMED_KINDS, StepKind
+from app.protocol.__main__ import PAGE_TABLE, page_table
+from app.protocol.procedure import Procedure
+from app.protocol.step_kinds import TITLE_LANGUAGES
+
+REPOSITORY = Path(__file__).parents[2]
+NAMED_IN = {
+    "app/protocol/procedure.py",
+    "app/protocol/step_kinds.py",
+    "frontend/src/console/stepKinds.ts",
+    "frontend/src/shared/api/schema.d.ts",
+}
+"""Where a phase may be called by its kind: what a study file can say of it, the table, and the
+generated files."""
+
+
+def test_every_kind_has_its_row() -> None:
+    """The table has the kinds of the type, in its order."""
+    assert tuple(STEP_KINDS) == get_args(StepKind)
+
+
+def test_every_kind_has_its_words_in_both_languages() -> None:
+    """No title, guidance or button is missing in English or German."""
+    for kind, spec in STEP_KINDS.items():
+        words = [spec.name, spec.guidance, spec.done]
+        for phase in spec.phases.values():
+            words += [phase.title, phase.in_a_sentence, phase.begin, phase.guidance]
+        for one in words:
+            assert one is None or (set(one) == TITLE_LANGUAGES and all(one.values())), kind
+        assert spec.phases or spec.guidance is not None, f"{kind} has no guidance"
+
+
+def test_a_kind_is_a_phase_exactly_if_it_is_timed() -> None:
+    """Timed kinds have the words and the key of a phase; no other kind has, nor counts."""
+    for kind, spec in STEP_KINDS.items():
+        is_timed = spec.family == "timed"
+        assert bool(spec.phases) == (spec.phase_key is not None) == is_timed, kind
+        assert is_timed or not spec.counts, kind
+
+
+def test_every_step_of_a_study_file_is_of_a_kind() -> None:
+    """Whatever `step:` can say in a procedure has its row in the table."""
+    definitions = Procedure.model_json_schema()["$defs"]
+    words = {
+        one["properties"]["step"]["const"]
+        for one in definitions.values()
+        if "step" in one.get("properties", {})
+    }
+    assert words < set(STEP_KINDS)
+    assert set(STEP_KINDS) - words == {"task", "questionnaire"}  # Of a block, without `step:`.
+
+
+def test_the_pages_have_the_same_table() -> None:
+    """frontend/src/console/stepKinds.ts is what `python -m app.protocol` writes."""
+    assert (REPOSITORY / PAGE_TABLE).read_text(encoding="utf-8") == page_table(), (
+        f"generate it again: .venv/bin/python -m app.protocol > {PAGE_TABLE}"
+    )
+
+
+def test_the_documents_name_every_kind() -> None:
+    """The protocol lists the kinds for headsets, and the guide to study files their steps."""
+    protocol = (REPOSITORY / "docs/protocol.md").read_text(encoding="utf-8")
+    assert f"the current step: {', '.join(STEP_KINDS)} |" in protocol
+    assert f"`kind` ({', '.join(TIMED_KINDS)})" in protocol
+    guide = (REPOSITORY / "study_configs/README.md").read_text(encoding="utf-8")
+    for kind in set(STEP_KINDS) - {"task", "questionnaire"}:
+        assert f"`{kind}`" in guide, kind
+
+
+def test_phases_are_called_by_their_kind_in_one_place() -> None:
+    """No code but the table and the shape of a study file has the word for a kind of phase."""
+    words = "|".join(set(TIMED_KINDS) - {"task"})  # `task` has other meanings, too.
+    quoted = re.compile(rf"""["'`]([\w.]+\.)?({words})([._](hand|foot))?["'`]""")
+    sources = [*REPOSITORY.glob("app/**/*.py"), *REPOSITORY.glob("frontend/src/**/*.ts*")]
+    naming = {
+        file.relative_to(REPOSITORY).as_posix()
+        for file in sources
+        if ".test." not in file.name and quoted.search(file.read_text(encoding="utf-8"))
+    }
+    assert naming == NAMED_IN
