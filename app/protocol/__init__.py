@@ -35,6 +35,7 @@ from app.protocol.procedure import ConsentStep
 from app.protocol.safety import StopRule
 from app.protocol.source import Path, Plain, Source, path_text, read_source
 from app.protocol.step_kinds import (
+    BOX_KINDS,
     COUNTED_KINDS,
     FORM_KINDS,
     PHASES,
@@ -50,6 +51,7 @@ from app.protocol.tasks import Tasks
 from app.protocol.validity import LatencyRule, ValidWhen
 
 __all__ = [
+    "BOX_KINDS",
     "BY_HAND_S",
     "COUNTED_KINDS",
     "FORM_KINDS",

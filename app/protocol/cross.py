@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping
 from app.protocol.common import TEXT_MARK
 from app.protocol.conditions import MAX_PERMUTED
 from app.protocol.preregistration import preregistration_problems
-from app.protocol.safety import practice_problems, safety_problems
+from app.protocol.safety import body_problems, safety_problems
 from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
 from app.protocol.step_kinds import TITLE_LANGUAGES
@@ -49,7 +49,7 @@ def cross_problems(
     yield from _rows(tree)
     yield from _sequences(tree)
     yield from safety_problems(tree, instruments)
-    yield from practice_problems(tree)
+    yield from body_problems(tree)
     yield from validity_problems(tree)
     yield from avatar_problems(tree, avatars)
     yield from preregistration_problems(tree, instruments)

@@ -65,7 +65,7 @@ def safety_problems(
             yield from _rule(("safety", "stop_rules", at), rule, tree, instruments)
 
 
-def practice_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
+def body_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
     """A phase before the participant has the body that it needs, such as practice."""
     before = [_dict(step).get("step") for step in _list(_dict(tree.get("procedure")).get("before"))]
     for at, kind in enumerate(before):

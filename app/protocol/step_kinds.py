@@ -289,6 +289,8 @@ TIMED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.famil
 FORM_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.family == "form")
 COUNTED_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.counts)
 """Phases that are the study's data."""
+BOX_KINDS: tuple[StepKind, ...] = tuple(one.key for one in _TABLE if one.has_boxes)
+"""Phases in which a limb reaches for the boxes of a task."""
 UNCOUNTED_KINDS: tuple[StepKind, ...] = tuple(
     one.key for one in _TABLE if one.family == "timed" and not one.counts
 )

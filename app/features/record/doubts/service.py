@@ -38,7 +38,7 @@ from app.models import (
     StudySession,
     TelemetryStream,
 )
-from app.protocol import STEP_KINDS, StudyProtocol
+from app.protocol import BOX_KINDS, StudyProtocol
 
 OBSERVED = "impossible"
 """The alarm of what a connection itself sees and the record would not show."""
@@ -310,7 +310,7 @@ def _lasted_s(first: datetime, last: datetime, created: datetime, ended: datetim
 
 def _boxes(protocol: StudyProtocol, phase: Phase) -> int:
     """How many boxes a phase has; none where there is no task."""
-    if not STEP_KINDS[phase.kind].has_boxes:
+    if phase.kind not in BOX_KINDS:
         return 0
     task = protocol.tasks.hand if phase.limb == "hand" else protocol.tasks.foot
     return 0 if task is None else len(task.boxes)

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 from app.features.record.headset import participant_info
 from app.features.record.sessions import protocol_of_session
 from app.models import ClientReport, Completion, Contact, Phase, StudySession
-from app.protocol import COUNTED_KINDS, STEP_KINDS
+from app.protocol import BOX_KINDS, COUNTED_KINDS
 from app.science.tasks import (
     Command,
     CommandKind,
@@ -26,7 +26,7 @@ _COMMANDS = {
     "resumed": CommandKind.RESUME,
     "time_up": CommandKind.FREEZE,
 }
-_WITH_BOXES = tuple(kind for kind in COUNTED_KINDS if STEP_KINDS[kind].has_boxes)
+_COUNTED = tuple(kind for kind in COUNTED_KINDS if kind in BOX_KINDS)
 Found = tuple[int, float, float, int]
 """Number, time, duration (s, client clock) and touches out of order of a completion."""
 
@@ -49,7 +49,7 @@ def completion_receipts(db: Session, session: StudySession) -> tuple[CompletionR
     """All task phases that were carried through."""
     phases = db.scalars(
         select(Phase)
-        .where(Phase.session_id == session.id, Phase.kind.in_(_WITH_BOXES), Phase.status == "done")
+        .where(Phase.session_id == session.id, Phase.kind.in_(_COUNTED), Phase.status == "done")
         .order_by(Phase.phase_id)
     ).all()
     return tuple(_phase_receipt(db, session, phase) for phase in phases)
