@@ -126,7 +126,7 @@ _TO_TRY = _words(
     "A task to try out, which is not analysed. Let the participant ask questions.",
     "Eine Aufgabe zum Ausprobieren, die nicht ausgewertet wird. Ermuntern Sie zu Fragen.",
 )
-_BEGIN_PRACTICE = _words("Begin the practice", "Übung beginnen")
+_BEGIN_PRACTICE = _words("Begin practice", "Übung beginnen")
 _FREE_MOVEMENT = _words("Free movement", "Freies Bewegen")
 
 _TABLE = (
@@ -181,7 +181,8 @@ _TABLE = (
         command="materialise",
         takes_s=60.0,
         guidance=_words(
-            "The participant stands inside the transparent body in T-pose and presses both grips.",
+            "The participant stands inside the transparent body in a T-pose and presses both "
+            "grips.",
             "Die Person steht in T-Haltung im durchsichtigen Körper und drückt beide Griffe.",
         ),
     ),

@@ -53,17 +53,17 @@ def make_account(page: Page, link: str, name: str) -> None:
     page.goto(link)
     page.get_by_label("User name").fill(name)
     page.get_by_label("Password", exact=True).fill(PASSWORD)
-    page.get_by_label("The same again").fill(PASSWORD)
-    page.get_by_role("button", name="Make the account").click()
+    page.get_by_label("Repeat password").fill(PASSWORD)
+    page.get_by_role("button", name="Create account").click()
     expect(page.get_by_role("heading", name="Studies")).to_be_visible(timeout=PATIENCE_MS)
 
 
 def invite_in(page: Page, role: str, note: str) -> str:
-    """Invite somebody at the console's page People; the link."""
-    page.get_by_role("button", name="Invite somebody").click()
+    """Invite someone at the console's page People; the link."""
+    page.get_by_role("button", name="Invite someone").click()
     page.get_by_role("radio", name=role).click()
     page.get_by_label("Who is it for?").fill(note)
-    page.get_by_role("button", name="Make the link").click()
+    page.get_by_role("button", name="Create link").click()
     link = page.get_by_label("Link", exact=True)
     expect(link).to_have_value(re.compile(r"/#/join/.{40,}"))
     url = link.input_value()

@@ -28,7 +28,9 @@ def test_an_alarm_comes_up_and_goes_away(
     with headset_site.headset(headset_site.token(session_id)) as headset:
         streamer = in_free_movement(headset_site, session_id, headset)
         with streamer.streaming(running=True, probing=True):
-            expect(strip).to_contain_text("Movement arrives and is stored", timeout=PATIENCE_MS)
+            expect(strip).to_contain_text(
+                "Movement is arriving and being stored", timeout=PATIENCE_MS
+            )
             expect(strip).to_contain_text(re.compile(r"90 Hz"), timeout=PATIENCE_MS)
             before = strip.bounding_box()
         alarm = strip.get_by_role("alert")

@@ -144,7 +144,7 @@ def test_another_unit_reads_the_file_again(
     panel.get_by_role("combobox", name="Length of the file's unit").click()
     console.get_by_role("option", name="Inch").click()
     panel.get_by_role("button", name="Read again").click()
-    expect(panel.get_by_text("Read again by inch")).to_be_visible(timeout=PATIENCE_MS)
+    expect(panel.get_by_text("Read again with inch")).to_be_visible(timeout=PATIENCE_MS)
     expect(panel.get_by_text("chosen here")).to_be_visible()
     expect(panel.get_by_text(f"{height_m * 2.54:.2f} m high")).to_be_visible(timeout=PATIENCE_MS)
     panel.get_by_role("combobox", name="Length of the file's unit").click()
@@ -173,7 +173,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
     hand = console.get_by_role("combobox", name="Left hand")
     hand.fill("LeftForeArm")
     console.get_by_role("option", name="LeftForeArm").click()
-    expect(console.get_by_text("This joint also plays Left lower arm.")).to_be_visible()
+    expect(console.get_by_text("This joint is also mapped to Left lower arm.")).to_be_visible()
     expect(console.get_by_role("button", name="Save map")).to_be_disabled()
     console.get_by_role("button", name="Undo").click()
     expect(hand).to_have_value("LeftHand")
@@ -193,7 +193,7 @@ def test_a_joint_map_is_changed_undone_and_saved(
     console.get_by_role("option", name="RightFoot").click()
     console.get_by_role("button", name="Back to proposal").click()
     console.get_by_role("button", name="Save map").click()
-    expect(console.get_by_text("Somebody else has saved another map")).to_be_visible()
+    expect(console.get_by_text("Someone else has saved another map")).to_be_visible()
     console.get_by_role("button", name="Take theirs").click()
     expect(hand).to_have_value("LeftHand")
 
@@ -234,11 +234,11 @@ def test_a_file_that_cannot_be_read_says_where(
     console.goto(f"{server.url}/#/captures")
     console.locator("input[type=file]").set_input_files([broken, alone])
     refused = console.get_by_role("listitem").filter(has_text="broken.bvh")
-    expect(refused.get_by_text("Not brought in")).to_be_visible(timeout=PATIENCE_MS)
+    expect(refused.get_by_text("Not uploaded")).to_be_visible(timeout=PATIENCE_MS)
     expect(refused.get_by_text("broken.bvh · line 9")).to_be_visible()
     expect(refused.get_by_text("channels")).to_be_visible()
     expect(console.get_by_text("Its .asf file is missing")).to_be_visible()
-    console.get_by_role("button", name="Take broken.bvh off this list").click()
+    console.get_by_role("button", name="Remove broken.bvh from this list").click()
     expect(refused).to_have_count(0)
 
 
@@ -248,7 +248,7 @@ def test_without_webgl_the_movement_is_seen_from_the_side(
     """A browser without 3-D says so and draws the body as lines that move with the scrubber."""
     console.add_init_script(WITHOUT_WEBGL)
     open_capture(console, server, walk)
-    expect(console.get_by_text("This browser shows no 3-D")).to_be_visible(timeout=PATIENCE_MS)
+    expect(console.get_by_text("This browser cannot show 3-D")).to_be_visible(timeout=PATIENCE_MS)
     hips = console.locator("[data-way=flat] circle").first
     before = hips.get_attribute("cx")
     console.get_by_label("Time in the movement").focus()

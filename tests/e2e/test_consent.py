@@ -70,7 +70,7 @@ def test_a_drawn_signature_is_filed_as_it_was_given(
     experimenter, participant = pages
     tablet, console = participant.page, experimenter.page
     tablet.get_by_role("button", name=GO).click()
-    expect(tablet.get_by_text("Please tick every line that is not optional.")).to_be_visible()
+    expect(tablet.get_by_text("Please tick every statement that is not optional.")).to_be_visible()
     for line in (READ, TAKE_PART):
         tablet.get_by_label(line).check()
     tablet.get_by_role("button", name=GO).click()

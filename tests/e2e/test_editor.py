@@ -116,7 +116,7 @@ def test_what_is_not_saved_is_not_lost(writer: Writer) -> None:
     expect(page.get_by_role("heading", name="Instruments")).to_be_visible()
     writer.open_tab(STUDY, "edit")
     expect(page.locator(".cm-content")).to_contain_text("en: Another title")
-    page.get_by_role("button", name="Drop it").click()
+    page.get_by_role("button", name="Discard them").click()
     expect(page.locator(".cm-content")).to_contain_text("en: Acting through another body")
 
 
@@ -150,7 +150,7 @@ def test_an_own_instrument_is_written_tried_and_stored(
     writer.sees_no_problem()
     page.locator('[data-name="calm"] input').nth(4).check(force=True)
     page.locator('[data-name="tense"] input').nth(0).check(force=True)
-    scores = page.get_by_role("region", name="Scores as they stand")
+    scores = page.get_by_role("region", name="Scores so far")
     expect(scores.get_by_role("row", name="Ease")).to_contain_text("(2 - (-2)) / 2")
     expect(scores.get_by_role("row", name="Twice")).to_contain_text("4")
     assert axe(page) == []

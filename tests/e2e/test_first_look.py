@@ -71,9 +71,9 @@ def test_an_address_that_leads_nowhere_says_so(
     """Not the studies in its place; and a way to them."""
     page = experimenter.page
     page.goto(f"{page.url.partition('#')[0]}#/{address}")
-    expect(page.get_by_text("There is no page at this address")).to_be_visible()
+    expect(page.get_by_text("Page not found")).to_be_visible()
     screenshot(page, "nothing-here")
-    page.get_by_role("link", name="To the studies").click()
+    page.get_by_role("link", name="Go to studies").click()
     expect(page.get_by_role("heading", name="Studies", exact=True)).to_be_visible()
 
 

@@ -31,7 +31,7 @@ def test_a_file_is_mapped_checked_and_taken_in(
     experimenter = Experimenter(page, shared_server.url)
     experimenter.log_in()
     experimenter.open_tab(STUDY, "preregistration")
-    expect(page.get_by_text("Nothing was declared")).to_be_visible()
+    expect(page.get_by_text("Not preregistered")).to_be_visible()
     experimenter.open_tab(STUDY, "export")
     page.get_by_role("button", name="Import answers").click()
     page.locator("input[type=file]").set_input_files(file)

@@ -37,11 +37,15 @@ def test_the_console_goes_on_beside_a_second_server_that_is_refused(
     with headset_site.headset(headset_site.token(session_id)) as headset:
         streamer = in_free_movement(headset_site, session_id, headset)
         with streamer.streaming(running=True, probing=True):
-            expect(strip).to_contain_text("Movement arrives and is stored", timeout=PATIENCE_MS)
+            expect(strip).to_contain_text(
+                "Movement is arriving and being stored", timeout=PATIENCE_MS
+            )
             said = reembody(server, "serve", "--port", free_port())
             assert said.code == UNUSABLE
             assert f"process id {server.pid} on port {server.port}" in said.err
-            expect(strip).to_contain_text("Movement arrives and is stored", timeout=PATIENCE_MS)
+            expect(strip).to_contain_text(
+                "Movement is arriving and being stored", timeout=PATIENCE_MS
+            )
             expect(strip.get_by_role("alert")).to_have_count(0)
     assert "server_restarted" not in str(headset_site.view(session_id))
 

@@ -99,7 +99,7 @@ def test_showing_a_condition_asks_why_and_is_on_record(lab: BlindedLab, admin: P
     expect(admin.get_by_text("Order of latencies:")).to_be_attached()
     expect(admin.get_by_text("Order hidden (blinded)")).to_have_count(0)
     admin.get_by_role("button", name="Log").click()
-    expect(admin.get_by_text("condition shown to the lab")).to_be_visible()
+    expect(admin.get_by_text("condition revealed to the lab")).to_be_visible()
 
 
 def test_a_link_that_cannot_be_used_says_why(
@@ -119,8 +119,8 @@ def test_a_link_that_cannot_be_used_says_why(
     expect(admin.get_by_text("You are signed in as admin")).to_be_visible()
     stranger = page_factory()
     for url, said in (
-        (link, "This link was used already"),
-        (revoked, "This invitation was taken back"),
+        (link, "This link has already been used"),
+        (revoked, "This invitation was revoked"),
         (link[:-3], "There is no such invitation"),
         (link[:-40], "There is no such invitation"),
     ):
@@ -147,10 +147,10 @@ def test_a_page_that_is_not_for_a_role_says_so(lab: BlindedLab, page_factory: Pa
     make_account(analyst, lab.invitation("analyst"), "reader")
     for address in ("people", "network", "new", f"studies/{STUDY}/edit", "instruments/new"):
         analyst.goto(f"{lab.server.url}/#/{address}")
-        expect(analyst.get_by_text("This is not for your role")).to_be_visible()
+        expect(analyst.get_by_text("Your role has no access to this page")).to_be_visible()
     expect(analyst.get_by_role("link", name="People")).to_have_count(0)
     analyst.goto(lab.session("P-READ"))
-    expect(analyst.get_by_text("You are watching")).to_be_visible()
+    expect(analyst.get_by_text("View only")).to_be_visible()
     expect(analyst.get_by_role("button", name="Start session")).to_have_count(0)
     expect(analyst.get_by_role("button", name="Show condition")).to_have_count(0)
 
@@ -177,7 +177,7 @@ def test_the_pages_of_people_are_accessible(
         expect(page.get_by_text(shown).first).to_be_visible()
         assert axe(page) == [], address
         screenshot(page, f"console-{address.replace('/', '-')}-{scheme}")
-    page.get_by_role("button", name="Invite somebody").click()
+    page.get_by_role("button", name="Invite someone").click()
     expect(page.get_by_text("Who is it for?")).to_be_visible()
     assert axe(page) == []
     page.keyboard.press("Escape")

@@ -86,7 +86,7 @@ def test_whoever_changes_their_mind_reads_the_consent_again(room: Room) -> None:
     room.refuses()
     tablet.get_by_role("button", name=CHANGED).click()
     expect(tablet.get_by_role("button", name=AGREE)).to_be_visible(timeout=PATIENCE_MS)
-    expect(console.get_by_text("Refusal taken back").first).to_be_visible(timeout=PATIENCE_MS)
+    expect(console.get_by_text("Refusal withdrawn").first).to_be_visible(timeout=PATIENCE_MS)
     expect(console.get_by_role("heading", name=REFUSED)).to_have_count(0)
     room.refuses()
     room.experimenter.press("Show the consent again")

@@ -37,12 +37,12 @@ def test_a_withdrawn_participant_is_erased_by_typing_the_code(
             row.get_by_role("button", name="Copy of their data").click()
         assert download.value.suggested_filename == "reembody_access_P-0077.zip"
         row.get_by_role("button", name="Erase").click()
-        erase = page.get_by_role("button", name="Erase for good")
+        erase = page.get_by_role("button", name="Erase permanently")
         expect(erase).to_be_disabled()
         page.get_by_label("Type P-0077 to confirm").fill("P-0077")
         assert axe(page) == []
         erase.click()
-        expect(page.get_by_text("No byte of it is left")).to_be_visible(timeout=30_000)
+        expect(page.get_by_text("Nothing of it is left")).to_be_visible(timeout=30_000)
         page.get_by_role("button", name="Destroyed").first.click()
         expect(page.get_by_text("Destroyed on")).to_be_visible()
         page.get_by_role("button", name="Close").last.click()

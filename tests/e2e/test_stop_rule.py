@@ -14,7 +14,7 @@ from tests.support.browser import PageWatch
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
 WAIT = "Please wait, the experimenter is coming"
-HELD = "Stop: see how the participant is"
+HELD = "Stop: check on the participant"
 
 
 def session_at(api: httpx2.Client, step_key: str) -> Json:
@@ -70,10 +70,10 @@ def test_the_session_is_held_until_the_experimenter_decides(
     assert axe(tablet) == []
     screenshot(console, "stop-rule-console")
     screenshot(tablet, "stop-rule-tablet")
-    experimenter.press("Go on with a reason")
+    experimenter.press("Continue with a reason")
     dialog = console.get_by_role("dialog")
-    dialog.get_by_text("Recovered after a break, wants to go on").click()
-    dialog.get_by_role("button", name="Go on with a reason").click()
+    dialog.get_by_text("Recovered after a break, wants to continue").click()
+    dialog.get_by_role("button", name="Continue with a reason").click()
     expect(console.get_by_role("heading", name=HELD)).to_have_count(0)
     expect(console.get_by_role("button", name="Begin hand task")).to_be_visible()
     expect(tablet.get_by_role("heading", name=WAIT)).to_have_count(0)

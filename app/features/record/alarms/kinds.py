@@ -56,7 +56,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="critical",
         title=Words(en="Headset disconnected", de="Headset getrennt"),
         remedy=Words(
-            en="Check its battery and network. It comes back by itself.",
+            en="Check its battery and network. It reconnects automatically.",
             de="Akku und Netz prüfen. Es verbindet sich von selbst wieder.",
         ),
         remedy_while_paused=Words(
@@ -68,9 +68,9 @@ ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="backlog",
         severity="warning",
-        title=Words(en="Movement not on disk", de="Bewegung ungesichert"),
+        title=Words(en="Movement not stored", de="Bewegung ungesichert"),
         remedy=Words(
-            en="The headset keeps it. Check the network; leave the headset on.",
+            en="The headset keeps it. Check the network and leave the headset on.",
             de="Das Headset behält sie. Netz prüfen; Headset eingeschaltet lassen.",
         ),
     ),
@@ -88,7 +88,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="Joint frozen", de="Gelenk eingefroren"),
         remedy=Words(
-            en="Check the sensor there: battery, strap, view of the base stations.",
+            en="Check that sensor: battery, strap, view of the base stations.",
             de="Sensor dort prüfen: Akku, Band, Sicht der Basisstationen.",
         ),
     ),
@@ -97,7 +97,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="Low frame rate", de="Niedrige Bildrate"),
         remedy=Words(
-            en="Close other programs; check the headset's cable and heat.",
+            en="Close other programs; check the headset's cable and temperature.",
             de="Andere Programme schließen; Kabel und Wärme des Headsets prüfen.",
         ),
     ),
@@ -155,7 +155,7 @@ ALARMS: tuple[AlarmKind, ...] = (
             en="Little space on the server's disk", de="Wenig Platz auf der Platte des Servers"
         ),
         remedy=Words(
-            en="Make space before the next session. Everything is still stored.",
+            en="Free some space before the next session. Everything is still being stored.",
             de="Vor der nächsten Sitzung Platz schaffen. Noch wird alles gespeichert.",
         ),
     ),
@@ -175,7 +175,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="warning",
         title=Words(en="Part of the server has failed", de="Ein Teil des Servers ist ausgefallen"),
         remedy=Words(
-            en="Recording goes on. The server tries again by itself; its log says what happened.",
+            en="Recording goes on. The server retries automatically; its log says what happened.",
             de="Die Aufzeichnung läuft weiter. Der Server versucht es von selbst erneut; sein "
             "Protokoll nennt den Grund.",
         ),
@@ -185,7 +185,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="critical",
         title=Words(en="Stop rule met", de="Stoppregel erfüllt"),
         remedy=Words(
-            en="See how the participant is; then end the session or go on.",
+            en="Check on the participant; then end the session or continue.",
             de="Nach der Person sehen; dann die Sitzung beenden oder fortfahren.",
         ),
         of_person=True,
@@ -215,9 +215,9 @@ ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="help_asked",
         severity="critical",
-        title=Words(en="The participant calls you", de="Die Person ruft Sie"),
+        title=Words(en="The participant is calling you", de="Die Person ruft Sie"),
         remedy=Words(
-            en="Go and see. Press when you are there: the tablet says so, too.",
+            en="Go to them. Press when you are there, so that the tablet can say so.",
             de="Nachsehen. Drücken, wenn Sie da sind: Das Tablet zeigt es auch.",
         ),
         of_person=True,
@@ -227,7 +227,7 @@ ALARMS: tuple[AlarmKind, ...] = (
         severity="critical",
         title=Words(en="The participant has a question", de="Die Person hat eine Frage"),
         remedy=Words(
-            en="Go and answer it. Press when you are there: the tablet says so, too.",
+            en="Go and answer it. Press when you are there, so that the tablet can say so.",
             de="Hingehen und antworten. Drücken, wenn Sie da sind: Das Tablet zeigt es auch.",
         ),
         of_person=True,
@@ -245,7 +245,7 @@ ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="refusal_retracted",
         severity="warning",
-        title=Words(en="Refusal taken back", de="Ablehnung zurückgenommen"),
+        title=Words(en="Refusal withdrawn", de="Ablehnung zurückgenommen"),
         remedy=Words(
             en="The consent is on the tablet again. Make sure it is a free choice.",
             de="Die Einwilligung ist wieder auf dem Tablet. Vergewissern Sie sich, dass die Wahl "

@@ -8,9 +8,9 @@ export const consentEn = {
   "consent.none.body": "It appears here once the participant has given it.",
   "consent.erased": "Erased",
   "consent.erased.body": "The participant's data were erased; only the time is left.",
-  "consent.mismatch": "The text is not the one that was agreed to",
+  "consent.mismatch": "The text differs from the one that was agreed to",
   "consent.mismatch.body":
-    "Its hash differs from the one stored with the consent. Tell whoever looks after the server before you use this record.",
+    "Its hash differs from the one stored with the consent. Tell the person who runs the server before you use this record.",
   "consent.simulated": "SIMULATED: nobody agreed to anything",
   "consent.statements": "Statements",
   "consent.ticked": "agreed",
@@ -26,7 +26,7 @@ export const consentEn = {
   "consent.paper.reason": "Why on paper",
   "consent.paper.open": "Signed on paper",
   "consent.paper.lead":
-    "For a participant who signs a sheet instead. It becomes part of the record; keep the sheet.",
+    "For a participant who signs on paper instead. This becomes part of the record; keep the sheet.",
   "consent.paper.placeHint": "For example folder A, sheet 12",
   "consent.paper.save": "Record the consent",
   "consent.paper.broken": "The tablet does not work",
@@ -45,23 +45,23 @@ export const consentEn = {
   "consent.earlier_other": "{{count}} earlier records of this session are kept.",
   "consent.waiting": "Waiting for the participant to agree on the tablet",
   "refused.title": "The participant does not want to take part",
-  "refused.at": "Said on the tablet at {{time}}, at step {{number}}.",
+  "refused.at": "Reported on the tablet at {{time}}, at step {{number}}.",
   "refused.body":
-    "The session is held, and the tablet says that you know. Nobody needs a reason to refuse: thank the participant and end the session; the slot becomes free again. Show the consent again only if the participant wants to read it once more.",
+    "The session is on hold, and the tablet says that you know. A refusal needs no reason: thank the participant and end the session; the slot becomes free again. Show the consent again only if the participant wants to read it once more.",
   "refused.end": "End the session",
   "do.reopen_consent": "Show the consent again",
   "command.reopen_consent": "show the consent again",
   "ask.reopen_consent": "Show the consent again?",
   "ask.reopen_consent.body":
-    "Only if the participant has changed their mind. Nothing is agreed to before they do so on the tablet. The reason becomes part of the record.",
+    "Only if the participant has changed their mind. They still have to agree on the tablet. The reason becomes part of the record.",
   "ask.skip.consent":
-    "The session goes on without a consent on record: only where nobody's consent is needed, as in a test. Where a sheet was signed, record it with “Signed on paper” instead.",
+    "The session continues without a recorded consent. Do this only where no consent is needed, as in a test. If a sheet was signed, record it with “Signed on paper” instead.",
   "reason.refused": "Refused consent",
   "reason.changedMind": "The participant changed their mind",
   "reason.misread": "Pressed by mistake",
   "change.refused": "The participant does not want to take part.",
   "change.retracted": "The refusal was taken back.",
-  "change.question": "The participant calls you.",
+  "change.question": "The participant is calling you.",
 };
 
 export const consentDe: Readonly<Record<keyof typeof consentEn, string>> = {

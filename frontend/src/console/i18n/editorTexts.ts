@@ -2,13 +2,13 @@
 export const editorEn = {
   "new.title": "New study",
   "new.lead":
-    "Begin with something that works and change it. Nothing is stored until you save it, and every problem is shown at its line.",
+    "Start from something that works and change it. Nothing is stored until you save, and every problem is shown at its line.",
   "new.templates": "From a template",
   "new.copy": "From a study you have",
   "new.copy.lead": "A copy with a ledger and sessions of its own.",
   "new.import": "From a file",
   "new.import.lead": "A YAML file, for example of another lab. It is checked as it opens.",
-  "new.empty": "From nothing",
+  "new.empty": "From scratch",
   "new.empty.lead": "An empty file, and a list of what is missing.",
   "new.empty.do": "Open an empty file",
   "editor.title": "{{name}}: editor",
@@ -29,11 +29,10 @@ export const editorEn = {
   "editor.problemsHere": " problems here",
   "editor.unsaved": "Not saved yet",
   "editor.asStored": "As stored",
-  "editor.unreadable": "The text cannot be read as it is",
-  "editor.unreadable.body":
-    "Mend the marked line at the right, or undo. The form is there again at once.",
-  "editor.restored": "What was written here and not saved is back ({{time}}).",
-  "editor.discard": "Drop it and open what is stored",
+  "editor.unreadable": "The text cannot be parsed",
+  "editor.unreadable.body": "Fix the marked line on the right, or undo. The form then comes back.",
+  "editor.restored": "Your unsaved changes were restored ({{time}}).",
+  "editor.discard": "Discard them and open the stored version",
   "editor.leave.title": "Leave without saving?",
   "editor.leave.body":
     "The changes are not saved on the server. This browser keeps them until you come back.",
@@ -41,8 +40,8 @@ export const editorEn = {
   "editor.leave.go": "Leave",
   "editor.add": "Add",
   "editor.addStep": "Add a step",
-  "editor.newText": "Key of a new text",
-  "editor.leaveOut": "Leave out: {{name}}",
+  "editor.newText": "Key of the new text",
+  "editor.leaveOut": "Clear: {{name}}",
   "editor.up": "Move up: {{name}}",
   "editor.down": "Move down: {{name}}",
   "editor.remove": "Remove: {{name}}",
@@ -59,9 +58,9 @@ export const editorEn = {
   "dryRun.total": "About {{total}} min, of which {{planned}} min are set by the study",
   "dryRun.figure":
     "The session as a bar of about {{total}} minutes; the table below says the same.",
-  "dryRun.outside": "outside of the blocks",
+  "dryRun.outside": "outside the blocks",
   "dryRun.estimated": "estimated",
-  "dryRun.axis": "Minutes from the begin",
+  "dryRun.axis": "Minutes from the start",
   "dryRun.at": "At",
   "dryRun.step": "Step",
   "dryRun.condition": "Condition",
@@ -70,8 +69,8 @@ export const editorEn = {
   "dryRun.text": "Text shown",
   "dryRun.rule":
     "≈ is an estimate by a rule of ours: {{opening}} s to find the way into a page, {{words}} words a minute for reading, {{likert}} s for an item on a scale. Pauses, walks back and breaks come on top.",
-  "dryRun.broken": "There is no dry run while there are problems",
-  "dryRun.broken.body": "Mend them under Form and text; then it is drawn again.",
+  "dryRun.broken": "No dry run while there are problems",
+  "dryRun.broken.body": "Fix them under Form and text to see it again.",
 };
 
 export const editorDe: Readonly<Record<keyof typeof editorEn, string>> = {

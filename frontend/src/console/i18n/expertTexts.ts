@@ -1,7 +1,7 @@
 /** Expert sessions and what experts advise. */
 export const expertEn = {
   "kind.expert": "Expert",
-  "kind.expert.hint": "Looks the study over and gives advice. Never in figures or exports.",
+  "kind.expert.hint": "Reviews the study and gives advice. Never in figures or exports.",
   "expert.session": "Expert session: never in figures or exports",
   "suggestions.tab": "Suggestions",
   "suggestions.lead":
@@ -16,8 +16,8 @@ export const expertEn = {
   "suggestions.declined": "Declined",
   "suggestions.adopt": "Adopt",
   "suggestions.decline": "Decline",
-  "suggestions.adoptIn": "Which version has it?",
-  "suggestions.later": "A version to come",
+  "suggestions.adoptIn": "In which version?",
+  "suggestions.later": "A future version",
   "suggestions.whole": "The whole study",
   "suggestions.by": "{{who}}, {{when}}",
   "suggestions.fromSession": "in session {{code}}",

@@ -1,4 +1,4 @@
-/** Beside a session: devices, notes, scores, and what is measured. */
+/** The side panel of a session: devices, notes, scores, and measurements. */
 export const sideEn = {
   "side.label": "Devices, notes and scores",
   "devices.title": "Devices",
@@ -20,11 +20,11 @@ export const sideEn = {
   "pairing.renew": "Make a new code",
   "notes.title": "Notes",
   "notes.field": "New note",
-  "notes.placeholder": "What did you see?",
+  "notes.placeholder": "What did you notice?",
   "notes.hint": "Enter saves, Shift + Enter starts a new line",
   "notes.empty": "No notes yet.",
   "scores.title": "Scores",
-  "scores.empty": "They appear here when a questionnaire is answered.",
+  "scores.empty": "Scores appear here when a questionnaire is answered.",
   "scores.incomplete": "incomplete",
   "live.title": "Headset, now",
   "live.completions": "Tasks completed",

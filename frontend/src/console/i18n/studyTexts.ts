@@ -32,17 +32,17 @@ const exportsEn = {
     "Joint error per phase, joint and axis in degrees: mean, RMS, p95, maximum, clipped share.",
   "export.file.jointErrorCourse": "joint_error_course.csv",
   "export.about.jointErrorCourse":
-    "How the joint error went within each phase: its mean in degrees for every 5 s of active time.",
+    "Joint error over time within each phase: its mean in degrees for every 5 s of active time.",
   "export.file.events": "events.csv",
   "export.about.events": "The event log of every session, with the hash that chains it.",
   "export.file.quality": "quality.csv",
   "export.about.quality":
-    "One row per phase and stream: frame rate, gaps, jumps, frozen joints, values that are none.",
+    "One row per phase and stream: frame rate, gaps, jumps, frozen joints, invalid values.",
   "export.file.alarms": "alarms.csv",
   "export.about.alarms": "Every alarm of a session, when it was raised and when it was cleared.",
   "export.file.clocks": "clock_probes.csv, clock_mapping.csv",
   "export.about.clocks":
-    "The headset's clock beside the server's: raw readings, and offset, drift and uncertainty from them.",
+    "The headset's clock compared with the server's: raw readings, and the offset, drift and uncertainty estimated from them.",
   "export.file.samples": "samples/*.csv",
   "export.about.samples": "One wide file per session: target and actual pose over time.",
   "export.file.receipts": "receipts/*.json",

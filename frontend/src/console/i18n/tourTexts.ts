@@ -9,16 +9,16 @@ export const tourEn = {
   "try.explain":
     "Nobody needed, no headset: a scripted participant goes through a whole session of this study while you watch. It is marked as simulated and never mixes with people's data.",
   "try.starting": "The scripted participant is getting ready",
-  "try.starting.body": "It makes a simulated session and pairs a tablet and a headset of its own.",
-  "try.failed": "The scripted participant could not go on",
-  "try.failed.start": "The scripted participant could not begin",
-  "try.again": "Begin again",
+  "try.starting.body": "It creates a simulated session and pairs its own tablet and headset.",
+  "try.failed": "The scripted participant could not continue",
+  "try.failed.start": "The scripted participant could not start",
+  "try.again": "Start over",
   "try.label": "Scripted participant",
   "try.speed": "{{speed}} times as fast as a person",
   "try.watch": "Watch",
   "try.stop": "Stop",
   "try.stopping": "Stopping",
-  "try.done": "The scripted participant is through",
+  "try.done": "The scripted participant has finished",
   "try.stopped": "The scripted participant was stopped",
   "try.dismiss": "Close",
   "try.tour": "Tour",
@@ -35,7 +35,7 @@ export const tourEn = {
   "tour.clock.title": "Active time",
   "tour.clock.body":
     "In a task a large clock stands here. It counts only while the participant is at it: a pause, a walk back and a lost headset stop it.",
-  "tour.next.title": "The next thing to do",
+  "tour.next.title": "The next action",
   "tour.next.body":
     "One large button, or Enter. Where there is none, somebody else is busy: a form on the tablet, a task in the headset. Just now the script presses it for you.",
   "tour.live.title": "What moves",
@@ -47,7 +47,7 @@ export const tourEn = {
   "tour.alarms.title": "What is wrong",
   "tour.alarms.body":
     "This bar never moves. It fills with colour as soon as something is wrong, from lost frames to a call, and says what to do. The figures beside it tell how good the data are.",
-  "tour.replay.title": "See it again",
+  "tour.replay.title": "Replay",
   "tour.replay.body":
     "After each task a replay shows it in space, in step with contacts, answers and notes. Replay is up here during a session, and beside every phase once it is over.",
   "tour.csv.title": "The data",

@@ -8,8 +8,8 @@ export const verificationEn = {
   "verify.avatar.stature": "Stature (cm)",
   "verify.avatar.most": "Up to {{count}} avatars at once.",
   "verify.lock": "Lock feet",
-  "verify.lock.hint": "Feet that are down are held where they are, by bending the legs.",
-  "verify.busy": "The movement is brought onto the avatars",
+  "verify.lock.hint": "Feet on the ground are held in place by bending the legs.",
+  "verify.busy": "Retargeting the movement to the avatars",
   "verify.agree":
     "Every avatar lifts each foot as often as the source ({{left}} left, {{right}} right).",
   "verify.agree.timing":
@@ -23,7 +23,7 @@ export const verificationEn = {
   "verify.noStep.body":
     "No foot leaves the ground and comes down again within the capture, so there are no steps to compare. Angles and paths are shown.",
   "verify.impossible": "There is nothing to verify",
-  "verify.unmapped": "Without a joint, so as in the T-pose on every avatar: {{names}}",
+  "verify.unmapped": "Not mapped, so in the T-pose on every avatar: {{names}}",
   "verify.source": "Source",
   "verify.left": "left",
   "verify.right": "right",
@@ -42,7 +42,7 @@ export const verificationEn = {
   "verify.slide.before": "{{before}} before locking",
   "verify.lowered": "hips up to {{centimetres}} cm lower",
   "verify.reach": "out of reach in {{count}} frames",
-  "verify.table.caption": "Means over whole steps. Slide is the mean speed of feet that are down.",
+  "verify.table.caption": "Means over whole steps. Slide is the mean speed of feet on the ground.",
   "verify.export": "{{avatar}} as {{format}}",
   "verify.angles": "Leg angles of the source",
   "verify.angles.caption":
@@ -59,7 +59,7 @@ export const verificationEn = {
   "verify.lifts": "When each foot is off the ground",
   "verify.lifts.caption": "Above each line the left foot, below it the right.",
   "verify.lift": "{{side}} foot, {{from}} s to {{to}} s",
-  "verify.drawing": "The figure is being drawn",
+  "verify.drawing": "Drawing the figure",
   "verify.notDrawn": "The figure could not be drawn. The table holds its numbers.",
 } as const;
 

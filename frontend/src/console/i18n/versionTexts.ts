@@ -1,15 +1,16 @@
 /** Versions of a study, and what differs between them. */
 export const versionsEn = {
-  "changes.broken": "Changes can be told once there are no problems",
+  "changes.broken": "Changes are shown once there are no problems",
   "diff.same": "The content is the same",
-  "diff.identical": "Not a character differs.",
-  "diff.layout": "Only comments or layout differ; saving would make no new version.",
-  "diff.newLedger": "Balance is affected: new sessions begin a new ledger",
+  "diff.identical": "There are no differences.",
+  "diff.layout": "Only comments or layout differ; saving would not create a new version.",
+  "diff.newLedger": "Balance is affected: new sessions start a new ledger",
   "diff.newLedger.body":
     "Conditions or orders differ. Slots that are filled stay with the old ledger and are not counted in the new one.",
-  "diff.sameLedger": "Balance is not affected: the ledger goes on",
+  "diff.sameLedger": "Balance is not affected: the ledger continues",
   "diff.sameLedger.body": "Conditions and orders are the same.",
-  "diff.underWay_one": "One session is planned or running; it keeps the version it was made with.",
+  "diff.underWay_one":
+    "One session is planned or running; it keeps the version it was created with.",
   "diff.underWay_other":
     "{{count}} sessions are planned or running; they keep the version they were made with.",
   "diff.instruments": "Instruments whose wording differs:",
@@ -24,12 +25,12 @@ export const versionsEn = {
   "versions.lead":
     "Every content the study ever had. Sessions keep the version they were made with.",
   "versions.number": "Version",
-  "versions.made": "Made",
+  "versions.made": "Created",
   "versions.state": "State",
   "versions.compare": "Compare",
   "versions.from": "From version",
   "versions.to": "to version",
-  "versions.one": "There is only one version yet, and nothing to compare it with.",
+  "versions.one": "There is only one version so far, so nothing to compare it with.",
   "versions.edit": "Edit the study",
   "versions.duplicate": "Duplicate",
   "versions.duplicate.key": "Key of the copy",
@@ -41,11 +42,11 @@ export const versionsEn = {
     "It takes no new sessions and leaves the list. Nothing is deleted: data, ledger and versions stay, and it can be restored.",
   "versions.restore": "Restore",
   "versions.archived": "Archived: it takes no new sessions",
-  "versions.archived.body": "Data, ledger and versions are all there. Restore it to go on.",
+  "versions.archived.body": "Data, ledger and versions are kept. Restore it to continue.",
   "versions.show": "Archived studies",
   "versions.hide": "Current studies",
-  "versions.noneArchived": "No study is archived",
-  "versions.noneArchived.body": "A study that is put away on its page appears here.",
+  "versions.noneArchived": "No archived studies",
+  "versions.noneArchived.body": "Studies that you archive on their page appear here.",
 };
 
 export const versionsDe: Readonly<Record<keyof typeof versionsEn, string>> = {
