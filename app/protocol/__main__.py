@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from app.protocol.step_kinds import PHASES, STEP_KINDS, StepKindSpec, Words
 
-PAGE_TABLE = "frontend/src/console/stepKinds.ts"
+PAGE_TABLE = "frontend/src/console/stepKinds.generated.ts"
 _HEAD = """\
 /**
  * The kinds of a session's steps, and their words. Generated from `app/protocol/step_kinds.py`:

@@ -6,9 +6,9 @@ clock, and its movement and touches are recorded as such. A *form* is answered a
 
 Everything that differs between kinds is a field of `StepKindSpec`, and everything else is derived
 from the table: plans, commands, tablet screens, checks of study files, tables and figures. The
-pages have the same table in `frontend/src/console/stepKinds.ts`, which is generated:
+pages have the same table in `frontend/src/console/stepKinds.generated.ts`, which is generated:
 
-    python -m app.protocol > frontend/src/console/stepKinds.ts
+    python -m app.protocol > frontend/src/console/stepKinds.generated.ts
 """
 
 from collections.abc import Mapping

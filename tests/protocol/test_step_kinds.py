@@ -13,7 +13,7 @@ REPOSITORY = Path(__file__).parents[2]
 NAMED_IN = {
     "app/protocol/procedure.py",
     "app/protocol/step_kinds.py",
-    "frontend/src/console/stepKinds.ts",
+    "frontend/src/console/stepKinds.generated.ts",
     "frontend/src/shared/api/schema.d.ts",
 }
 """Where a phase may be called by its kind: what a study file can say of it, the table, and the
@@ -57,7 +57,7 @@ def test_every_step_of_a_study_file_is_of_a_kind() -> None:
 
 
 def test_the_pages_have_the_same_table() -> None:
-    """frontend/src/console/stepKinds.ts is what `python -m app.protocol` writes."""
+    """frontend/src/console/stepKinds.generated.ts is what `python -m app.protocol` writes."""
     assert (REPOSITORY / PAGE_TABLE).read_text(encoding="utf-8") == page_table(), (
         f"generate it again: .venv/bin/python -m app.protocol > {PAGE_TABLE}"
     )

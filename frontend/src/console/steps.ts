@@ -1,10 +1,10 @@
-/** What the steps of a procedure are called, and their icons; the kinds are in `stepKinds.ts`. */
+/** What the steps of a procedure are called, and their icons; the kinds are in `stepKinds.generated.ts`. */
 import type { Limb, PhaseSummary, SessionView, Step } from "@shared/api/types";
 import { latency } from "@shared/format";
 import type { IconName } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import { type Key, useTexts } from "./i18n";
-import { STEP_KINDS } from "./stepKinds";
+import { STEP_KINDS } from "./stepKinds.generated";
 
 type Named = Pick<Step, "kind" | "limb">;
 type OfKind = Pick<Step, "kind">;

@@ -4,7 +4,7 @@ import { createContext, useContext, useEffect, useRef, useState } from "react";
 import { type Key, useTexts } from "../i18n";
 import { fieldsEn } from "../i18n/fieldTexts";
 import { preregistrationEn } from "../i18n/preregistrationTexts";
-import { stepKindsEn } from "../stepKinds";
+import { stepKindsEn } from "../stepKinds.generated";
 import { type Change, type JsonObject, type Path, pathText, valueAt } from "./paths";
 
 export interface FormState {

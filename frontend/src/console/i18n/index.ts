@@ -5,7 +5,7 @@ import {
   type Texts,
   useTranslations,
 } from "@shared/i18n/i18n";
-import { stepKindsDe, stepKindsEn } from "../stepKinds";
+import { stepKindsDe, stepKindsEn } from "../stepKinds.generated";
 import { analysisDe, analysisEn } from "./analysisTexts";
 import { auditDe, auditEn } from "./auditTexts";
 import { capturesDe, capturesEn } from "./captureTexts";

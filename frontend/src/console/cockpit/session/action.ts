@@ -2,7 +2,7 @@
 import type { Command, CommandType, Device, SessionView, Step } from "@shared/api/types";
 import type { IconName } from "@shared/ui/Icon";
 import type { Key } from "../../i18n";
-import { STEP_KINDS } from "../../stepKinds";
+import { STEP_KINDS } from "../../stepKinds.generated";
 import { isTimed, stepText } from "../../steps";
 
 interface PrimaryAction {
