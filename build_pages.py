@@ -69,10 +69,16 @@ def install_packages(frontend: Path, *, every_package: bool) -> None:
 
 
 def sources_hash(frontend: Path) -> str:
-    """SHA-256 over the names and contents of everything in `frontend` that is not a product."""
+    """SHA-256 over the names and contents of what the pages are made of.
+
+    That is everything in `frontend` that is not a product, and beside it the docs, which the
+    console shows as its help.
+    """
     digest = hashlib.sha256()
-    for path in sorted(sources(frontend), key=lambda path: path.relative_to(frontend).as_posix()):
-        name, content = path.relative_to(frontend).as_posix().encode(), path.read_bytes()
+    named = {path.relative_to(frontend).as_posix(): path for path in sources(frontend)}
+    named |= {f"../{name}": frontend.parent / name for name in docs(frontend.parent)}
+    for text, path in sorted(named.items()):
+        name, content = text.encode(), path.read_bytes()
         # Lengths keep apart what concatenation would run together.
         digest.update(b"%d %d\n%s%s" % (len(name), len(content), name, content))
     return digest.hexdigest()
@@ -87,6 +93,13 @@ def sources(folder: Path) -> Iterator[Path]:
             yield from sources(path)
         elif path.suffix != ".tsbuildinfo":
             yield path
+
+
+def docs(repository: Path) -> Iterator[str]:
+    """Names of the Markdown files and pictures that `frontend/helpPages.ts` may show."""
+    for pattern in ("docs/*.md", "docs/images/*.png", "study_configs/README.md"):
+        for path in repository.glob(pattern):
+            yield path.relative_to(repository).as_posix()
 
 
 def npm(cwd: Path, *arguments: str) -> None:

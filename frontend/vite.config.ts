@@ -3,9 +3,12 @@ import type { ClientRequest, IncomingMessage } from "node:http";
 import { resolve } from "node:path";
 import react from "@vitejs/plugin-react";
 import { defineConfig, type Plugin, type ProxyOptions } from "vite";
+import { helpPages } from "./helpPages.ts";
 import { tabletWorker, WORKER } from "./tabletWorker.ts";
 
 const source = resolve(import.meta.dirname, "src");
+/** The help pages are made of Markdown and pictures outside of `frontend`. */
+const repository = resolve(import.meta.dirname, "..");
 
 /** Every folder of `src` that holds an index.html is a page of its own: console, tablet, ... */
 const pages = readdirSync(source).filter((name) => existsSync(resolve(source, name, "index.html")));
@@ -50,7 +53,7 @@ export default defineConfig({
   root: source,
   cacheDir: resolve(import.meta.dirname, "node_modules/.vite"),
   publicDir: false,
-  plugins: [react(), servePagesLikeTheServer(), tabletWorker()],
+  plugins: [react(), servePagesLikeTheServer(), helpPages(repository), tabletWorker()],
   resolve: {
     alias: { "@shared": resolve(source, "shared"), "@charts": resolve(source, "charts") },
   },
@@ -73,5 +76,5 @@ export default defineConfig({
       },
     },
   },
-  server: { port: 5173, proxy: { "/api": proxyToServer } },
+  server: { port: 5173, fs: { allow: [repository] }, proxy: { "/api": proxyToServer } },
 });

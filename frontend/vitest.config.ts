@@ -6,7 +6,8 @@ export default mergeConfig(
   vite,
   defineConfig({
     test: {
-      include: ["**/*.test.ts", "**/*.test.tsx"],
+      // What builds the pages stands beside `src`, which is the root.
+      include: ["**/*.test.ts", "**/*.test.tsx", "../*.test.ts"],
       environment: "node",
       // Files share modules, which halves the time: a test leaves nothing behind that another sees.
       isolate: false,

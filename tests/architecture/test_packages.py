@@ -74,6 +74,10 @@ def test_the_sdist_brings_the_pages_and_their_sources(sdist: set[str]) -> None:
         "frontend/package-lock.json",
         "hatch_build.py",
         "build_pages.py",
+        # The console's help pages are made of them.
+        "docs/README.md",
+        "docs/images/tour.png",
+        "study_configs/README.md",
     } <= sdist
     assert "app/static/.build-hash" in sdist
 

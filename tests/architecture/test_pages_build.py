@@ -84,6 +84,19 @@ def test_names_and_contents_both_count(builder: ModuleType, frontend: Path) -> N
     assert len(hashes) == 4
 
 
+def test_the_docs_are_sources(builder: ModuleType, frontend: Path) -> None:
+    """The console shows them as its help; records of decisions are not among it."""
+    hashes = {builder.sources_hash(frontend)}
+    (frontend.parent / "docs" / "decisions").mkdir(parents=True)
+    (frontend.parent / "docs" / "decisions" / "why.md").write_text("because")
+    hashes.add(builder.sources_hash(frontend))
+    assert len(hashes) == 1
+    for text in ("first", "second"):
+        (frontend.parent / "docs" / "tour.md").write_text(text)
+        hashes.add(builder.sources_hash(frontend))
+    assert len(hashes) == 3
+
+
 def test_a_failed_build_shows_npms_words_and_is_not_done(
     builder: ModuleType, frontend: Path
 ) -> None:

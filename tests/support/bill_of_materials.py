@@ -22,7 +22,7 @@ BY = re.compile(r"^    #(?: via)? +(?P<who>[a-z0-9._-]+)")
 NAMESPACE = uuid.UUID("5b4f7f9e-7a51-4d0c-9a3a-6a4a3f0f7d11")
 # They stand among the dependencies, since the pages are built where nothing else of use only to
 # developers is installed; no page contains them.
-BUILD_TOOLS = {"vite", "@vitejs/plugin-react"}
+BUILD_TOOLS = {"marked", "vite", "@vitejs/plugin-react"}
 Json = dict[str, Any]
 
 

@@ -12,6 +12,7 @@ import { useHashLocation } from "wouter/use-hash-location";
 import { useAccount, useEnded, useSignInAgain } from "./account";
 import { Failure } from "./errors";
 import { Header } from "./Header";
+import { useHelpKey } from "./help/useHelpKey";
 import { useTexts } from "./i18n";
 import { may } from "./may";
 import { JoinPage } from "./pages/join/JoinPage";
@@ -65,6 +66,7 @@ function useOpenDialogsHidden(hidden: boolean): void {
 function Shell({ account }: { readonly account: Account }): JSX.Element {
   const { t } = useTexts();
   useSignInAgain();
+  useHelpKey();
   return (
     <Router hook={useHashLocation}>
       <button type="button" className={classes.skip} onClick={focusMain}>

@@ -25,7 +25,7 @@ export function Header({ account }: { readonly account: Account }): JSX.Element 
         <Places role={account.role} />
         <LanguageButton />
         {may(account.role, "compare") && <DownloadsButton />}
-        {may(account.role, "tryout") && <HelpMenu />}
+        <HelpMenu />
         <AppearanceButton />
         <AccountMenu account={account} />
       </div>

@@ -49,6 +49,10 @@ const StoragePage = lazy(async () => ({
   default: (await import("./storage/StoragePage")).StoragePage,
 }));
 
+const HelpPage = lazy(async () => ({
+  default: (await import("./help/HelpPage")).HelpPage,
+}));
+
 export function Routes({ account }: { readonly account: Account }): JSX.Element {
   return (
     <Switch>
@@ -106,6 +110,13 @@ export function Routes({ account }: { readonly account: Account }): JSX.Element 
             <NetworkPage />
           </div>
         </Only>
+      </Route>
+      <Route path="/help/:name?/:heading?">
+        {({ name, heading }) => (
+          <div className={classes.main}>
+            <HelpPage name={name} heading={heading} />
+          </div>
+        )}
       </Route>
       <Route path="/storage">
         <Only act="storage">

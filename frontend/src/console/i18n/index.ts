@@ -5,6 +5,7 @@ import {
   type Texts,
   useTranslations,
 } from "@shared/i18n/i18n";
+import { helpPagesDe, helpPagesEn } from "../help/helpTexts";
 import { stepKindsDe, stepKindsEn } from "../stepKinds.generated";
 import { analysisDe, analysisEn } from "./analysisTexts";
 import { auditDe, auditEn } from "./auditTexts";
@@ -73,6 +74,7 @@ const allEn = {
   ...downloadsEn,
   ...storageEn,
   ...tourEn,
+  ...helpPagesEn,
   ...analysisEn,
   ...importsEn,
   ...preregistrationEn,
@@ -109,6 +111,7 @@ const allDe = {
   ...downloadsDe,
   ...storageDe,
   ...tourDe,
+  ...helpPagesDe,
   ...analysisDe,
   ...importsDe,
   ...preregistrationDe,

@@ -80,7 +80,7 @@ export const storageEn = {
   "storage.backup.body":
     "Make one after every day with participants, on another disk. The server can stay up, even during a session:",
   "storage.backup.docs":
-    "docs/backups.md explains how to restore a backup and how to rehearse it. To erase a participant, open the page of their study.",
+    "The help page “Backups” (key ?) explains how to restore a backup and how to rehearse it. To erase a participant, open the page of their study.",
 };
 
 export const storageDe: Readonly<Record<keyof typeof storageEn, string>> = {
@@ -165,5 +165,5 @@ export const storageDe: Readonly<Record<keyof typeof storageEn, string>> = {
   "storage.backup.body":
     "Nach jedem Tag mit Teilnehmenden eine auf einer anderen Platte anlegen. Der Server darf laufen, auch während einer Sitzung:",
   "storage.backup.docs":
-    "Wie man eine wiederherstellt und das übt, steht in docs/backups.md. Personen werden auf der Seite ihrer Studie gelöscht.",
+    "Wie man eine wiederherstellt und das übt, steht auf der Hilfeseite „Backups“ (Taste ?). Personen werden auf der Seite ihrer Studie gelöscht.",
 };

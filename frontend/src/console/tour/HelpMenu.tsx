@@ -1,4 +1,4 @@
-/** In the header: the scripted participant, and the tour where there is something to show. */
+/** In the header: the help pages, the scripted participant, and the tour where there is one. */
 import { ActionIcon, Menu } from "@mantine/core";
 import { notifications } from "@mantine/notifications";
 import { studies } from "@shared/api/endpoints";
@@ -6,10 +6,14 @@ import { Icon } from "@shared/ui/Icon";
 import { describe } from "@shared/ui/Notice";
 import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
+import { Link } from "wouter";
 import { useHashLocation } from "wouter/use-hash-location";
 import { useErrorTexts } from "../errors";
+import { helpFor } from "../help/address";
 import { useTexts } from "../i18n";
+import { useMay } from "../may";
 import { studiesQuery, studyQuery } from "../queries";
+import { Key } from "../ui/Key";
 import classes from "./HelpMenu.module.css";
 import { spoken, useStartTryout } from "./TryIt";
 import { startTour } from "./tourStore";
@@ -21,7 +25,8 @@ export function HelpMenu(): JSX.Element {
   const errors = useErrorTexts();
   const queries = useQueryClient();
   const start = useStartTryout();
-  const known = useQuery({ ...studiesQuery, enabled: opened });
+  const may = useMay();
+  const known = useQuery({ ...studiesQuery, enabled: opened && may("tryout") });
   const studyKey = choose(address, known.data?.map(({ key }) => key) ?? []);
   const begin = useMutation({
     mutationFn: async (key: string) => {
@@ -58,16 +63,27 @@ export function HelpMenu(): JSX.Element {
       </Menu.Target>
       <Menu.Dropdown>
         <Menu.Item
-          leftSection={<Icon name="play" size={16} />}
-          disabled={studyKey === null}
-          onClick={() => studyKey !== null && begin.mutate(studyKey)}
+          component={Link}
+          href={helpFor(address)}
+          leftSection={<Icon name="document" size={16} />}
+          rightSection={<Key name="?" />}
         >
-          {t("help.try")}
-          <span className={classes.hint}>
-            {studyKey === null && known.isSuccess ? t("help.noStudy") : t("help.try.hint")}
-          </span>
+          {t("helpPages.menu")}
+          <span className={classes.hint}>{t("helpPages.menu.hint")}</span>
         </Menu.Item>
-        {isSession(address) && (
+        {may("tryout") && (
+          <Menu.Item
+            leftSection={<Icon name="play" size={16} />}
+            disabled={studyKey === null}
+            onClick={() => studyKey !== null && begin.mutate(studyKey)}
+          >
+            {t("help.try")}
+            <span className={classes.hint}>
+              {studyKey === null && known.isSuccess ? t("help.noStudy") : t("help.try.hint")}
+            </span>
+          </Menu.Item>
+        )}
+        {may("tryout") && isSession(address) && (
           <Menu.Item leftSection={<Icon name="flag" size={16} />} onClick={startTour}>
             {t("help.tour")}
           </Menu.Item>

@@ -1,5 +1,6 @@
 import { Modal } from "@mantine/core";
 import type { JSX } from "react";
+import { Link } from "wouter";
 import { useTexts } from "../i18n";
 import classes from "./ui.module.css";
 
@@ -41,6 +42,9 @@ export function KeyList({ opened, onClose, keys, namesClass }: KeyListProps): JS
           </div>
         ))}
       </dl>
+      <Link href="/help/operators-tour" onClick={onClose}>
+        {t("helpPages.all")}
+      </Link>
     </Modal>
   );
 }

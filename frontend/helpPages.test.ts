@@ -1,0 +1,93 @@
+import { resolve } from "node:path";
+import { describe, expect, it } from "vitest";
+import { docsOf, listedIn, madeOf, slugOf } from "./helpPages.ts";
+import { HELPS } from "./src/console/help/address.ts";
+
+const nowhere = () => "elsewhere" as const;
+
+describe("the map of the docs", () => {
+  it("gives parts, pages and sentences; pages for developers are left out", () => {
+    const map = [
+      "# Documentation",
+      "## Start",
+      "- [The tour](operators-tour.md): from an empty room.",
+      "- [Every page](pages.md): pictures.",
+      "## Write",
+      "- [Your own study](../study_configs/README.md): the file.",
+      "- [Parts](sbom.cdx.json): every package.",
+    ];
+    expect(listedIn(map.join("\n"))).toEqual([
+      {
+        title: "Start",
+        pages: [
+          {
+            key: "operators-tour",
+            title: "The tour",
+            file: "docs/operators-tour.md",
+            about: "from an empty room.",
+          },
+        ],
+      },
+      {
+        title: "Write",
+        pages: [
+          {
+            key: "study-configs",
+            title: "Your own study",
+            file: "study_configs/README.md",
+            about: "the file.",
+          },
+        ],
+      },
+    ]);
+  });
+});
+
+describe("a page", () => {
+  it("is a tree of elements, whatever signs its words have", () => {
+    const { body, headings } = madeOf("# A & B\n\n## C `d`\n\nOne **two** `a < b`.", nowhere);
+    expect(headings).toEqual([{ id: "c-d", level: 2, title: "C d" }]);
+    expect(body).toEqual([
+      ["h1", { id: "a--b" }, "A & B"],
+      ["h2", { id: "c-d" }, "C ", ["code", {}, "d"]],
+      ["p", {}, "One ", ["strong", {}, "two"], " ", ["code", {}, "a < b"], "."],
+    ]);
+  });
+
+  it("follows links to pages of the help and drops the others, not their words", () => {
+    const follow = (target: string) =>
+      target === "a.md" ? { to: "/help/a" } : ("elsewhere" as const);
+    expect(madeOf("[here](a.md) and [there](b.py)", follow).body).toEqual([
+      ["p", {}, ["a", { to: "/help/a" }, "here"], " and ", "there"],
+    ]);
+  });
+
+  it("has tables whose cells may hold a stroke, and pictures by number", () => {
+    const follow = () => ({ picture: "/x.png" });
+    const { body, pictures } = madeOf("| a |\n|---|\n| `b\\|c` |\n\n![d](x.png)", follow);
+    expect(pictures).toEqual(["/x.png"]);
+    expect(JSON.stringify(body)).toContain('["td",{},["code",{},"b|c"]]');
+    expect(JSON.stringify(body)).toContain('["img",{"src":"picture:0","alt":"d"}]');
+  });
+
+  it("numbers headings with the same words, as GitHub does", () => {
+    const { headings } = madeOf("## A\n\n## A\n", nowhere);
+    expect(headings.map(({ id }) => id)).toEqual(["a", "a-1"]);
+    expect(slugOf("9. What cannot be true?")).toBe("9-what-cannot-be-true");
+  });
+
+  it("ends the build where nothing can show it", () => {
+    expect(() => madeOf("> quoted", nowhere)).toThrow("blockquote");
+  });
+});
+
+describe("every page of the docs", () => {
+  it("can be made, and the console's own links lead to some of them", () => {
+    const docs = docsOf(resolve(import.meta.dirname, ".."));
+    const contents = docs.contents();
+    const keys = [...contents.matchAll(/"virtual:help\/([\w-]+)"/g)].map(([, key]) => key);
+    expect(keys.length).toBeGreaterThan(20);
+    for (const key of keys) expect(docs.body(String(key))).toContain("export const body");
+    expect(HELPS.filter(([, key]) => !keys.includes(key))).toEqual([]);
+  });
+});

@@ -1,0 +1,25 @@
+/** Addresses of help pages, and which of them belongs to a page of the console. */
+
+/** The page that helps most where somebody is; the first that fits counts. */
+export const HELPS: readonly (readonly [address: RegExp, key: string])[] = [
+  [/^\/sessions\//, "operators-tour"],
+  [/^\/studies\/[^/]+\/participants/, "participants-rights"],
+  [/^\/studies\/[^/]+\/preregistration/, "preregistration"],
+  [/^\/studies\/[^/]+\/statistics/, "statistics"],
+  [/^\/studies\/[^/]+\/(export|dashboard)/, "data-dictionary"],
+  [/^\/(new|studies\/[^/]+\/(edit|protocol|versions))/, "study-configs"],
+  [/^\/instruments/, "study-configs"],
+  [/^\/captures/, "captures"],
+  [/^\/walking/, "walking"],
+  [/^\/network/, "lab-network"],
+  [/^\/storage/, "backups"],
+  [/^\/people/, "people-and-roles"],
+];
+const ELSE = "operators-tour";
+
+export const helpAddress = (key: string, heading?: string): string =>
+  heading === undefined ? `/help/${key}` : `/help/${key}/${heading}`;
+
+/** Where help about the page at `address` is. */
+export const helpFor = (address: string): string =>
+  helpAddress(HELPS.find(([pattern]) => pattern.test(address))?.[1] ?? ELSE);

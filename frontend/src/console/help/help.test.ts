@@ -1,0 +1,57 @@
+import { describe, expect, it } from "vitest";
+import { helpFor } from "./address";
+import { helpPagesDe, helpPagesEn } from "./helpTexts";
+import type { HelpPart } from "./nodes";
+import { search } from "./search";
+
+describe("the key ?", () => {
+  it("opens the page about where one is, else the tour", () => {
+    expect(helpFor("/studies/a/participants")).toBe("/help/participants-rights");
+    expect(helpFor("/")).toBe("/help/operators-tour");
+  });
+});
+
+describe("the search", () => {
+  const page = (key: string, title: string, ...titles: string[]) => ({
+    key,
+    title,
+    about: "",
+    headings: titles.map((one) => ({
+      id: one.toLowerCase().replaceAll(" ", "-"),
+      level: 2,
+      title: one,
+    })),
+    load: async () => ({ body: [] }),
+  });
+  const parts: readonly HelpPart[] = [
+    {
+      title: "Run",
+      pages: [
+        page("backups", "Backups", "Restoring", "The drill"),
+        page("rights", "Rights", "Restoring an older backup"),
+      ],
+    },
+  ];
+  const found = (query: string) =>
+    search(parts, query).map(({ page: { key }, heading }) => `${key}#${heading?.id ?? ""}`);
+
+  it("takes a page's title for a word of its headings", () => {
+    expect(found("backup restor")).toEqual([
+      "backups#restoring",
+      "rights#restoring-an-older-backup",
+    ]);
+  });
+
+  it("puts first what begins with the query, and finds nothing for nothing", () => {
+    expect(found("restoring")).toEqual(["backups#restoring", "rights#restoring-an-older-backup"]);
+    expect(found("backup")[0]).toBe("backups#");
+    expect(found("  ")).toEqual([]);
+    expect(found("nonsense")).toEqual([]);
+  });
+});
+
+describe("the texts of the help", () => {
+  it("are in both languages", () => {
+    expect(Object.keys(helpPagesDe)).toEqual(Object.keys(helpPagesEn));
+  });
+});

@@ -1,0 +1,36 @@
+/** Finds headings of the help by their words. */
+import type { HelpHeading, HelpPage, HelpPart } from "./nodes";
+
+export interface Found {
+  readonly page: HelpPage;
+  /** Undefined where the page itself is found. */
+  readonly heading: HelpHeading | undefined;
+}
+
+const MOST = 40;
+
+/**
+ * Pages and headings that have every word of `query`, in any order and as parts of words.
+ *
+ * A heading's words count together with its page's title, so "backup restore" finds "Restoring" on
+ * the page "Backups". Pages come before headings, and those that begin with the query first.
+ */
+export function search(parts: readonly HelpPart[], query: string): readonly Found[] {
+  const words = query.toLowerCase().split(/\s+/).filter(Boolean);
+  if (words.length === 0) return [];
+  const has = (text: string) => words.every((word) => text.toLowerCase().includes(word));
+  const own = (text: string) => words.some((word) => text.toLowerCase().includes(word));
+  const found = parts.flatMap(({ pages }) =>
+    pages.flatMap((page): readonly Found[] => [
+      ...(has(`${page.title} ${page.about}`) ? [{ page, heading: undefined }] : []),
+      ...page.headings
+        .filter(({ title }) => own(title) && has(`${page.title} ${title}`))
+        .map((heading) => ({ page, heading })),
+    ]),
+  );
+  const rank = ({ page, heading }: Found): number => {
+    const title = (heading?.title ?? page.title).toLowerCase();
+    return (title.startsWith(words[0] ?? "") ? 0 : 2) + (heading === undefined ? 0 : 1);
+  };
+  return found.toSorted((a, b) => rank(a) - rank(b)).slice(0, MOST);
+}

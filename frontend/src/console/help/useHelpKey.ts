@@ -1,0 +1,21 @@
+/** The key `?`: help about the page that is shown. */
+import { useEffect } from "react";
+import { useHashLocation } from "wouter/use-hash-location";
+import { isBusy } from "../cockpit/session/keys";
+import { helpFor } from "./address";
+
+/** In the cockpit and in a replay `?` lists the keys first; that list leads here. */
+const LISTS_KEYS = /^\/sessions\/[^/]+(\/replay.*)?$/;
+
+export function useHelpKey(): void {
+  const [address, navigate] = useHashLocation();
+  useEffect(() => {
+    const onKey = (event: KeyboardEvent) => {
+      if (event.key !== "?" || isBusy(event) || LISTS_KEYS.test(address)) return;
+      event.preventDefault();
+      if (!address.startsWith("/help")) navigate(helpFor(address));
+    };
+    document.addEventListener("keydown", onKey);
+    return () => document.removeEventListener("keydown", onKey);
+  }, [address, navigate]);
+}
