@@ -226,6 +226,63 @@ PARTICIPANTS_COLUMN = Recipe(
     },
 )
 
+FIGURE = Recipe(
+    name="figure",
+    heading="Add a figure",
+    added={
+        "app/features/results/analysis/figures/joined.py": '''"""How many have joined."""
+
+import pandas as pd
+
+from app.features.results.analysis.figures.drawing import Drawing, participants
+
+
+def joined_drawing(sessions: pd.DataFrame) -> Drawing:
+    """From all rows of the table of sessions."""
+    n = participants(sessions)
+    return Drawing("joined", "Joined", f"{n} have joined.", n, empty="Nothing to draw.")
+'''
+    },
+    edited={
+        "app/features/results/analysis/figures/registry.py": [
+            before(
+                "from app.features.results.analysis.figures.likert",
+                "from app.features.results.analysis.figures.joined import joined_drawing\n",
+            ),
+            after(
+                "FIGURES: tuple[Figure, ...] = (\n",
+                '    Figure.one("progress", lambda rows: joined_drawing(rows.left.sessions)),\n',
+            ),
+        ]
+    },
+)
+ALARM = Recipe(
+    name="alarm",
+    heading="Add an alarm",
+    edited={
+        "app/features/record/alarms/kinds.py": [
+            after(
+                "ALARMS: tuple[AlarmKind, ...] = (\n",
+                """    AlarmKind(
+        key="asleep",
+        severity="info",
+        title=Words(en="Headset asleep", de="Headset schläft"),
+        remedy=Words(en="Wake it.", de="Aufwecken."),
+    ),
+""",
+            )
+        ],
+        "app/features/record/alarms/silence_watch.py": [
+            after(
+                '                unit="s",\n            )\n',
+                """        elif self._heard_s < now_s:
+            yield Condition("asleep", "The headset sleeps")
+""",
+            )
+        ],
+    },
+)
+
 
 def _applied(recipe: Recipe, folder: Path, *, edited: int) -> Tree:
     """The copy with a recipe in it, which keeps to its limit and to its section."""
@@ -382,3 +439,33 @@ answer = _participant(row, [], [], None).visits
     )
     assert answer == 0
     assert "{participant.visits}" in tree.read(COLUMNS)
+
+
+def test_a_figure_takes_one_edited_file(tmp_path: Path) -> None:
+    """The dashboard draws it with its group."""
+    tree = _applied(FIGURE, tmp_path, edited=1)
+    answer = tree.evaluate("""
+import pandas as pd
+from types import SimpleNamespace
+from app.features.results.analysis.figures import FIGURES, Rows
+sessions = pd.DataFrame({"participant_code": ["a", "b"]})
+(drawing,) = FIGURES[0].draw(Rows(SimpleNamespace(sessions=sessions), invalid=False))
+answer = [drawing.key, drawing.group, drawing.n]
+""")
+    assert answer == ["joined", "progress", 2]
+
+
+def test_an_alarm_takes_two_edited_files(tmp_path: Path) -> None:
+    """Its watch raises it with its severity, and the cockpit has its words."""
+    tree = _applied(ALARM, tmp_path, edited=2)
+    answer = _enabled(
+        tree,
+        """
+from app.features.record.alarms import WatchLimits
+from app.features.record.alarms.silence_watch import SilenceWatch
+(found,) = SilenceWatch(WatchLimits(), 0.0).look(1.0)
+answer = [found.code, found.severity]
+""",
+    )
+    assert answer == ["asleep", "info"]
+    _texts(tree, '"alarm.asleep": "Headset asleep"', '"alarm.asleep.do": "Aufwecken."', '"asleep"')

@@ -21,9 +21,13 @@ from app.features.results.analysis.figures.joint_errors import (
 from app.features.results.analysis.figures.likert import likert_drawings
 from app.features.results.analysis.figures.progress import progress_drawing, progress_time_drawing
 from app.features.results.analysis.figures.quality import alarms_drawing, quality_drawing
+from app.features.results.analysis.figures.registry import FIGURES, Figure, Rows, orders_of
 
 __all__ = [
+    "FIGURES",
     "Drawing",
+    "Figure",
+    "Rows",
     "achieved_drawing",
     "alarms_drawing",
     "completions_drawing",
@@ -38,6 +42,7 @@ __all__ = [
     "joint_error_map_drawing",
     "learning_drawing",
     "likert_drawings",
+    "orders_of",
     "progress_drawing",
     "progress_time_drawing",
     "quality_drawing",
