@@ -28,7 +28,7 @@ class Words:
 
     def __post_init__(self) -> None:
         for language in LANGUAGES:
-            if not self.in_(language).strip():
+            if not self.in_language(language).strip():
                 raise ValueError(
                     f"The text {self.en or self.de!r} is empty in {language!r}; write it in both "
                     f"languages: {', '.join(LANGUAGES)}."
@@ -40,7 +40,7 @@ class Words:
                 f"{of_de}; use the same in both."
             )
 
-    def in_(self, language: str) -> str:
+    def in_language(self, language: str) -> str:
         """The text in "en" or "de"; raises KeyError for any other language."""
         return {"en": self.en, "de": self.de}[language]
 
@@ -53,7 +53,7 @@ def typescript_table(name: str, texts: Mapping[str, Words]) -> str:
         typed = "" if language == "en" else f": Readonly<Record<keyof typeof {name}En, string>>"
         lines.append(f"export const {constant}{typed} = {{")
         lines += [
-            f"  {json.dumps(key)}: {json.dumps(words.in_(language), ensure_ascii=False)},"
+            f"  {json.dumps(key)}: {json.dumps(words.in_language(language), ensure_ascii=False)},"
             for key, words in texts.items()
         ]
         lines.append("} as const;" if language == "en" else "};")

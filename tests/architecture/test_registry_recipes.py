@@ -115,6 +115,7 @@ def quade_outcome(sample: Sample) -> Outcome:
         "docs/statistics.md": [
             before("| which ones? |", "| by weighted ranks? | `quade_outcome` | Quade's F |\n")
         ],
+        "docs/preregistration.md": [before("`rm_anova` (Greenhouse-Geisser)", "`quade`, ")],
     },
 )
 EXPORT_FORMAT = Recipe(

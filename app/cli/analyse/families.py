@@ -29,7 +29,7 @@ from app.science.statistics import (
 )
 
 T = TypeVar("T")
-TOLD = frozenset({"friedman", "page_trend", "rm_anova", "against_reference"})
+OWN_OUTPUT = frozenset({"friedman", "page_trend", "rm_anova", "against_reference"})
 """Tests of the registry that have figures of their own in the output."""
 _MOST_FACTORS = 2
 _TWO = 2
@@ -132,7 +132,7 @@ def _further(
     """Every other test that compares levels as they are, by its key."""
     found = {}
     for test in TESTS:
-        if test.key in TOLD or test.needs_reference or len(levels) < test.fewest_conditions:
+        if test.key in OWN_OUTPUT or test.needs_reference or len(levels) < test.fewest_conditions:
             continue
         sample = Sample(whole, levels, test.directions[0])
         outcome = tried(partial(test.load(), sample), warnings, where)

@@ -18,7 +18,7 @@ def retarget(
         typer.Option(help="130cm, 165cm, 190cm, any other stature, or a file with a skeleton."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(help="Write the result; its ending is the format, as .bvh.")
+        Path | None, typer.Option(help="File to write; its ending, such as .bvh, is its format.")
     ] = None,
     lock_feet: Annotated[
         bool, typer.Option("--lock-feet", help="Hold feet at their places while they stand.")
