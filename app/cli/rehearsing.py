@@ -20,7 +20,7 @@ from typing import Any, TypeVar
 import numpy as np
 from httpx2 import Client, HTTPError
 
-from app.protocol import COUNTED_KINDS, UNCOUNTED_KINDS
+from app.protocol import BOX_KINDS, COUNTED_KINDS, STEP_KINDS, UNCOUNTED_KINDS
 from app.rehearsal.body import make_person
 from app.rehearsal.headset import WITHDRAWN
 from app.rehearsal.rehearse import RehearsalPlan, RehearsalReport, Visit, rehearse, visit_of
@@ -204,9 +204,7 @@ def report_text(report: RehearsalReport) -> str:
     """What came of one participant's session, a line for each task phase."""
     phases = [phase for phase in report.phases if phase["kind"] in COUNTED_KINDS]
     voided = sum(phase["status"] == "voided" for phase in phases)
-    practised = sum(
-        phase["kind"] in UNCOUNTED_KINDS and phase["limb"] is not None for phase in report.phases
-    )
+    kinds = Counter(phase["kind"] for phase in report.phases)
     lines = [
         f"SIMULATED session {report.session_id}: {report.duration_s:.1f} s at {report.speed:g}x",
         *_ended(report),
@@ -214,7 +212,11 @@ def report_text(report: RehearsalReport) -> str:
         f"frames sent {report.frames_sent}, stored {report.frames_stored}",
         f"{len(phases) - voided} task phases, {report.questionnaires} questionnaires",
         *([f"{voided} voided, which no analysis uses"] if voided else []),
-        *([f"{practised} practice phases, which no analysis uses"] if practised else []),
+        *(
+            f"{kinds[kind]} {STEP_KINDS[kind].name['en'].lower()} phases, which no analysis uses"
+            for kind in UNCOUNTED_KINDS
+            if kind in BOX_KINDS and kinds[kind]
+        ),
         f"{report.completions} completions, {report.contacts} contacts",
         f"{report.side_contacts} contacts with the sides of boxes",
     ]

@@ -1,0 +1,41 @@
+import type { Limb, StepKind } from "@shared/api/types";
+import { describe, expect, it } from "vitest";
+import { STEP_KINDS, stepKindsEn } from "./stepKinds";
+import { isForm, isTimed, stepIcon, stepName, stepText } from "./steps";
+
+const kinds = Object.keys(STEP_KINDS) as StepKind[];
+/** Every kind with each limb that it is done with, as plans have them. */
+const steps = kinds.flatMap((kind) => {
+  const { limbs } = STEP_KINDS[kind];
+  const named: readonly (Limb | null)[] = limbs.length > 0 ? limbs : [null];
+  return named.map((limb) => ({ kind, limb }));
+});
+
+describe("a step", () => {
+  it("has a name and guidance, and a button if it is timed", () => {
+    for (const step of steps) {
+      expect(stepKindsEn).toHaveProperty([stepName(step)]);
+      expect(stepKindsEn).toHaveProperty([stepText("guide", step)]);
+      if (isTimed(step)) expect(stepKindsEn).toHaveProperty([stepText("do.begin", step)]);
+    }
+  });
+
+  it("has a button that completes it exactly where the table says so", () => {
+    for (const kind of kinds) {
+      const { isCompletedByButton } = STEP_KINDS[kind];
+      expect([kind, `do.complete.${kind}` in stepKindsEn]).toEqual([kind, isCompletedByButton]);
+    }
+  });
+
+  it("shows the limb that it is done with, else the icon of its kind", () => {
+    expect(stepIcon({ kind: "practice", limb: "foot" })).toBe("foot");
+    expect(stepIcon({ kind: "free_roam", limb: null })).toBe("walk");
+  });
+
+  it("keeps its own name and icon where it comes after a task of a limb", () => {
+    const asked = { kind: "questionnaire", limb: "hand" } as const;
+    expect(isForm(asked)).toBe(true);
+    expect(stepName(asked)).toBe("step.questionnaire");
+    expect(stepIcon(asked)).toBe("form");
+  });
+});
