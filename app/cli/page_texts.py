@@ -9,7 +9,7 @@ from pathlib import Path
 
 from app.adapters.captures import FORMATS, WRITERS, extensions, format_texts, writer_texts
 from app.features.record.alarms import ALARMS, alarm_texts
-from app.features.record.preflight.checks import check_texts
+from app.features.record.preflight import check_texts
 from app.science.statistical_tests import texts_of_tests
 from app.texts import Words, typescript_list, typescript_table
 
