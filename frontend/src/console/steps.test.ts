@@ -1,6 +1,6 @@
 import type { Limb, StepKind } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { STEP_KINDS, stepKindsEn } from "./stepKinds";
+import { STEP_KINDS, stepKindsEn } from "./stepKinds.generated";
 import { isForm, isTimed, stepIcon, stepName, stepText } from "./steps";
 
 const kinds = Object.keys(STEP_KINDS) as StepKind[];
