@@ -87,11 +87,14 @@ class PreflightCheck:
         key: also in events and overrides, so it is never renamed.
         title: what is checked.
         findings: in the order of the interface's codes.
+        mended_in_seconds: whether somebody at hand can put it right at once, as by waking the
+            tablet; the page looks at such a check more often.
     """
 
     key: str
     title: Words
     findings: tuple[Finding, ...]
+    mended_in_seconds: bool = field(default=False, kw_only=True)
 
     def finding(self, key: str) -> Finding:
         """One of the findings; raises KeyError where the check has none of that key."""

@@ -64,6 +64,7 @@ TABLET = StateCheck(
         ),
     ),
     look=_tablet,
+    mended_in_seconds=True,
 )
 
 
@@ -96,6 +97,7 @@ HEADSET = StateCheck(
         Finding("ok", "ok", Words(en="Paired and connected", de="Gekoppelt und verbunden")),
     ),
     look=_headset,
+    mended_in_seconds=True,
 )
 
 
@@ -198,6 +200,7 @@ CLOCK = StateCheck(
         Finding("ok", "ok", Words(en="Known to ± {{value}}", de="Auf ± {{value}} bekannt")),
     ),
     look=_clock,
+    mended_in_seconds=True,
 )
 
 

@@ -268,6 +268,12 @@ export const registryDe: Readonly<Record<keyof typeof registryEn, string>> = {
   "value.against_reference": "Exakte Wilcoxon-Tests gegen einen Bezug",
 };
 
+export const CHECKS_MENDED_IN_SECONDS = [
+  "tablet",
+  "headset",
+  "clock",
+] as const;
+
 export const ALARMS = [
   "silent",
   "disconnected",

@@ -2,6 +2,7 @@
 import type { Check } from "@shared/api/types";
 import { number } from "@shared/format";
 import type { Key } from "../../i18n";
+import { CHECKS_MENDED_IN_SECONDS } from "../../i18n/registries.generated";
 
 /** Of a count the word says what is counted. */
 const SYMBOLS: Readonly<Partial<Record<NonNullable<Check["unit"]>, string>>> = {
@@ -42,8 +43,6 @@ export function todoOf(check: Check): Todo | null {
 export const failing = (checks: readonly Check[]): readonly Check[] =>
   checks.filter(({ status }) => status === "fail");
 
-/** Somebody is bringing these in right now. */
-const SOON: readonly Check["key"][] = ["tablet", "headset", "clock"];
 const SOON_MS = 3000;
 const LATER_MS = 20_000;
 
@@ -51,5 +50,8 @@ const LATER_MS = 20_000;
 export function againAfter(checks: readonly Check[]): number | false {
   const open = checks.filter(({ status }) => status === "wait" || status === "fail");
   if (open.length === 0) return false;
-  return open.some(({ key }) => SOON.includes(key)) ? SOON_MS : LATER_MS;
+  return open.some(isMendedInSeconds) ? SOON_MS : LATER_MS;
 }
+
+const isMendedInSeconds = ({ key }: Check): boolean =>
+  CHECKS_MENDED_IN_SECONDS.some((one) => one === key);
