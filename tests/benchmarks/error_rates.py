@@ -50,15 +50,15 @@ HEAD = """# Error rates of the tests
 Made by `./run bench error_rates --write`; do not edit. Simulated data sets in which nothing has an
 effect, of {sizes} participants in equal parts, three latencies, two limbs, seed {seed}. An item is
 answered from 1 to 7, mostly with agreement, so ties abound. *Level*: participants differ in level.
-*Reactions*: they also differ in how they react to latency, while answers to each latency are alike
-over people; then the orders of a participant's values are not equally likely, which rank tests
-assume, and models without slopes of participants are wrong.
+*Reactions*: they also differ in how they react to latency, while answers to each latency have the
+same distribution over people. Then the orders of a participant's values are not equally likely, as
+rank tests assume, and models without slopes for participants are wrong.
 
 Tests at 5 %, intervals of 95 %; rates are in per cent with one standard error, over all data sets
-and by number of participants. Exact tests promise at most 5 % where participants differ in level. A
-page of the product warns where a test rejects in less than 4 or more than 6.5 %, or an interval
-holds the truth in less than 93.5 %; here such a figure has a mark. *Not made*: data sets on which a
-model did not converge, beside those counted.
+and by number of participants. Exact tests guarantee at most 5 % if participants differ in level.
+The product's pages warn if a test rejects in less than 4 or more than 6.5 %, or an interval covers
+the true value in less than 93.5 %; such figures are marked here. *Not made*: data sets on which a model
+did not converge, in addition to those counted.
 
 Not measured: McDonald's omega (a hundred of its bootstraps take minutes), analyses between groups.
 """

@@ -22,20 +22,20 @@ _LEFT_ASIDE = "motion/natnet/"  # packets of a network protocol, not files of ca
 
 _INTRODUCTION = """# Captures: formats and files
 
-A capture is movement recorded elsewhere. Whatever the format, what comes out is one of three
+A capture is movement recorded with another system. Whatever the format, the result is one of three
 things: the movement of a **skeleton** (joints in a tree, a rest pose, a rotation per joint and
 frame), of **markers**, or of **rigid bodies**; always in metres, y up, right-handed, quaternions
-w, x, y, z. With it comes by which conventions it was read and who says so:
+w, x, y, z. Each result says by which conventions the file was read, and where each comes from:
 
-- *file*: this file says so. *format*: the format always has it so.
-- *guessed*: neither does, and it was taken by plausibility, such as the unit that makes a person
-  of one or two metres.
-- *chosen*: the user said so, which goes before all others. Unit and upward axis can be chosen for
+- *file*: this file says so. *format*: the format always works this way.
+- *guessed*: neither does, and the most plausible value was used, such as the unit that makes a
+  person one or two metres tall.
+- *chosen*: the user said so, which overrides all others. Unit and upward axis can be chosen for
   every file.
 
-Formats are told apart by content, whatever a file is called. A file that breaks its format's rules
-is refused with the line and the reason; nothing is repaired in silence, each repair is a note.
-What a file may ask for is limited (256 MB, 2,000 tracks, 60 million numbers in memory), whatever
+Formats are recognised by content, whatever a file is called. A file that breaks its format's rules
+is refused with the line and the reason; nothing is repaired silently, each repair is noted.
+What a file may occupy is limited (256 MB, 2,000 tracks, 60 million numbers in memory), whatever
 its header claims.
 
 ## Formats
@@ -68,30 +68,30 @@ _FORMATS: Mapping[str, tuple[str, str, str, str]] = {
 }
 
 _DETAILS = """
-- **BVH.** The unit is guessed among cm, m, mm, 0.056444 m (CMU) and inch. Joints besides the root
-  that have positions of their own get the median as their bone, with a note of the largest
-  deviation. A T-pose row before the movement, as some converters of the CMU captures put there, is
-  left out: no body leaves it so fast. What we write as BVH has Euler angles ZXY in degrees,
+- **BVH.** The unit is guessed among cm, m, mm, 0.056444 m (CMU) and inch. Joints other than the
+  root that have their own positions get the median as their bone, with a note of the largest
+  deviation. A T-pose row before the movement, which some converters of the CMU captures add, is
+  left out: no body leaves it that fast. BVH files that we write have Euler angles ZXY in degrees,
   lengths in cm and a rest pose in which every bone lies along the world's axes; every reader shows
-  the same places.
+  the same positions.
 - **Motive CSV.** Versions 1.21 to 1.25, with or without labels, time codes, quality columns,
-  trailing commas; bones seen from the world or from their parents. The hierarchy is the file's own
-  from 1.25 on and known by bone names before. The root, named after the skeleton, becomes `Hip`. A
-  bone's length is the median over the take. Frames count by the export rate, since times are
-  rounded. Gaps in a skeleton are bridged and marked.
+  trailing commas; bones relative to the world or to their parents. The hierarchy is in the file
+  from 1.25 on; before, it is derived from bone names. The root, named after the skeleton,
+  becomes `Hip`. A bone's length is the median over the take. Frame times follow the export rate,
+  since written times are rounded. Gaps in a skeleton are bridged and marked.
 - **Vicon Tracker CSV.** RX, RY, RZ are a rotation vector, kept continuous, so its length may
-  exceed pi. No document says so; that bodies on one limb keep their distance in each other's frame
-  does: 3 % scatter by this reading, 7 % and more by any Euler order.
+  exceed pi. This is not documented; the evidence is that bodies on one limb keep their distance in
+  each other's frame: 3 % scatter with this reading, 7 % or more with any Euler order.
 - **UXF trackers.** Unity's left-handed world is mirrored: p' = (x, y, -z), q' = (w, -x, -y, z).
   Euler angles turn about z, then x, then y. All zeros means not tracked. `;` between columns with
   `,` in numbers is understood.
-- **AMC** needs the ASF it was made with: give both.
-- **A skeleton from markers or bodies** is fitted where a known set of them covers the body; else
+- **AMC** needs the ASF it was made with: upload both.
+- **A skeleton from markers or bodies** is fitted if a known set of them covers the body; otherwise
   the reason is given.
 
 ## Files
 
-How the published files that the tests use fare. In brackets: who says so.
+How the published files that the tests use are read. In brackets: where each convention comes from.
 """
 
 

@@ -32,14 +32,16 @@ class Page:
 
 
 CONSOLE = (
-    Page("console-login-light", "Login", "Whoever has an account; everybody else is invited."),
-    Page("console-studies-light", "Studies", "What runs, and what was put away."),
+    Page("console-login-light", "Login", "For people with an account; others need an invitation."),
+    Page("console-studies-light", "Studies", "Current studies, and archived ones."),
     Page(
-        "console-overview-light", "A study", "Its procedure, and the first steps while it is new."
+        "console-overview-light", "A study", "Its procedure, and what to do first while it is new."
     ),
     Page("console-ledger-light", "Ledger", "Who has which order, and which slots are free again."),
-    Page("console-sessions-dark", "Sessions", "One line each, with what is still open."),
-    Page("console-participants-light", "Participants", "Codes, visits, and their rights."),
+    Page("console-sessions-dark", "Sessions", "One line each, with what remains to be done."),
+    Page(
+        "console-participants-light", "Participants", "Codes, sessions, and participants' rights."
+    ),
     Page("preregistration", "Preregistration", "What was declared, what was done, and deviations."),
     Page("console-dashboard-light", "Dashboard", "Every figure with its units, n and intervals."),
     Page("statistics", "Statistics", "The study's questions, each answered in a sentence."),
@@ -49,46 +51,59 @@ CONSOLE = (
     Page(
         "imported",
         "Imported answers",
-        "Collected elsewhere, described apart, never pooled.",
+        "Collected with other tools, analysed separately, never pooled.",
         WINDOW_PX,
     ),
     Page("console-protocol-light", "Protocol", "What every session follows, step by step."),
-    Page("study-versions", "Versions", "What changed, and whether balance begins anew."),
-    Page("suggestions", "Suggestions", "What experts would set otherwise."),
+    Page("study-versions", "Versions", "What changed, and whether balance starts again."),
+    Page("suggestions", "Suggestions", "What experts would change."),
     Page("editor-problem", "Editor", "Form and text side by side; a problem leads to its line."),
-    Page("editor-dry-run", "Dry run", "The whole procedure in minutes before anybody comes."),
+    Page("editor-dry-run", "Dry run", "The whole procedure with its times, before anybody comes."),
     Page("editor-changes", "What changes", "Before a version is saved."),
     Page("instrument-items-light", "An instrument", "Its items, scales and scores."),
-    Page("instrument-try-light", "Trying it", "The tablet's own form, with the scores beside it."),
+    Page("instrument-try-light", "Trying it", "The form as on the tablet, with its scores."),
     Page("instrument-editor", "Writing one", "Items and formulas, checked while they are written."),
-    Page("preflight", "Pre-flight", "One list before the start, green or overridden."),
+    Page(
+        "preflight", "Pre-flight", "One list of checks before the start, each passed or overridden."
+    ),
     Page("cockpit-live", "Cockpit", "The next action, the clock, and both bodies in space."),
-    Page("alarm-silent-dark", "An alarm", "It cannot be missed, and nothing jumps."),
+    Page("alarm-silent-dark", "An alarm", "Impossible to miss, without moving anything else."),
     Page("alarm-history-light", "Alarms so far", "When each began and ended."),
-    Page("session-debriefing", "Debriefing", "The end is close; what is missing is told."),
+    Page("session-debriefing", "Debriefing", "Shortly before the end, with what is still missing."),
     Page("session-completed", "A completed session", "What was measured, phase by phase."),
-    Page("console-replay-light", "Replay", "A phase again, in step with what happened in it."),
-    Page("stop-rule-console", "A held session", "A stop rule holds it until somebody decides."),
-    Page("expert-cockpit", "An expert's session", "Settings are tried while it runs."),
-    Page("consent-record", "A consent", "As it was signed, ready to print."),
-    Page("downloads", "Downloads", "Files made in the background, with cancel.", WINDOW_PX),
-    Page("tour", "Tour", "One click plays a scripted participant."),
-    Page("captures-light", "Captures", "Recorded movement in any of the labs' formats."),
-    Page("capture-movement-light", "A capture", "In space, with how its file was read."),
-    Page("capture-joints-light", "Its joints", "Which joint plays which part of the body."),
+    Page("console-replay-light", "Replay", "A recorded phase, synchronised with its events."),
+    Page("stop-rule-console", "A held session", "A stop rule pauses it until somebody decides."),
+    Page("expert-cockpit", "An expert's session", "Experts can try settings while it runs."),
+    Page("consent-record", "A consent", "As signed, ready to print."),
+    Page(
+        "downloads", "Downloads", "Files made in the background; each can be cancelled.", WINDOW_PX
+    ),
+    Page("tour", "Tour", "One click starts a scripted participant."),
+    Page("captures-light", "Captures", "Recorded movement in the usual formats."),
+    Page(
+        "capture-movement-light",
+        "A capture",
+        "In 3-D, with the conventions by which its file was read.",
+    ),
+    Page("capture-joints-light", "Its joints", "Which joint is which part of the body."),
     Page("capture-verification-light", "Verification", "The same walk on small and tall avatars."),
     Page("walking", "Walking", "How long a walk takes, and how differently people walk it."),
-    Page("equipment", "Equipment", "Latency that was measured on the lab's own machines."),
+    Page("equipment", "Equipment", "The measured latency of the lab's own equipment."),
     Page("network-1280-light", "Network", "How tablets and headsets reach this machine."),
-    Page("join-light", "Joining", "Whoever was invited chooses a password."),
+    Page("help-search-light", "Help", "These docs, searchable by heading.", WINDOW_PX),
+    Page("join-light", "Joining", "An invited person chooses a name and a password."),
 )
 TABLET = (
     Page("tablet-pairing-1180", "Pairing", "Six characters or a QR code."),
-    Page("tablet-consent-1180", "Consent", "Statement by statement, and a signature if asked for."),
-    Page("tablet-form-820", "A form", "Large enough for a thumb, upright and lying."),
+    Page(
+        "tablet-consent-1180",
+        "Consent",
+        "Statement by statement, with a signature if the study asks for one.",
+    ),
+    Page("tablet-form-820", "A form", "Large enough for a thumb, in portrait and landscape."),
     Page("tablet-offline-form", "Without a network", "The same form after its browser was killed."),
     Page("tablet-offline-sent", "Sent without a network", "Kept until the server is back."),
-    Page("stop-rule-tablet", "Held", "Somebody comes."),
+    Page("stop-rule-tablet", "Held", "The participant is told to wait for the operator."),
     Page("pairing-first-time", "First time", "How a device learns to trust the lab."),
 )
 
@@ -123,8 +138,8 @@ def main(folder: Path) -> None:
     lines = [
         "# Every page",
         "",
-        "Taken by the browser tests from a real server; nobody in them is a person. Made by",
-        "`python -m tests.support.page_pictures`; do not edit.",
+        "Pictures taken by the browser tests on a real server; no real person appears in them.",
+        "Made by `python -m tests.support.page_pictures`; do not edit.",
         "",
         *section("The console", CONSOLE),
         *section("The tablet", TABLET),

@@ -79,8 +79,8 @@ Every column of an export (`./run export`, `codebook.csv`). Generated from the c
 `app/features/results/analysis/codebook`; a test holds it to that.
 
 Missing values are empty cells. Booleans are `true` and `false`, times are UTC in ISO 8601, angles
-in degrees, lengths in metres, durations in seconds. People's, simulated and test data never share a
-summary: `simulated` stands in every table of data."""
+in degrees, lengths in metres, durations in seconds. Data of people, simulations and
+tests are never summarised together: every table of data has the column `simulated`."""
 _BY_TABLE = {
     table: tuple(column for column in CODEBOOK if column.table == table) for table in TABLES
 }
