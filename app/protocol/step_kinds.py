@@ -239,8 +239,8 @@ _TABLE = (
                 in_a_sentence=_words("hand task", "Handaufgabe"),
                 begin=_words("Begin hand task", "Handaufgabe beginnen"),
                 guidance=_words(
-                    "See that the participant stands on the start square and uses the writing "
-                    "hand, then begin.",
+                    "Make sure that the participant stands on the start square and uses the "
+                    "writing hand, then begin.",
                     "Achten Sie darauf, dass die Person auf dem Startfeld steht und die "
                     "Schreibhand benutzt; dann beginnen Sie.",
                 ),
@@ -250,7 +250,7 @@ _TABLE = (
                 in_a_sentence=_words("foot task", "Fußaufgabe"),
                 begin=_words("Begin foot task", "Fußaufgabe beginnen"),
                 guidance=_words(
-                    "See that the participant stands on the start square, then begin.",
+                    "Make sure that the participant stands on the start square, then begin.",
                     "Achten Sie darauf, dass die Person auf dem Startfeld steht; dann beginnen "
                     "Sie.",
                 ),
