@@ -60,6 +60,15 @@ def typescript_table(name: str, texts: Mapping[str, Words]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def typescript_object(name: str, values: Mapping[str, object]) -> str:
+    """TypeScript: the constant `name`, an object of plain values whose type knows each of them."""
+    items = [
+        f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},"
+        for key, value in values.items()
+    ]
+    return "\n".join([f"export const {name} = {{", *items, "} as const;"]) + "\n"
+
+
 def typescript_list(name: str, values: Iterable[str]) -> str:
     """TypeScript: the constant `name`, a tuple of texts whose type knows each of them."""
     items = [f"  {json.dumps(value, ensure_ascii=False)}," for value in values]

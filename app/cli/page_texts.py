@@ -10,8 +10,9 @@ from pathlib import Path
 from app.adapters.captures import FORMATS, WRITERS, extensions, format_texts, writer_texts
 from app.features.record.alarms import ALARMS, alarm_texts
 from app.features.record.preflight import CHECKS, check_texts
+from app.protocol import step_kind_texts, step_kinds_for_pages
 from app.science.statistical_tests import texts_of_tests
-from app.texts import Words, typescript_list, typescript_table
+from app.texts import Words, typescript_list, typescript_object, typescript_table
 
 TARGET = "frontend/src/console/i18n/registries.generated.ts"
 """Below the folder of the repository."""
@@ -27,6 +28,7 @@ def texts() -> dict[str, Words]:
         format_texts(),
         writer_texts(),
         texts_of_tests(),
+        step_kind_texts(),
     ):
         if twice := found.keys() & registry.keys():
             raise ValueError(
@@ -53,6 +55,7 @@ def page_texts() -> str:
             typescript_list("CAPTURE_FORMATS", (one.key for one in FORMATS)),
             typescript_list("CAPTURE_EXTENSIONS", extensions()),
             typescript_list("MOVEMENT_FORMATS", (one.key for one in WRITERS)),
+            typescript_object("STEP_KINDS", step_kinds_for_pages()),
         )
     )
 

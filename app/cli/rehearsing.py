@@ -213,7 +213,7 @@ def report_text(report: RehearsalReport) -> str:
         f"{len(phases) - voided} task phases, {report.questionnaires} questionnaires",
         *([f"{voided} voided, which no analysis uses"] if voided else []),
         *(
-            f"{kinds[kind]} {STEP_KINDS[kind].name['en'].lower()} phases, which no analysis uses"
+            f"{kinds[kind]} {STEP_KINDS[kind].name.en.lower()} phases, which no analysis uses"
             for kind in UNCOUNTED_KINDS
             if kind in BOX_KINDS and kinds[kind]
         ),

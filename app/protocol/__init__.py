@@ -45,6 +45,8 @@ from app.protocol.step_kinds import (
     StepKind,
     StepKindSpec,
     kinds_with_command,
+    step_kind_texts,
+    step_kinds_for_pages,
 )
 from app.protocol.study import StudyProtocol
 from app.protocol.tasks import Tasks
@@ -104,6 +106,8 @@ __all__ = [
     "read_source",
     "sequences",
     "sha256_of",
+    "step_kind_texts",
+    "step_kinds_for_pages",
     "study_schema",
     "timeline",
     "total_s",

@@ -16,11 +16,11 @@ from app.protocol.preregistration import preregistration_problems
 from app.protocol.safety import body_problems, safety_problems
 from app.protocol.schema import Schema, marked_places
 from app.protocol.source import Path, Plain
-from app.protocol.step_kinds import TITLE_LANGUAGES
 from app.protocol.study import SCREEN_TEXTS
 from app.protocol.validity import validity_problems
 from app.protocol.wording import mark_problems
 from app.science.instruments import DefinitionProblem, Instrument, text_problems
+from app.texts import LANGUAGES
 
 _AVATAR_KEY = "avatar_configuration"
 _AVATAR_AT: Path = (_AVATAR_KEY,)
@@ -141,7 +141,7 @@ def _instrument(
 
 def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[DefinitionProblem]:
     """Built-in titles speak two languages; a study in a third brings its own."""
-    foreign = [language for language in languages if language not in TITLE_LANGUAGES]
+    foreign = [language for language in languages if language not in LANGUAGES]
     for path, step in _steps(tree):
         fields = ("title", "questionnaire_title") if "questionnaire" in step else ("title",)
         for field in fields:
@@ -150,7 +150,7 @@ def _titles(tree: dict[str, Plain], languages: list[str]) -> Iterator[Definition
                     (*path, field),
                     f"There is no built-in title in the language {foreign[0]!r}.",
                     None,
-                    sorted(TITLE_LANGUAGES),
+                    sorted(LANGUAGES),
                     f"Give this step a {field} in every language.",
                 )
 

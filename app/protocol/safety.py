@@ -73,7 +73,7 @@ def body_problems(tree: Mapping[str, Plain]) -> Iterator[DefinitionProblem]:
         if spec is not None and spec.needs_body and "materialise" not in before[:at]:
             yield DefinitionProblem(
                 ("procedure", "before", at, "step"),
-                f"The {spec.name['en'].lower()} comes before the participant has a body.",
+                f"The {spec.name.en.lower()} comes before the participant has a body.",
                 kind,
                 "a place behind the step materialise",
                 "Move it behind the step materialise.",

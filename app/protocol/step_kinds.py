@@ -6,17 +6,16 @@ clock, and its movement and touches are recorded as such. A *form* is answered a
 
 Everything that differs between kinds is a field of `StepKindSpec`, and everything else is derived
 from the table: plans, commands, tablet screens, checks of study files, tables and figures. The
-pages have the same table in `frontend/src/console/stepKinds.generated.ts`, which is generated:
-
-    python -m app.protocol > frontend/src/console/stepKinds.generated.ts
+pages have the same table, which `python -m app.cli.page_texts` generates.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Literal
+from typing import Any, Literal
 
 from app.science.tasks import Limb
+from app.texts import LANGUAGES, Words
 
 StepKind = Literal[
     "consent",
@@ -34,15 +33,6 @@ Family = Literal["timed", "form", "by hand"]
 StepCommand = Literal["begin_phase", "enter_answers", "complete_step", "materialise"]
 """What the experimenter can do to carry out a step."""
 StepScreen = Literal["consent", "instructions", "form", "waiting"]
-Words = Mapping[str, str]
-"""Language code -> wording, in English and German."""
-
-TITLE_LANGUAGES = frozenset({"en", "de"})
-"""Languages in which every kind has its words."""
-
-
-def _words(en: str, de: str) -> Words:
-    return {"en": en, "de": de}
 
 
 @dataclass(frozen=True)
@@ -112,30 +102,31 @@ class StepKindSpec:
         """Whether a limb reaches for the boxes of a task."""
         return bool(self.phases) and None not in self.phases
 
-    def title(self, limb: str | None) -> Words:
-        """The title of a step of this kind that is done with `limb`, or with none."""
-        words = next((words for own, words in self.phases.items() if own == limb), None)
-        return self.name if words is None else words.title
+    def title(self, limb: str | None) -> Mapping[str, str]:
+        """By language, the title of a step of this kind that is done with `limb`, or with none."""
+        phase = next((words for own, words in self.phases.items() if own == limb), None)
+        title = self.name if phase is None else phase.title
+        return {language: title.in_(language) for language in LANGUAGES}
 
     def key_of_phase(self, limb: object) -> str | None:
         """What rules call a phase of this kind (hand, practice_foot); None for untimed kinds."""
         return None if self.phase_key is None else self.phase_key.format(limb=limb)
 
 
-_TO_TRY = _words(
+_TO_TRY = Words(
     "A task to try out, which is not analysed. Let the participant ask questions.",
     "Eine Aufgabe zum Ausprobieren, die nicht ausgewertet wird. Ermuntern Sie zu Fragen.",
 )
-_BEGIN_PRACTICE = _words("Begin practice", "Übung beginnen")
-_FREE_MOVEMENT = _words("Free movement", "Freies Bewegen")
+_BEGIN_PRACTICE = Words("Begin practice", "Übung beginnen")
+_FREE_MOVEMENT = Words("Free movement", "Freies Bewegen")
 
 _TABLE = (
     StepKindSpec(
         key="consent",
-        name=_words("Consent", "Einwilligung"),
+        name=Words("Consent", "Einwilligung"),
         icon="check",
         screen="consent",
-        guidance=_words(
+        guidance=Words(
             "The participant reads and agrees on the tablet. Record it here only if consent was "
             "given on paper.",
             "Die Person liest und willigt am Tablet ein. Hier nur festhalten, wenn auf Papier "
@@ -144,31 +135,29 @@ _TABLE = (
     ),
     StepKindSpec(
         key="form",
-        name=_words("Questions", "Fragen"),
+        name=Words("Questions", "Fragen"),
         icon="form",
         screen="form",
         command="enter_answers",
-        guidance=_words(
-            "The participant answers on the tablet.", "Die Person antwortet am Tablet."
-        ),
+        guidance=Words("The participant answers on the tablet.", "Die Person antwortet am Tablet."),
     ),
     StepKindSpec(
         key="instructions",
-        name=_words("Instructions", "Anleitung"),
+        name=Words("Instructions", "Anleitung"),
         icon="talk",
         screen="instructions",
-        done=_words("Instructions are clear", "Anleitung ist klar"),
-        guidance=_words(
+        done=Words("Instructions are clear", "Anleitung ist klar"),
+        guidance=Words(
             "The participant reads on the tablet. Invite questions before going on.",
             "Die Person liest am Tablet. Laden Sie zu Fragen ein, bevor es weitergeht.",
         ),
     ),
     StepKindSpec(
         key="height",
-        name=_words("Height", "Körpergröße"),
+        name=Words("Height", "Körpergröße"),
         icon="height",
         takes_s=60.0,
-        guidance=_words(
+        guidance=Words(
             "Ask for the height, then match the avatar by eye. Both values are kept.",
             "Fragen Sie nach der Größe und gleichen Sie den Avatar nach Augenmaß an. Beide Werte "
             "bleiben erhalten.",
@@ -176,11 +165,11 @@ _TABLE = (
     ),
     StepKindSpec(
         key="materialise",
-        name=_words("Entering the body", "Eintritt in den Körper"),
+        name=Words("Entering the body", "Eintritt in den Körper"),
         icon="body",
         command="materialise",
         takes_s=60.0,
-        guidance=_words(
+        guidance=Words(
             "The participant stands inside the transparent body in a T-pose and presses both "
             "grips.",
             "Die Person steht in T-Haltung im durchsichtigen Körper und drückt beide Griffe.",
@@ -195,9 +184,9 @@ _TABLE = (
         phases={
             None: PhaseWords(
                 title=_FREE_MOVEMENT,
-                in_a_sentence=_words("free movement", "freies Bewegen"),
-                begin=_words("Begin free movement", "Freies Bewegen beginnen"),
-                guidance=_words(
+                in_a_sentence=Words("free movement", "freies Bewegen"),
+                begin=Words("Begin free movement", "Freies Bewegen beginnen"),
+                guidance=Words(
                     "Let the participant look around, down at the body and into the mirror.",
                     "Lassen Sie die Person umherschauen, an sich hinab und in den Spiegel.",
                 ),
@@ -206,21 +195,21 @@ _TABLE = (
     ),
     StepKindSpec(
         key="practice",
-        name=_words("Practice", "Übung"),
+        name=Words("Practice", "Übung"),
         icon="hand",
         command="begin_phase",
         phase_key="practice_{limb}",
         needs_body=True,
         phases={
             Limb.HAND: PhaseWords(
-                title=_words("Practice with the hand", "Übung mit der Hand"),
-                in_a_sentence=_words("practice with the hand", "Übung mit der Hand"),
+                title=Words("Practice with the hand", "Übung mit der Hand"),
+                in_a_sentence=Words("practice with the hand", "Übung mit der Hand"),
                 begin=_BEGIN_PRACTICE,
                 guidance=_TO_TRY,
             ),
             Limb.FOOT: PhaseWords(
-                title=_words("Practice with the foot", "Übung mit dem Fuß"),
-                in_a_sentence=_words("practice with the foot", "Übung mit dem Fuß"),
+                title=Words("Practice with the foot", "Übung mit dem Fuß"),
+                in_a_sentence=Words("practice with the foot", "Übung mit dem Fuß"),
                 begin=_BEGIN_PRACTICE,
                 guidance=_TO_TRY,
             ),
@@ -228,17 +217,17 @@ _TABLE = (
     ),
     StepKindSpec(
         key="task",
-        name=_words("Task", "Aufgabe"),
+        name=Words("Task", "Aufgabe"),
         icon="hand",
         command="begin_phase",
         phase_key="{limb}",
         counts=True,
         phases={
             Limb.HAND: PhaseWords(
-                title=_words("Hand task", "Handaufgabe"),
-                in_a_sentence=_words("hand task", "Handaufgabe"),
-                begin=_words("Begin hand task", "Handaufgabe beginnen"),
-                guidance=_words(
+                title=Words("Hand task", "Handaufgabe"),
+                in_a_sentence=Words("hand task", "Handaufgabe"),
+                begin=Words("Begin hand task", "Handaufgabe beginnen"),
+                guidance=Words(
                     "Make sure that the participant stands on the start square and uses the "
                     "writing hand, then begin.",
                     "Achten Sie darauf, dass die Person auf dem Startfeld steht und die "
@@ -246,10 +235,10 @@ _TABLE = (
                 ),
             ),
             Limb.FOOT: PhaseWords(
-                title=_words("Foot task", "Fußaufgabe"),
-                in_a_sentence=_words("foot task", "Fußaufgabe"),
-                begin=_words("Begin foot task", "Fußaufgabe beginnen"),
-                guidance=_words(
+                title=Words("Foot task", "Fußaufgabe"),
+                in_a_sentence=Words("foot task", "Fußaufgabe"),
+                begin=Words("Begin foot task", "Fußaufgabe beginnen"),
+                guidance=Words(
                     "Make sure that the participant stands on the start square, then begin.",
                     "Achten Sie darauf, dass die Person auf dem Startfeld steht; dann beginnen "
                     "Sie.",
@@ -259,11 +248,11 @@ _TABLE = (
     ),
     StepKindSpec(
         key="questionnaire",
-        name=_words("Questionnaire", "Fragebogen"),
+        name=Words("Questionnaire", "Fragebogen"),
         icon="form",
         screen="form",
         command="enter_answers",
-        guidance=_words(
+        guidance=Words(
             "The participant answers on the tablet, or you read the items aloud and enter the "
             "answers.",
             "Die Person antwortet am Tablet, oder Sie lesen vor und geben die Antworten ein.",
@@ -271,11 +260,11 @@ _TABLE = (
     ),
     StepKindSpec(
         key="debrief",
-        name=_words("Debriefing", "Abschluss"),
+        name=Words("Debriefing", "Abschluss"),
         icon="flag",
         records_movement=False,
-        done=_words("Finish session", "Sitzung abschließen"),
-        guidance=_words(
+        done=Words("Finish session", "Sitzung abschließen"),
+        guidance=Words(
             "Help the participant out of the headset and explain what the study was about.",
             "Helfen Sie der Person aus dem Headset und erklären Sie, worum es in der Studie ging.",
         ),
@@ -305,3 +294,38 @@ PHASES: Mapping[str, PhaseWords] = MappingProxyType(
 def kinds_with_command(command: StepCommand) -> tuple[StepKind, ...]:
     """The kinds that the experimenter carries out in this way."""
     return tuple(one.key for one in _TABLE if one.command == command)
+
+
+def step_kind_texts() -> dict[str, Words]:
+    """Every text by its key in the pages: `step.` a title, `guide.` guidance, `do.` a button."""
+    texts = dict[str, Words]()
+    for kind, spec in STEP_KINDS.items():
+        texts[f"step.{kind}"] = spec.name
+        if spec.guidance is not None:
+            texts[f"guide.{kind}"] = spec.guidance
+        if spec.done is not None:
+            texts[f"do.complete.{kind}"] = spec.done
+        for limb, words in spec.phases.items():
+            place = kind if limb is None else f"{kind}.{limb}"
+            texts[f"step.{place}"] = words.title
+            texts[f"guide.{place}"] = words.guidance
+            texts[f"do.begin.{place}"] = words.begin
+    return texts | {f"validity.phase.{key}": words.in_a_sentence for key, words in PHASES.items()}
+
+
+def step_kinds_for_pages() -> dict[str, dict[str, Any]]:
+    """What the pages know of every kind besides its words, as plain values.
+
+    `limbs`: those it is done with, at the boxes; none where it needs none. `isCompletedByButton`:
+    the experimenter ends it with a plain button.
+    """
+    return {
+        kind: {
+            "family": spec.family,
+            "icon": spec.icon,
+            "limbs": [str(limb) for limb in spec.phases if limb is not None],
+            "counts": spec.counts,
+            "isCompletedByButton": spec.done is not None,
+        }
+        for kind, spec in STEP_KINDS.items()
+    }

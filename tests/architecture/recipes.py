@@ -39,7 +39,6 @@ GENERATED = frozenset(
     {
         "docs/data-dictionary.md",
         "frontend/src/console/i18n/registries.generated.ts",
-        "frontend/src/console/stepKinds.generated.ts",
         "frontend/src/shared/api/schema.d.ts",
     }
 )

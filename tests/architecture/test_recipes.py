@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from app.protocol.__main__ import PAGE_TABLE
+from app.cli.page_texts import TARGET
 from tests.architecture.recipes import Edit, Recipe, RecipeError, Tree, after, before
 
 QUESTIONNAIRE = Recipe(
@@ -72,17 +72,17 @@ PHASE = Recipe(
                 """\
     StepKindSpec(
         key="baseline",
-        name=_words("Baseline", "Grundmessung"),
+        name=Words("Baseline", "Grundmessung"),
         icon="chart",
         command="begin_phase",
         phase_key="baseline_{limb}",
         needs_body=True,
         phases={
             Limb.HAND: PhaseWords(
-                title=_words("Baseline with the hand", "Grundmessung mit der Hand"),
-                in_a_sentence=_words("baseline with the hand", "Grundmessung mit der Hand"),
-                begin=_words("Begin the baseline", "Grundmessung beginnen"),
-                guidance=_words("Nothing is delayed yet.", "Noch ist nichts verzögert."),
+                title=Words("Baseline with the hand", "Grundmessung mit der Hand"),
+                in_a_sentence=Words("baseline with the hand", "Grundmessung mit der Hand"),
+                begin=Words("Begin the baseline", "Grundmessung beginnen"),
+                guidance=Words("Nothing is delayed yet.", "Noch ist nichts verzögert."),
             ),
         },
     ),
@@ -170,7 +170,7 @@ answer = {
 
 def test_a_task_phase_edits_at_most_five_files(tmp_path: Path) -> None:
     """A study can use it, the session runs it, tables describe it, and the pages have its words."""
-    tree = PHASE.apply(tmp_path, "docs/data-dictionary.md", PAGE_TABLE)
+    tree = PHASE.apply(tmp_path, TARGET)
     assert tree.evaluate(SESSION_WITH_PHASE) == {
         "step": ["baseline.hand", "Grundmessung mit der Hand", "hand", 60.0, "baseline_hand"],
         "first command": "begin_phase",
@@ -179,11 +179,11 @@ def test_a_task_phase_edits_at_most_five_files(tmp_path: Path) -> None:
         "without a body": "The baseline comes before the participant has a body.",
         "codebook": ["free_roam, baseline, practice, task"],
     }
-    pages = tree.run_module("app.protocol")
-    assert 'baseline: { family: "timed", icon: "chart", limbs: ["hand"]' in pages
+    tree.run_module("app.cli.page_texts")
+    pages = tree.read(TARGET)
+    assert '"baseline": {"family": "timed", "icon": "chart", "limbs": ["hand"],' in pages
     assert '"do.begin.baseline.hand": "Grundmessung beginnen"' in pages
-    tree.write(PAGE_TABLE, pages)
-    assert tree.changed()[0] == {*PHASE.edited, PAGE_TABLE}
+    assert tree.changed()[0] == {*PHASE.edited, TARGET}
     assert tree.count() == {"recipe": "task phase", "edited": 4, "added": 0}
     assert PHASE.unnamed_files() == set()
 

@@ -5,15 +5,13 @@ from pathlib import Path
 from typing import get_args
 
 from app.protocol import STEP_KINDS, TIMED_KINDS, StepKind
-from app.protocol.__main__ import PAGE_TABLE, page_table
 from app.protocol.procedure import Procedure
-from app.protocol.step_kinds import TITLE_LANGUAGES
 
 REPOSITORY = Path(__file__).parents[2]
 NAMED_IN = {
     "app/protocol/procedure.py",
     "app/protocol/step_kinds.py",
-    "frontend/src/console/stepKinds.generated.ts",
+    "frontend/src/console/i18n/registries.generated.ts",
     "frontend/src/shared/api/schema.d.ts",
 }
 """Where a phase may be called by its kind: what a study file can say of it, the table, and the
@@ -25,15 +23,10 @@ def test_every_kind_has_its_row() -> None:
     assert tuple(STEP_KINDS) == get_args(StepKind)
 
 
-def test_every_kind_has_its_words_in_both_languages() -> None:
-    """No title, guidance or button is missing in English or German."""
+def test_every_kind_says_what_the_experimenter_does() -> None:
+    """A kind has guidance of its own, or its phases have."""
     for kind, spec in STEP_KINDS.items():
-        words = [spec.name, spec.guidance, spec.done]
-        for phase in spec.phases.values():
-            words += [phase.title, phase.in_a_sentence, phase.begin, phase.guidance]
-        for one in words:
-            assert one is None or (set(one) == TITLE_LANGUAGES and all(one.values())), kind
-        assert spec.phases or spec.guidance is not None, f"{kind} has no guidance"
+        assert spec.phases or spec.guidance is not None, kind
 
 
 def test_a_kind_is_a_phase_exactly_if_it_is_timed() -> None:
@@ -54,13 +47,6 @@ def test_every_step_of_a_study_file_is_of_a_kind() -> None:
     }
     assert words < set(STEP_KINDS)
     assert set(STEP_KINDS) - words == {"task", "questionnaire"}  # Of a block, without `step:`.
-
-
-def test_the_pages_have_the_same_table() -> None:
-    """frontend/src/console/stepKinds.generated.ts is what `python -m app.protocol` writes."""
-    assert (REPOSITORY / PAGE_TABLE).read_text(encoding="utf-8") == page_table(), (
-        f"generate it again: .venv/bin/python -m app.protocol > {PAGE_TABLE}"
-    )
 
 
 def test_the_documents_name_every_kind() -> None:

@@ -1,6 +1,6 @@
 import type { Limb, StepKind } from "@shared/api/types";
 import { describe, expect, it } from "vitest";
-import { STEP_KINDS, stepKindsEn } from "./stepKinds.generated";
+import { registryEn, STEP_KINDS } from "./i18n/registries.generated";
 import { isForm, isTimed, stepIcon, stepName, stepText } from "./steps";
 
 const kinds = Object.keys(STEP_KINDS) as StepKind[];
@@ -14,16 +14,16 @@ const steps = kinds.flatMap((kind) => {
 describe("a step", () => {
   it("has a name and guidance, and a button if it is timed", () => {
     for (const step of steps) {
-      expect(stepKindsEn).toHaveProperty([stepName(step)]);
-      expect(stepKindsEn).toHaveProperty([stepText("guide", step)]);
-      if (isTimed(step)) expect(stepKindsEn).toHaveProperty([stepText("do.begin", step)]);
+      expect(registryEn).toHaveProperty([stepName(step)]);
+      expect(registryEn).toHaveProperty([stepText("guide", step)]);
+      if (isTimed(step)) expect(registryEn).toHaveProperty([stepText("do.begin", step)]);
     }
   });
 
   it("has a button that completes it exactly where the table says so", () => {
     for (const kind of kinds) {
       const { isCompletedByButton } = STEP_KINDS[kind];
-      expect([kind, `do.complete.${kind}` in stepKindsEn]).toEqual([kind, isCompletedByButton]);
+      expect([kind, `do.complete.${kind}` in registryEn]).toEqual([kind, isCompletedByButton]);
     }
   });
 

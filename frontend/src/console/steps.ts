@@ -1,17 +1,31 @@
-/** What the steps of a procedure are called, and their icons; the kinds are in `stepKinds.generated.ts`. */
-import type { Limb, PhaseSummary, SessionView, Step } from "@shared/api/types";
+/** The kinds of steps: what they are called, their icons, and what is done in them. */
+import type { Limb, PhaseSummary, SessionView, Step, StepKind } from "@shared/api/types";
 import { latency } from "@shared/format";
 import type { IconName } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import { type Key, useTexts } from "./i18n";
-import { STEP_KINDS } from "./stepKinds.generated";
+import { STEP_KINDS } from "./i18n/registries.generated";
+
+/**
+ * `limbs`: those it is done with, at the boxes; none where it needs none. `counts`: its phases are
+ * the study's data. `isCompletedByButton`: the experimenter ends it with a plain button.
+ */
+interface StepKindSpec {
+  readonly family: "timed" | "form" | "by hand";
+  readonly icon: IconName;
+  readonly limbs: readonly Limb[];
+  readonly counts: boolean;
+  readonly isCompletedByButton: boolean;
+}
+
+const KINDS: Readonly<Record<StepKind, StepKindSpec>> = STEP_KINDS;
 
 type Named = Pick<Step, "kind" | "limb">;
 type OfKind = Pick<Step, "kind">;
 
 /** The limb that a step is done with, at the boxes; null if its kind needs none. */
 const limbOf = ({ kind, limb }: Named): Limb | null =>
-  limb !== null && STEP_KINDS[kind].limbs.includes(limb) ? limb : null;
+  limb !== null && KINDS[kind].limbs.includes(limb) ? limb : null;
 
 /** The key of the step's text of this group, such as `step` for its name. */
 export function stepText(group: "step" | "guide" | "do.begin", step: Named): Key {
@@ -21,16 +35,19 @@ export function stepText(group: "step" | "guide" | "do.begin", step: Named): Key
 
 export const stepName = (step: Named): Key => stepText("step", step);
 
-export const stepIcon = (step: Named): IconName => limbOf(step) ?? STEP_KINDS[step.kind].icon;
+export const stepIcon = (step: Named): IconName => limbOf(step) ?? KINDS[step.kind].icon;
 
 /** Steps that run on the phase clock, in the headset. */
-export const isTimed = ({ kind }: OfKind): boolean => STEP_KINDS[kind].family === "timed";
+export const isTimed = ({ kind }: OfKind): boolean => KINDS[kind].family === "timed";
 
 /** Steps that are answered at the tablet (or read out by the operator). */
-export const isForm = ({ kind }: OfKind): boolean => STEP_KINDS[kind].family === "form";
+export const isForm = ({ kind }: OfKind): boolean => KINDS[kind].family === "form";
 
 /** Phases that are the study's data; all others are in no figure or test. */
-export const isCounted = ({ kind }: OfKind): boolean => STEP_KINDS[kind].counts;
+export const isCounted = ({ kind }: OfKind): boolean => KINDS[kind].counts;
+
+/** Steps that the experimenter completes with a plain button; height and consent have forms. */
+export const isCompletedByButton = ({ kind }: OfKind): boolean => KINDS[kind].isCompletedByButton;
 
 /** How the phases of a session are named: block, task, and the latency where it may be known. */
 export const isOver = ({ status }: PhaseSummary): boolean =>

@@ -69,7 +69,7 @@ class Shortfall(BaseModel):
 
 def _name(phase: str) -> str:
     """What a sentence calls the phase; its key where it is of no kind that we still know."""
-    return PHASES[phase].in_a_sentence["en"] if phase in PHASES else phase
+    return PHASES[phase].in_a_sentence.en if phase in PHASES else phase
 
 
 _STORED = TypeAdapter(tuple[Shortfall, ...])

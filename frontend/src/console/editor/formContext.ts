@@ -4,7 +4,7 @@ import { createContext, useContext, useEffect, useRef, useState } from "react";
 import { type Key, useTexts } from "../i18n";
 import { fieldsEn } from "../i18n/fieldTexts";
 import { preregistrationEn } from "../i18n/preregistrationTexts";
-import { stepKindsEn } from "../stepKinds.generated";
+import { registryEn } from "../i18n/registries.generated";
 import { type Change, type JsonObject, type Path, pathText, valueAt } from "./paths";
 
 export interface FormState {
@@ -41,7 +41,7 @@ export const useValue = (path: Path) => valueAt(useForm().tree, path);
 const NAMED: Readonly<Record<string, string>> = {
   ...fieldsEn,
   ...preregistrationEn,
-  ...stepKindsEn,
+  ...registryEn,
 };
 const UNITS: Readonly<Record<string, string>> = { s: "s", ms: "ms", m: "m", cm: "cm", deg: "°" };
 

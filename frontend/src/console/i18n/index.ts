@@ -6,7 +6,6 @@ import {
   useTranslations,
 } from "@shared/i18n/i18n";
 import { helpPagesDe, helpPagesEn } from "../help/helpTexts";
-import { stepKindsDe, stepKindsEn } from "../stepKinds.generated";
 import { analysisDe, analysisEn } from "./analysisTexts";
 import { auditDe, auditEn } from "./auditTexts";
 import { capturesDe, capturesEn } from "./captureTexts";
@@ -44,7 +43,6 @@ import { walkSetDe, walkSetEn } from "./walkSetTexts";
 
 const allEn = {
   ...en,
-  ...stepKindsEn,
   ...peopleEn,
   ...joinEn,
   ...auditEn,
@@ -81,7 +79,6 @@ const allEn = {
 };
 const allDe = {
   ...de,
-  ...stepKindsDe,
   ...peopleDe,
   ...joinDe,
   ...auditDe,

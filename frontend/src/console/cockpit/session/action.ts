@@ -2,8 +2,7 @@
 import type { Command, CommandType, Device, SessionView, Step } from "@shared/api/types";
 import type { IconName } from "@shared/ui/Icon";
 import type { Key } from "../../i18n";
-import { STEP_KINDS } from "../../stepKinds.generated";
-import { isTimed, stepText } from "../../steps";
+import { isCompletedByButton, isTimed, stepText } from "../../steps";
 
 interface PrimaryAction {
   readonly command: Command;
@@ -33,7 +32,7 @@ export function primaryAction(session: SessionView): PrimaryAction | null {
   if (may("materialise")) {
     return { command: { type: "materialise" }, label: "do.materialise", icon: "body" };
   }
-  if (may("complete_step") && STEP_KINDS[step.kind].isCompletedByButton) {
+  if (may("complete_step") && isCompletedByButton(step)) {
     const command: Command = { type: "complete_step", step_index: step.index };
     return { command, label: `do.complete.${step.kind}` as Key, icon: "check" };
   }
