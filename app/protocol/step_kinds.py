@@ -106,7 +106,7 @@ class StepKindSpec:
         """By language, the title of a step of this kind that is done with `limb`, or with none."""
         phase = next((words for own, words in self.phases.items() if own == limb), None)
         title = self.name if phase is None else phase.title
-        return {language: title.in_(language) for language in LANGUAGES}
+        return {language: title.in_language(language) for language in LANGUAGES}
 
     def key_of_phase(self, limb: object) -> str | None:
         """What rules call a phase of this kind (hand, practice_foot); None for untimed kinds."""

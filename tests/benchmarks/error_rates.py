@@ -57,8 +57,8 @@ rank tests assume, and models without slopes for participants are wrong.
 Tests at 5 %, intervals of 95 %; rates are in per cent with one standard error, over all data sets
 and by number of participants. Exact tests guarantee at most 5 % if participants differ in level.
 The product's pages warn if a test rejects in less than 4 or more than 6.5 %, or an interval covers
-the true value in less than 93.5 %; such figures are marked here. *Not made*: data sets on which a model
-did not converge, in addition to those counted.
+the true value in less than 93.5 %; such figures are marked here. *Not made*: data sets on which a
+model did not converge, in addition to those counted.
 
 Not measured: McDonald's omega (a hundred of its bootstraps take minutes), analyses between groups.
 """
