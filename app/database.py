@@ -111,7 +111,7 @@ def _total_changes(connection: Connection) -> int:
     return int(getattr(connection.connection.dbapi_connection, "total_changes", 0))
 
 
-class Turns:
+class FairLock:
     """A lock whose waiters get it in the order in which they came.
 
     Python's own lock goes to whoever asks at the right moment: of a crowd that wants to write, most
@@ -197,7 +197,7 @@ class Database:
     engine: Engine
     observer: WriteObserver | None = None
     commits: CommitCount = field(default_factory=CommitCount)
-    _write_lock: Turns = field(default_factory=Turns)
+    _write_lock: FairLock = field(default_factory=FairLock)
     _queue: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "writes"))
     _waiting_room: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(1000))
     _writers: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(WRITERS))

@@ -1,8 +1,8 @@
 """The `reembody` command."""
 
-from app.collecting import start_unhurried
+from app.gc_tuning import relax_gc
 
-start_unhurried()
+relax_gc()
 
 from app.cli.commands import app as main  # noqa: E402 - what it loads is why
 

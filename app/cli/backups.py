@@ -34,7 +34,7 @@ from app.features.care.opening import (
 )
 from app.features.care.ownership import own_data
 from app.features.care.rights import (
-    ErasuresKept,
+    ErasureReplay,
     Tombstone,
     finish_erasures,
     knows_erasures,
@@ -174,7 +174,7 @@ def _restored(
             # Complete, but not started: what is done to sessions needs its parts.
             context: AppContext = create_app(settings, clock=clock).state.context
             with _undone_if_refused(context) as expected:
-                outliving = ErasuresKept(
+                outliving = ErasureReplay(
                     context, _earlier_erasures(context, backup, erasures, activity)
                 )
                 done = restore(

@@ -15,7 +15,7 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from typing import ParamSpec, Self, TypeVar
 
-from app.collecting import start_unhurried
+from app.gc_tuning import relax_gc
 from app.platform.background import Background
 
 NICENESS = 5
@@ -97,7 +97,7 @@ def _begin(prepare: Callable[[], None] | None) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "nice"):
         os.nice(NICENESS)
-    start_unhurried()
+    relax_gc()
     if prepare is not None:
         prepare()
 

@@ -8,7 +8,7 @@ import gc
 usual = gc.get_threshold()
 from app.cli import main
 unhurried = gc.get_threshold()
-from app.collecting import settle
+from app.gc_tuning import settle
 settle()
 print(unhurried[0] > usual[0], gc.get_threshold() == usual, gc.get_freeze_count() > 1000)
 """

@@ -38,7 +38,10 @@ def serve(
         bool | None, typer.Option("--without-tls", help="Reachable by others, unencrypted.")
     ] = None,
     new_database: Annotated[
-        bool, typer.Option("--new-database", help="Begin an empty one behind one in quarantine.")
+        bool,
+        typer.Option(
+            "--new-database", help="Create a new database after quarantining the old one."
+        ),
     ] = False,
     until_input_ends: Annotated[bool, typer.Option("--until-input-ends", hidden=True)] = False,
 ) -> None:

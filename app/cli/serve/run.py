@@ -18,11 +18,11 @@ from sqlalchemy.exc import DBAPIError
 from app.cli.errors import fail, reported
 from app.cli.serve.output import addresses, certificate_text
 from app.clock import Clock
-from app.collecting import settle
 from app.database_address import first_line, shown_address
 from app.errors import InvalidInput, ReembodyError
 from app.features.care.opening import prepare_database, put_away_if_damaged
 from app.features.care.ownership import Ownership, own_data
+from app.gc_tuning import freeze_startup_objects
 from app.lan import Network
 from app.lan.serving import (
     CertificateWatch,
@@ -98,7 +98,7 @@ def _serve(settings: Settings, own: Ownership, *, new_database: bool) -> None:
         lambda error: background.failed(CERTIFICATE, error), lambda: background.well(CERTIFICATE)
     )
     sys.setswitchinterval(SWITCH_INTERVAL_S)
-    settle()
+    freeze_startup_objects()
     print(addresses(watch.network.reach, _where(settings)), flush=True)
     allow_open_files()
     server = LabServer(bound.doors(app, watch, settings), watch.run)

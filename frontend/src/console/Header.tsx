@@ -8,8 +8,8 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { DownloadsButton } from "./downloads/DownloadsButton";
 import { type Key, useTexts } from "./i18n";
-import { type Act, may } from "./may";
 import { AccountMenu } from "./pages/account/AccountMenu";
+import { type Act, may } from "./permissions";
 import classes from "./Shell.module.css";
 import { HelpMenu } from "./tour/HelpMenu";
 

@@ -1,7 +1,7 @@
 /** The console's table of rights against the server's, read from its own file. */
 import { readFileSync } from "node:fs";
 import { describe, expect, it } from "vitest";
-import { RULES } from "./may";
+import { RULES } from "./permissions";
 
 const SOURCE = readFileSync(new URL("../../../app/platform/policy.py", import.meta.url), "utf-8");
 const SETS = new Map(

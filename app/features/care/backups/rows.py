@@ -149,4 +149,4 @@ def _bare(shape: TableShape) -> Table:
 
 
 def silent(_table: str, _rows: int) -> None:
-    """Tell nobody."""
+    """The progress callback that reports nothing."""

@@ -78,10 +78,10 @@ class Restored:
 class Outliving(Protocol):
     """What a restore must not undo; called inside its transaction."""
 
-    def before(self, db: Session) -> None:
+    def snapshot(self, db: Session) -> None:
         """The rows are still those that will be replaced."""
 
-    def behind(self, db: Session) -> int:
+    def reapply(self, db: Session) -> int:
         """The backup's rows are there; how many changes were made to them."""
 
 
@@ -175,7 +175,7 @@ def restore(
         if not even_though_active:
             _refuse_if_active(db)
         if erasures is not None:
-            erasures.before(db)
+            erasures.snapshot(db)
         if not is_empty(target, backup.shapes):
             to = _place_before(backup.path, keep_in, clock.utc_now(), replace=replace)
             kept.manifest = write_backup(target, to, now=clock.utc_now(), progress=progress)
@@ -183,7 +183,7 @@ def restore(
         replace_rows(target, backup, progress)
         if content is not None:
             content(db)
-        reapplied = 0 if erasures is None else erasures.behind(db)
+        reapplied = 0 if erasures is None else erasures.reapply(db)
         unpaired = _unpair_headsets(db, clock.utc_now())
     return Restored(
         path=backup.path,

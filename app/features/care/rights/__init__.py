@@ -1,7 +1,7 @@
 """What participants may ask for afterwards: a copy, a correction, and that their data go.
 
 An erasure that was promised stays made: a database from an older backup is erased again at the
-start (`finish_erasures`) and within a restore (`ErasuresKept`).
+start (`finish_erasures`) and within a restore (`ErasureReplay`).
 
 erasing       one erasure, in one transaction
 tombstones    the list of erasures beside the database, which outlives a restored backup
@@ -12,11 +12,11 @@ participants  the participants of a study
 access        a person's own copy, as a page to read and as data
 """
 
-from app.features.care.rights.service import ErasuresKept, finish_erasures, knows_erasures
+from app.features.care.rights.service import ErasureReplay, finish_erasures, knows_erasures
 from app.features.care.rights.tombstones import Tombstone, read_list, tombstone_file
 
 __all__ = [
-    "ErasuresKept",
+    "ErasureReplay",
     "Tombstone",
     "finish_erasures",
     "knows_erasures",

@@ -21,8 +21,8 @@ log = logging.getLogger(__name__)
 
 
 @dataclass
-class ErasuresKept:
-    """What a restore must not undo: called before and behind it, inside its transaction.
+class ErasureReplay:
+    """What a restore must not undo: `snapshot` before it, `reapply` after it, in one transaction.
 
     `given`: erasures of an earlier installation, which hold here, too.
     """
@@ -31,13 +31,13 @@ class ErasuresKept:
     given: Sequence[Tombstone] = ()
     _known: dict[str, Tombstone] = field(default_factory=dict)
 
-    def before(self, db: Session) -> None:
+    def snapshot(self, db: Session) -> None:
         """Remember every erasure that the table or the list beside it knows."""
         listed = tombstone_file(self.context.settings).read()
         known = (*self.given, *listed, *tombstones_of(db))
         self._known = {one.erasure_id: one for one in known}
 
-    def behind(self, db: Session) -> int:
+    def reapply(self, db: Session) -> int:
         """Make those again that the restored rows undid; how many there were."""
         return erase_again(db, self.context, list(self._known.values()))
 

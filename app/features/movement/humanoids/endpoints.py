@@ -9,7 +9,7 @@ from starlette.concurrency import run_in_threadpool
 from app.features.movement.files import BODY, BYTES, FileName, attachment, binary, sent
 from app.features.movement.humanoids.schemas import HumanoidPage, HumanoidView
 from app.features.movement.humanoids.service import humanoid_by_hash, humanoid_page, humanoid_view
-from app.features.movement.humanoids.taking_in import add_humanoid
+from app.features.movement.humanoids.uploading import add_humanoid
 from app.platform.context import AppContext
 from app.platform.dependencies import Context, Reading, SignedIn
 

@@ -20,7 +20,7 @@ KEPT = 64
 
 def load() -> None:
     """In the process: load what every question needs."""
-    import_module("app.features.movement.walking.telling")
+    import_module("app.features.movement.walking.predicting")
 
 
 @dataclass

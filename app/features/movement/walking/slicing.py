@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from app.features.movement.walking.predicting import opened
 from app.features.movement.walking.sources import Cannot, SliceQuestion, Store
-from app.features.movement.walking.telling import opened
 from app.science.walking.maps import multilinear
 from app.science.walking.models import FittedWalking, density_of
 from app.science.walking.records import WalkingError

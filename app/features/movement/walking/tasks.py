@@ -58,14 +58,14 @@ def fit_model(store: Store, order: FitOrder, folder: Path) -> dict[str, Any]:
 
 def plan_way(question: Question) -> list[tuple[float, float]]:
     """The points of a path; raises Cannot."""
-    from app.features.movement.walking.telling import way_asked
+    from app.features.movement.walking.predicting import way_asked
 
     return [(float(x), float(y)) for x, y in way_asked(question).points_m]
 
 
 def predict_walk(store: Store, content_hash: str, question: Question) -> dict[str, Any]:
     """How long people take on a path, a `PredictionView`; raises Cannot."""
-    from app.features.movement.walking.telling import predicted
+    from app.features.movement.walking.predicting import predicted
 
     return predicted(store, content_hash, question)
 

@@ -15,7 +15,7 @@ from pydantic import ValidationError
 from starlette.websockets import WebSocket, WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, Withdrawn
-from app.features.record.headset.lookout import Lookout
+from app.features.record.headset.monitor import HeadsetMonitor
 from app.features.record.headset.service import headset_state, welcome
 from app.features.record.telemetry import (
     Arrival,
@@ -53,7 +53,7 @@ from app.wire import (
 
 log = logging.getLogger(__name__)
 MAX_IN_FLIGHT = 64
-"""Two seconds of messages; more would let one who brings a backlog hold up all the others."""
+"""Two seconds of messages; more would let one reconnecting client starve the others."""
 HELLO_DEADLINE_S = 10.0
 ANSWERS_KEPT = 64
 ECHO_NS = 1_000_000
@@ -72,7 +72,7 @@ class HeadsetConnection:
     session_id: str
     token: str
     epoch: int = 0
-    lookout: Lookout = field(init=False)
+    monitor: HeadsetMonitor = field(init=False)
     _loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.get_running_loop)
     _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
     _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
@@ -100,7 +100,7 @@ class HeadsetConnection:
                 asyncio.create_task(self._read()),
                 asyncio.create_task(self._talk()),
                 asyncio.create_task(self._follow(subscription)),
-                asyncio.create_task(self.lookout.run(lambda: not self._in_flight.locked())),
+                asyncio.create_task(self.monitor.run(lambda: not self._in_flight.locked())),
             ]
             try:
                 done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
@@ -117,7 +117,7 @@ class HeadsetConnection:
         connected = self.context.hub.headset_connected(self.session_id)
         if not connected:
             self._submit(LossContent("headset_lost"))
-        self.lookout.leave(connected=connected)
+        self.monitor.leave(connected=connected)
         self.context.hub.publish(self.session_id, "session")
 
     async def _greet(self) -> None:
@@ -136,7 +136,7 @@ class HeadsetConnection:
             )
         answer, live = await asyncio.to_thread(self._welcome, hello)
         self.epoch = answer.epoch
-        self.lookout = Lookout(self.context, self.session_id, self._submit, answer, live)
+        self.monitor = HeadsetMonitor(self.context, self.session_id, self._submit, answer, live)
         await self._send(answer)
 
     def _welcome(self, hello: Hello) -> tuple[Welcome, LiveTelemetry]:
@@ -164,7 +164,7 @@ class HeadsetConnection:
         self._require_epoch(batch.header.epoch)
         await self._store(BatchContent(batch, message))
         # The live view does not wait for the commit.
-        self.lookout.batch(batch)
+        self.monitor.batch(batch)
 
     async def _take_text(self, text: str) -> None:
         received_ns = self.context.clock.monotonic_ns()
@@ -172,7 +172,7 @@ class HeadsetConnection:
         match message:
             case Report():
                 self._require_epoch(message.epoch)
-                self.lookout.report(message)
+                self.monitor.report(message)
                 await self._store(message)
             case Probe():
                 answer = ProbeAnswer(
@@ -183,14 +183,14 @@ class HeadsetConnection:
                 self._answers.append(answer)
                 await self._send(answer)
             case Probed():
-                self.lookout.probed(message)
+                self.monitor.probed(message)
                 if not can_be(message, self._answers):
                     words = f"the clock reading of {message.client_sent_s:.3f} s is not what it was"
-                    self.lookout.observe(words)
+                    self.monitor.observe(words)
                 await self._store(ProbeContent(self.epoch, message))
             case Produced():
                 self._require_epoch(message.epoch)
-                self.lookout.produced(message)
+                self.monitor.produced(message)
                 await self._store(message)
             case Hello():
                 raise InvalidInput("hello came twice", remedy="Open a new connection.")
@@ -208,7 +208,7 @@ class HeadsetConnection:
         for _ in range(min(outcome.messages, self._unanswered)):
             self._in_flight.release()
         self._unanswered = max(0, self._unanswered - outcome.messages)
-        self.lookout.delivered(outcome, waiting=self._unanswered > 0)
+        self.monitor.delivered(outcome, waiting=self._unanswered > 0)
         if outcome.positions:
             self._outbox.put_nowait(Ack(positions=tuple(outcome.positions.values())))
         for notice in outcome.notices:
@@ -232,7 +232,7 @@ class HeadsetConnection:
                 await asyncio.to_thread(self._require_pairing)
             if "session" in news:
                 state = await asyncio.to_thread(self._state)
-                self.lookout.follow(state)
+                self.monitor.follow(state)
                 await self._send(state)
 
     def _state(self) -> HeadsetState:

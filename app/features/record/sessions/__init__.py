@@ -1,6 +1,6 @@
 """Running a session: its event log, its state, its commands."""
 
-from app.features.record.sessions.capture import (
+from app.features.record.sessions.closed_sessions import (
     closed_sessions,
     erased_session,
     not_erased,

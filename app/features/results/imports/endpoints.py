@@ -10,7 +10,7 @@ from app.errors import ReembodyError
 from app.features.design.studies import study_by_key
 from app.features.people.audit import in_browser_of, record, record_copy
 from app.features.record.erasure import expect_erasure, forget_erasure, overwrite
-from app.features.results.imports.looking import check, look
+from app.features.results.imports.previewing import check, look
 from app.features.results.imports.schemas import (
     CheckRequest,
     CheckView,

@@ -86,7 +86,7 @@ class Walk:
     note: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse what is no walk."""
+        """Validate the walk."""
         _check_course(self.times_s, self.xy_m, f"The walk of {self.subject!r} ({self.source})")
         check_stature(self.stature_m)
         if self.times_s[0] != 0.0:

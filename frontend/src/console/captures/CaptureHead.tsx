@@ -9,7 +9,7 @@ import { useLocation } from "wouter";
 import { nameOf } from "../account";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import classes from "./Capture.module.css";
 import { DeleteCapture } from "./DeleteCapture";
 import { useFormatName } from "./DropZone";

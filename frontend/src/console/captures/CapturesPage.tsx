@@ -5,7 +5,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { nameOf } from "../account";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
 import { useTitle } from "../ui/page";

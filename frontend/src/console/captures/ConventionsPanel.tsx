@@ -7,7 +7,7 @@ import { Icon, type IconName } from "@shared/ui/Icon";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, type ReactNode, useMemo } from "react";
 import { type Key, useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import classes from "./Capture.module.css";
 import { ReadingForm } from "./ReadingForm";
 

@@ -9,7 +9,7 @@ import { type JSX, useEffect, useMemo, useState } from "react";
 import { nameOf } from "../account";
 import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { BODY, GROUPS, type Group } from "./bodyJoints";
 import classes from "./JointMap.module.css";

@@ -6,7 +6,7 @@ import { Icon } from "@shared/ui/Icon";
 import { type JSX, useEffect, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { isOver } from "../steps";
 import { KindBadge, StatusBadge } from "../ui/badges";
 import { Order } from "../ui/Order";

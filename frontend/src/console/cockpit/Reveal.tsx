@@ -7,7 +7,7 @@ import { useMutation, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../errors";
 import { type Key, useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { sessionQuery } from "../queries";
 import { ReasonField } from "../ui/ReasonField";
 

@@ -4,7 +4,7 @@ import type { SessionView } from "@shared/api/types";
 import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { AfterWithdrawal } from "../rights/AfterWithdrawal";
 import { Tour } from "../tour/Tour";
 import { Loaded } from "../ui/Loaded";

@@ -5,7 +5,7 @@ import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { DownloadList } from "./DownloadCard";
 import classes from "./Downloads.module.css";

@@ -8,7 +8,7 @@ import { useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { instrumentsQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";

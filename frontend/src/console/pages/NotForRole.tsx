@@ -4,7 +4,7 @@ import type { JSX, ReactNode } from "react";
 import { Link } from "wouter";
 import { useAccount } from "../account";
 import { useTexts } from "../i18n";
-import { type Act, useMay } from "../may";
+import { type Act, useMay } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { useTitle } from "../ui/page";
 

@@ -6,7 +6,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { archivedQuery, studiesQuery } from "../queries";
 import { EmptyState } from "../ui/EmptyState";
 import { KINDS } from "../ui/KindFilter";

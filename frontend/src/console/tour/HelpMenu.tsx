@@ -11,7 +11,7 @@ import { useHashLocation } from "wouter/use-hash-location";
 import { useErrorTexts } from "../errors";
 import { helpFor } from "../help/address";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { studiesQuery, studyQuery } from "../queries";
 import { Key } from "../ui/Key";
 import classes from "./HelpMenu.module.css";

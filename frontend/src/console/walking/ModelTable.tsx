@@ -7,7 +7,7 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { DeleteButton } from "./DeleteButton";
 import { modelsQuery } from "./queries";
 import classes from "./Walking.module.css";

@@ -4,7 +4,7 @@ import { Icon } from "@shared/ui/Icon";
 import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { Loaded } from "../ui/Loaded";
 import { ModelTable } from "./ModelTable";

@@ -6,7 +6,7 @@ import type { JSX } from "react";
 import { Link } from "wouter";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { EmptyState } from "../ui/EmptyState";
 import { FitProgress } from "./ModelTable";
 import { modelsQuery, walkSetsQuery } from "./queries";

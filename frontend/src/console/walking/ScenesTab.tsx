@@ -7,7 +7,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useMemo, useState } from "react";
 import { Failure } from "../errors";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { Loaded } from "../ui/Loaded";
 import { DeleteButton } from "./DeleteButton";
 import { planOf, WIDTH } from "./plan";

@@ -4,7 +4,7 @@ import { type WalkSet, walking } from "@shared/api/walking";
 import { number } from "@shared/format";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
-import { useMay } from "../may";
+import { useMay } from "../permissions";
 import { DeleteButton } from "./DeleteButton";
 import { walkSetsQuery } from "./queries";
 import classes from "./Walking.module.css";

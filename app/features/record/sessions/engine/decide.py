@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from app.features.record.sessions.engine import commands as c
 from app.features.record.sessions.engine import events as e
-from app.features.record.sessions.engine.beside import decide_beside
+from app.features.record.sessions.engine.annotations import decide_annotation
 from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.phases import decide_headset_lost, decide_report
 from app.features.record.sessions.engine.state import (
@@ -27,7 +27,7 @@ def decide(plan: Sequence[Step], state: SessionState, command: c.Command) -> lis
 
     A refusal leaves everything as it was. Ending the last step also ends the session.
     """
-    beside = decide_beside(state, command)
+    beside = decide_annotation(state, command)
     if beside is not None:
         return beside
     if isinstance(command, c.Start):

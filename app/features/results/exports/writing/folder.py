@@ -16,7 +16,7 @@ Progress = Callable[[str], None]
 
 
 def silent(path: str) -> None:
-    """Tell nobody."""
+    """The progress callback that reports nothing."""
 
 
 Beside = Callable[[Path], AbstractContextManager[Path]]

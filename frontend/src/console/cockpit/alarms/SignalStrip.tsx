@@ -10,7 +10,7 @@ import { Icon } from "@shared/ui/Icon";
 import { useMutation, useQuery } from "@tanstack/react-query";
 import type { JSX } from "react";
 import { type Key, useTexts } from "../../i18n";
-import { useMay } from "../../may";
+import { useMay } from "../../permissions";
 import { alarmsQuery } from "../../queries";
 import {
   type Alarms,

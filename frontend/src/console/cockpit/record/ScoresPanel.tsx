@@ -7,7 +7,7 @@ import { Icon } from "@shared/ui/Icon";
 import { milliseconds } from "@shared/units";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../may";
+import { useMay } from "../../permissions";
 import { AnswersDrawer } from "../../rights/AnswersDrawer";
 import { isCounted, stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";

@@ -8,7 +8,7 @@ import { useMutation, useQuery, useQueryClient } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../may";
+import { useMay } from "../../permissions";
 import { suggestionsQuery } from "../../queries";
 import { stepName } from "../../steps";
 import cockpit from "../Cockpit.module.css";

@@ -5,7 +5,7 @@ import { timeOfDay } from "@shared/format";
 import { Icon } from "@shared/ui/Icon";
 import type { JSX } from "react";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../may";
+import { useMay } from "../../permissions";
 import type { Reasoned } from "../session/action";
 import classes from "./HeldCard.module.css";
 

@@ -6,7 +6,7 @@ import { Notice } from "@shared/ui/Notice";
 import { type JSX, useState } from "react";
 import { Link } from "wouter";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../may";
+import { useMay } from "../../permissions";
 import { ImportDialog } from "../ImportDialog";
 import classes from "./ProtocolTab.module.css";
 

@@ -8,7 +8,7 @@ import { useQuery } from "@tanstack/react-query";
 import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../may";
+import { useMay } from "../../permissions";
 import { sessionsQuery } from "../../queries";
 import { TryIt } from "../../tour/TryIt";
 import { KindBadge, StatusBadge } from "../../ui/badges";

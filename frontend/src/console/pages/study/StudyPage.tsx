@@ -10,7 +10,7 @@ import { type JSX, useState } from "react";
 import { Link, useLocation } from "wouter";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { type Act, useMay } from "../../may";
+import { type Act, useMay } from "../../permissions";
 import { PreregistrationTab } from "../../preregistration/PreregistrationTab";
 import { studyQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";

@@ -10,7 +10,7 @@ import { Link, useLocation } from "wouter";
 import { DiffView } from "../../editor/DiffView";
 import { Failure } from "../../errors";
 import { useTexts } from "../../i18n";
-import { useMay } from "../../may";
+import { useMay } from "../../permissions";
 import { versionDiffQuery } from "../../queries";
 import { Loaded } from "../../ui/Loaded";
 import page from "./StudyPage.module.css";

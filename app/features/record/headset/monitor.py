@@ -20,8 +20,8 @@ NEWS_EVERY_S = 1.0
 
 
 @dataclass
-class Lookout:
-    """The lookout of one connection. `submit` hands something over to the writer."""
+class HeadsetMonitor:
+    """The monitor of one connection. `submit` hands something over to the writer."""
 
     context: AppContext
     session_id: str

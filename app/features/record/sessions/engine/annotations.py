@@ -10,7 +10,7 @@ from app.features.record.sessions.engine.commands import Refused
 from app.features.record.sessions.engine.state import SessionState, SessionStatus
 
 
-def decide_beside(state: SessionState, command: c.Command) -> list[e.Event] | None:
+def decide_annotation(state: SessionState, command: c.Command) -> list[e.Event] | None:
     """The events of a command that does not move the session on; None for every other one."""
     if isinstance(command, c.EraseData):
         return _erase(state, command)

@@ -12,13 +12,13 @@ _AS_PYTHON_HAS_IT = gc.get_threshold()
 _WHILE_STARTING = (100_000, 50, 1000)
 
 
-def start_unhurried() -> None:
+def relax_gc() -> None:
     """Look seldom from now on, and do not look when the process ends; for the main module."""
     gc.set_threshold(*_WHILE_STARTING)
     atexit.register(gc.freeze)
 
 
-def settle() -> None:
+def freeze_startup_objects() -> None:
     """What is here by now is here to stay and need not be looked at; look as usual at what comes.
 
     To look through a whole server took 0.2 s now and then, in which nothing was acknowledged.

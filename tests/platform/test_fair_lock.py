@@ -3,24 +3,24 @@
 import threading
 import time
 
-from app.database import Turns
+from app.database import FairLock
 
 
 def test_turns_go_to_whoever_waits_longest() -> None:
     """Five threads that came one after the other are served in that order."""
-    turns, served = Turns(), []
+    lock, served = FairLock(), []
 
     def serve(number: int) -> None:
-        with turns:
+        with lock:
             served.append(number)
 
-    turns.acquire()
+    lock.acquire()
     threads = [threading.Thread(target=serve, args=(number,)) for number in range(5)]
     for count, thread in enumerate(threads, start=1):
         thread.start()
-        while len(turns._waiting) < count:
+        while len(lock._waiting) < count:
             time.sleep(0.001)
-    turns.release()
+    lock.release()
     for thread in threads:
         thread.join()
     assert served == [0, 1, 2, 3, 4]
@@ -28,9 +28,9 @@ def test_turns_go_to_whoever_waits_longest() -> None:
 
 def test_whoever_gave_up_does_not_get_it() -> None:
     """A wait that ends without the lock leaves it to the others."""
-    turns = Turns()
-    turns.acquire()
-    assert not turns.acquire(timeout=0.01)
-    turns.release()
-    assert turns.acquire(timeout=0.0)
-    turns.release()
+    lock = FairLock()
+    lock.acquire()
+    assert not lock.acquire(timeout=0.01)
+    lock.release()
+    assert lock.acquire(timeout=0.0)
+    lock.release()
