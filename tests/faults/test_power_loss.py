@@ -6,7 +6,7 @@ makes it true. What the emulated disk does and does not do stands in `tests.faul
 
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from tests.faults.power import experiment
 from tests.faults.power.disk import MOODS
 from tests.faults.power.experiment import AckProof, Crash, Recording
 from tests.faults.tracing.running import why_not
+from tests.support.server import REEMBODY
 
 EMULATED = (
     "emulated: a disk that keeps what an fsync covered; of later writes any sector (512 or 4096 "
@@ -38,7 +39,8 @@ def can_trace(tmp_path_factory: pytest.TempPathFactory) -> None:
 @pytest.fixture(scope="module")
 def recording(can_trace: None, tmp_path_factory: pytest.TempPathFactory) -> Recording:
     """A few seconds of three headsets, from the first start of a server to its end."""
-    return experiment.record_streaming(tmp_path_factory.mktemp("power") / "run", 3, 4.0)
+    folder = tmp_path_factory.mktemp("power")
+    return streamed(folder, 3, lambda proof: proof.acks > 80, (4.0, 16.0, 64.0))
 
 
 def test_no_ack_leaves_before_the_flush_that_makes_it_true(
@@ -91,16 +93,32 @@ def test_the_oracle_sees_a_database_that_does_not_flush(
 ) -> None:
     """The real server with `synchronous` below FULL acknowledges what a power loss takes."""
     command = [sys.executable, "-m", "tests.faults.weakened", level]
-    for duration_s in (2.5, 10.0, 40.0):
-        # A traced server on a busy machine takes a while until it acknowledges anything.
-        folder = tmp_path / f"{duration_s:g} s"
-        recording = experiment.record_streaming(folder, 2, duration_s, command)
-        proof = experiment.prove_acks(recording)
-        if proof.early > 20:
-            break
-    assert proof.early > 20
+    recording = streamed(
+        tmp_path, 2, lambda proof: proof.early > 20, (2.5, 10.0, 40.0), command=command
+    )
+    assert experiment.prove_acks(recording).early > 20
     crashes = crash(recording, 2 * PLACES, seed=1)
     assert sum(one.verdict.lost for one in crashes) > 0
+
+
+def streamed(
+    folder: Path,
+    headsets: int,
+    is_enough: Callable[[AckProof], bool],
+    durations_s: Sequence[float],
+    *,
+    command: Sequence[str] = REEMBODY,
+) -> Recording:
+    """The first recording with enough in it, or the longest.
+
+    A traced server on a busy machine takes a while until it acknowledges anything.
+    """
+    for duration_s in durations_s:
+        place = folder / f"{duration_s:g} s"
+        recording = experiment.record_streaming(place, headsets, duration_s, command)
+        if is_enough(experiment.prove_acks(recording)):
+            break
+    return recording
 
 
 def crash(recording: Recording, count: int, seed: int) -> list[Crash]:
