@@ -55,7 +55,8 @@ def rehearse(server: LiveServer, *more: object) -> Result:
 def test_a_blinded_operator_rehearses_a_repeated_phase_and_a_withdrawal(server: LiveServer) -> None:
     """The first participant repeats a phase and withdraws in the next; the second completes.
 
-    The reports hide every latency.
+    The reports hide every latency. At this speed half of a phase takes less than a busy machine
+    needs to hear the operator: then the withdrawal comes right after it.
     """
     how = ("--participants", 2, "--redo", 1, "--withdraw-during", 2, "--json")
     result = rehearse(server, *how)
@@ -65,9 +66,12 @@ def test_a_blinded_operator_rehearses_a_repeated_phase_and_a_withdrawal(server: 
     reports = [RehearsalReport(**one) for one in told["participants"]]
     first, second = reports
     assert (first.seed, second.seed) == (1, 2)
-    assert [one["status"] for one in first.phases] == ["voided", "done", "voided"]
+    *before, interrupted = [one["status"] for one in first.phases]
+    assert before == ["voided", "done"]
+    assert interrupted in ("voided", "done")
     assert [one["status"] for one in second.phases] == ["done"] * PHASES
-    assert report_text(first).count("WITHDRAWN") == report_text(first).count("  voided") == 1
+    assert report_text(first).count("WITHDRAWN") == 1
+    assert report_text(first).count("  voided") == [interrupted].count("voided")
     assert report_text(second).count(" hidden ") == TASKS
     assert "NOT COMPLETED" not in report_text(second)
     assert summary_text(reports, 2).startswith("2 of 2 participants: 1 withdrawn, 1 completed\n")

@@ -7,10 +7,10 @@ TOLD = """
 import gc
 usual = gc.get_threshold()
 from app.cli import main
-unhurried = gc.get_threshold()
-from app.gc_tuning import settle
-settle()
-print(unhurried[0] > usual[0], gc.get_threshold() == usual, gc.get_freeze_count() > 1000)
+while_starting = gc.get_threshold()
+from app.gc_tuning import freeze_startup_objects
+freeze_startup_objects()
+print(while_starting[0] > usual[0], gc.get_threshold() == usual, gc.get_freeze_count() > 1000)
 """
 
 
