@@ -35,7 +35,7 @@ from sqlalchemy.orm import DeclarativeBase, Session
 from sqlalchemy.pool import ConnectionPoolEntry, NullPool
 
 from app.database_address import connect_arguments, database_address
-from app.errors import NotDurable
+from app.errors import DamagedValue, NotDurable
 
 BUSY_TIMEOUT_S, STILL_BUSY_TIMEOUT_S = 2.0, 0.1
 LONGEST_LOG_PAGES = 65_536
@@ -51,6 +51,7 @@ TURN_TIMEOUT_S = 20.0
 WRITERS = 20
 """Half of the threads that endpoints run on."""
 Result = TypeVar("Result")
+Row = TypeVar("Row", bound="Base")
 
 
 def prepare_connection(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
@@ -351,3 +352,15 @@ def make_engine(url: str, *, pooled: bool = True) -> Engine:
 def open_database(url: str, observer: WriteObserver | None = None) -> Database:
     """Open `url` without touching its schema."""
     return Database(make_engine(url), observer)
+
+
+def kept_row(db: Session, kind: type[Row], key: str) -> Row:
+    """The row that another row names, of a table whose rows are never deleted.
+
+    Raises DamagedValue where it is not there: foreign keys hold, so only damage brings that about.
+    A row that may be deleted meanwhile is looked for with `get` or `get_one`.
+    """
+    row = db.get(kind, key)
+    if row is None:
+        raise DamagedValue(f"{key!r} names no row of {kind.__name__}")
+    return row

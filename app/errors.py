@@ -161,7 +161,7 @@ class Busy(ReembodyError):
 
 
 class DamagedValue(ValueError):
-    """A stored value is none that this program can have written."""
+    """A stored value that this program cannot have written: the database is damaged."""
 
 
 class NotDurable(ReembodyError):

@@ -13,7 +13,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import TypeAdapter
-from sqlalchemy.exc import DatabaseError, DataError, IntegrityError, NoResultFound, OperationalError
+from sqlalchemy.exc import DatabaseError, DataError, IntegrityError, OperationalError
 from starlette.exceptions import HTTPException
 
 from app.errors import (
@@ -121,9 +121,6 @@ def _install_database_handlers(app: FastAPI) -> None:
         _log_refusal(error)
         return _went_wrong() if explain(error) is None else _not_durable(error)
 
-    # Rows name only rows that are there, which the database holds; so a name leads nowhere, or JSON
-    # that was stored is none, where either was damaged.
-    @app.exception_handler(NoResultFound)
     @app.exception_handler(json.JSONDecodeError)
     def not_as_stored(_: Request, error: Exception) -> JSONResponse:
         log.error("what is stored was damaged", exc_info=error)

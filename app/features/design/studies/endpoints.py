@@ -9,6 +9,7 @@ from fastapi import APIRouter, Query
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.database import kept_row
 from app.features.design.studies.comparing import compare_versions
 from app.features.design.studies.draft_endpoints import router as drafts
 from app.features.design.studies.lifecycle import archive, duplicate, restore
@@ -144,7 +145,7 @@ def _begun(
     details: Mapping[str, object] | None = None,
 ) -> StudyView:
     """A study that has just been made is its maker's to see."""
-    study = db.get_one(Study, version.study_id)
+    study = kept_row(db, Study, version.study_id)
     add_member(db, caller, study)
     _note(db, caller, action, study, now, details)
     return _view(db, study, caller)

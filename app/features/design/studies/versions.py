@@ -8,6 +8,7 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.database import kept_row
 from app.errors import NotFound
 from app.features.design.instruments import instrument_of
 from app.models import InstrumentVersion, StudyVersion
@@ -51,7 +52,7 @@ def used_instrument(db: Session, version_id: str, key: str) -> UsedInstrument:
 
 
 def _read_content(db: Session, version_id: str) -> VersionContent:
-    version = db.get_one(StudyVersion, version_id)
+    version = kept_row(db, StudyVersion, version_id)
     with unpacking(version.canonical_json, version.content_hash):
         protocol = parse_study_json(version.canonical_json)
     return VersionContent(protocol, dict(version.instruments))

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from sqlalchemy import select
 from sqlalchemy.orm import Session, defer
 
+from app.database import kept_row
 from app.features.design.instruments import instrument_of
 from app.features.design.studies import instrument_for, protocol_of, versions_of
 from app.features.record.alarms import AlarmView, open_alarms
@@ -46,7 +47,7 @@ def session_view(
     db: Session, context: AppContext, session: StudySession, caller: Caller
 ) -> SessionView:
     """The whole session, as `caller` may see it."""
-    version = db.get_one(StudyVersion, session.study_version_id)
+    version = kept_row(db, StudyVersion, session.study_version_id)
     protocol = protocol_of(version)
     blinded = is_blind(db, caller, protocol, session)
     state, plan, slot = state_of(session), plan_of(db, session), slot_of(db, session)
@@ -110,7 +111,7 @@ def event_views(db: Session, session: StudySession, caller: Caller) -> list[Even
 
     Who is blind gets no latencies, and no hashes: with three latencies to try, a hash tells which.
     """
-    version = db.get_one(StudyVersion, session.study_version_id)
+    version = kept_row(db, StudyVersion, session.study_version_id)
     blinded = is_blind(db, caller, protocol_of(version), session)
     views = []
     for row in events_of(db, session.id):

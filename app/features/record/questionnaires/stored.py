@@ -11,6 +11,7 @@ from datetime import datetime, timedelta
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
+from app.database import kept_row
 from app.errors import InvalidInput
 from app.features.design.instruments import instrument_of
 from app.features.record.questionnaires.hints import hints_of
@@ -89,7 +90,7 @@ def correct_answer(
     Its session must be locked. Raises InvalidInput where the form has no such item, the value is
     not a possible answer to it, or it is the one that counts already.
     """
-    instrument = instrument_of(db.get_one(InstrumentVersion, submission.instrument_version_id))
+    instrument = instrument_of(kept_row(db, InstrumentVersion, submission.instrument_version_id))
     _require_fit(instrument, item, value)
     before = answers_of(db, submission.id)
     number = float(value) if isinstance(value, bool | int | float) else None
@@ -162,7 +163,7 @@ def _given(row: Answer) -> str | float | None:
 def _stored_answers(db: Session, submission: Submission) -> StoredAnswers:
     rows = db.scalars(select(ScoreValue).where(ScoreValue.submission_id == submission.id))
     scores = {row.score: row.value for row in rows}
-    version = db.get_one(InstrumentVersion, submission.instrument_version_id)
+    version = kept_row(db, InstrumentVersion, submission.instrument_version_id)
     instrument = instrument_of(version)
     answers = answers_of(db, submission.id)
     own = select(Submission.id).where(Submission.id == submission.id)

@@ -8,6 +8,7 @@ from functools import lru_cache, reduce
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from app.database import kept_row
 from app.errors import InvalidInput, NotNow, StaleVersion
 from app.features.design.studies import (
     newest_version,
@@ -52,10 +53,10 @@ def plan_of(db: Session, session: StudySession) -> tuple[Step, ...]:
 def read_plan(db: Session, session: StudySession) -> tuple[Step, ...]:
     """The same, read anew: for rows that have just taken the place of others.
 
-    Raises sqlalchemy.exc.NoResultFound without a slot, ConfigError or PlanError for stored texts
-    that are no study or no order of its conditions.
+    Raises sqlalchemy.exc.NoResultFound without a slot, DamagedValue without a study version,
+    ConfigError or PlanError for stored texts that are no study or no order of its conditions.
     """
-    version = db.get_one(StudyVersion, session.study_version_id)
+    version = kept_row(db, StudyVersion, session.study_version_id)
     slot = slot_of(db, session)
     texts = version.content_hash, version.canonical_json
     return _compiled(*texts, tuple(slot.sequence), slot.position % 2 == 1)
