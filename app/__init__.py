@@ -1,3 +1,3 @@
-"""Reembody runs, watches and analyses VR re-embodiment studies."""
+"""Run, watch and analyse VR re-embodiment studies."""
 
 __version__ = "0.1.0"

@@ -1,4 +1,4 @@
-"""Time as an argument: the wall clock for the record, the monotonic clock for durations."""
+"""Clocks as arguments: wall-clock time for the record, monotonic time for durations."""
 
 import time
 from collections.abc import Callable
@@ -12,7 +12,10 @@ def _utc_now() -> datetime:
 
 @dataclass(frozen=True)
 class Clock:
-    """Where the time comes from. Durations never use `utc_now`, which may be set at any moment."""
+    """The source of time.
+
+    Durations never use `utc_now`, because the wall clock can be set at any moment.
+    """
 
     utc_now: Callable[[], datetime] = _utc_now
     monotonic_ns: Callable[[], int] = time.monotonic_ns

@@ -1,16 +1,18 @@
-"""The database edge: one request is one transaction, and committed means on disk.
+"""Database access: each request is one transaction, and a committed transaction is on disk.
 
-SQLite runs in WAL mode with synchronous FULL, so that a commit survives a power loss. It has one
+SQLite runs in WAL mode with synchronous FULL, so that a commit survives a power loss. It allows one
 writer: writing transactions start with BEGIN IMMEDIATE (a deferred transaction that upgrades from
-reading to writing fails at once, whatever the busy time-out) and queue on an in-process lock, which
-keeps their waiting fair and short. PostgreSQL needs neither and gets neither. Another program may
-hold the lock that writers need: whoever meets it waits `BUSY_TIMEOUT_S`; as long as it stays locked
-those behind are told almost at once, so that a queue never adds up waits.
+reading to writing fails immediately, whatever the busy timeout) and queue on an in-process lock,
+which keeps their waiting fair and short. PostgreSQL needs neither, so neither is used there.
+Another program may hold SQLite's write lock: the first writer to find it locked waits
+`BUSY_TIMEOUT_S`; while it stays locked, the writers after it fail almost immediately, so that waits
+in the queue do not add up.
 
-A request's transaction may begin and end on different threads. So the lock belongs to nobody in
-particular, and requests wait for it on threads of their own: if they waited on the threads that run
-endpoints, the one that holds the lock could find no thread to finish on. PostgreSQL's row locks are
-waited for where endpoints run, so fewer requests may write at once than there are such threads.
+A request's transaction may start and end on different threads. The lock is therefore not owned by a
+thread, and requests wait for it in a separate thread pool: if they waited on the threads that run
+endpoints, the request that holds the lock might find no thread to finish on. PostgreSQL's row locks
+are awaited on the endpoint threads, so the number of simultaneous writers is limited to fewer than
+there are such threads.
 """
 
 import asyncio
@@ -47,15 +49,15 @@ NAMING_CONVENTION = {
     "pk": "pk_%(table_name)s",
 }
 TURN_TIMEOUT_S = 20.0
-"""How long a request waits for the writers of this process before it is told to come again."""
+"""How long a request waits for other writers of this process before it is told to retry."""
 WRITERS = 20
-"""Half of the threads that endpoints run on."""
+"""Most simultaneous writers on PostgreSQL: half of the threads that endpoints run on."""
 Result = TypeVar("Result")
 Row = TypeVar("Row", bound="Base")
 
 
 def prepare_connection(dbapi_connection: DBAPIConnection, _record: ConnectionPoolEntry) -> None:
-    """Set a new connection up for durable commits."""
+    """Configure a new SQLite connection for durable commits; leave other connections unchanged."""
     if not isinstance(dbapi_connection, sqlite3.Connection):
         return
     # Transactions are opened explicitly by `SqliteBegin`.
@@ -64,9 +66,11 @@ def prepare_connection(dbapi_connection: DBAPIConnection, _record: ConnectionPoo
         "journal_mode=WAL",
         "synchronous=FULL",
         "foreign_keys=ON",
-        # What is deleted is overwritten with zeros: else erased data could be read in the file.
+        # Overwrite deleted content with zeros: otherwise erased data could still be read from the
+        # file.
         "secure_delete=ON",
-        # The server copies the log itself, beside its commits; this is only a limit to its length.
+        # The server checkpoints the log itself, outside its commits; this only limits the log's
+        # length.
         f"wal_autocheckpoint={LONGEST_LOG_PAGES}",
     )
     for pragma in pragmas:
@@ -74,13 +78,13 @@ def prepare_connection(dbapi_connection: DBAPIConnection, _record: ConnectionPoo
 
 
 class SqliteBegin:
-    """Opens the transactions of an engine, and remembers whether another program held the lock."""
+    """Open the transactions of an engine, and remember whether another program held the write lock."""
 
     def __init__(self) -> None:
         self._locked = False
 
     def __call__(self, connection: Connection) -> None:
-        """Begin; a transaction that will write takes the lock at once."""
+        """Begin a transaction; one that will write takes the write lock immediately."""
         if not connection.get_execution_options().get("reembody_writes", False):
             connection.exec_driver_sql("BEGIN")
             return
@@ -98,7 +102,7 @@ class SqliteBegin:
 
 
 def has_changes(connection: Connection) -> bool:
-    """Whether its transaction changed anything; True where nobody counts, as on PostgreSQL."""
+    """Return whether the transaction changed anything; True if unknown, as on PostgreSQL."""
     before = connection.info.get("changes_before")
     return before is None or _total_changes(connection) > before
 
@@ -113,11 +117,11 @@ def _total_changes(connection: Connection) -> int:
 
 
 class FairLock:
-    """A lock whose waiters get it in the order in which they came.
+    """A lock that serves its waiters in the order in which they arrived.
 
-    Python's own lock goes to whoever asks at the right moment: of a crowd that wants to write, most
-    are served at once and a few wait for all the others. One holder at a time; it may be given back
-    by another thread than the one that took it.
+    Python's own lock goes to any thread that asks at the right moment: of many threads that want to
+    write, most are served immediately and a few wait for all the others. One holder at a time; a
+    thread may release the lock that another thread acquired.
     """
 
     def __init__(self) -> None:
@@ -126,7 +130,10 @@ class FairLock:
         self._waiting: deque[threading.Lock] = deque()
 
     def acquire(self, timeout: float = -1) -> bool:
-        """Take it, after at most `timeout` seconds (no limit if negative); False if it did not."""
+        """Acquire the lock within `timeout` seconds; return whether it succeeded.
+
+        A negative `timeout` means no limit.
+        """
         with self._mutex:
             if not self._taken:
                 self._taken = True
@@ -138,13 +145,13 @@ class FairLock:
             return True
         with self._mutex:
             if mine not in self._waiting:
-                # Handed over while the time ran out.
+                # The lock was handed over just as the timeout expired.
                 return True
             self._waiting.remove(mine)
             return False
 
     def release(self) -> None:
-        """Hand it to the one who waits longest."""
+        """Release the lock, or hand it to the thread that has waited longest."""
         with self._mutex:
             if self._waiting:
                 self._waiting.popleft().release()
@@ -164,26 +171,27 @@ class FairLock:
 
 
 class Base(DeclarativeBase):
-    """Base of all tables; constraint names are the same on every engine."""
+    """Base class of all tables; constraint names are the same on every database engine."""
 
     metadata = MetaData(naming_convention=NAMING_CONVENTION)
 
 
 class WriteObserver(Protocol):
-    """Hears what becomes of writing transactions, from any thread."""
+    """Receives the outcome of writing transactions, from any thread."""
 
     def failed(self, error: DatabaseError) -> object:
-        """The database refused."""
+        """Handle a transaction that the database refused with `error`."""
 
     def succeeded(self) -> object:
-        """Changes are on disk."""
+        """Handle a transaction whose changes are on disk."""
 
 
 @dataclass(eq=False)
 class CommitCount:
     """How many transactions of this process have changed something.
 
-    `copied`: the number up to which SQLite's log was copied completely; one at a time copies it.
+    `copied` is the value of `number` up to which SQLite's log was completely copied into the
+    database file; `copying` is held by the one thread that copies it.
     """
 
     number: int = 0
@@ -193,7 +201,7 @@ class CommitCount:
 
 @dataclass(frozen=True)
 class Database:
-    """An engine with its two ways in: `reading()` and `writing()`."""
+    """A database engine, used through `reading()` and `writing()`."""
 
     engine: Engine
     observer: WriteObserver | None = None
@@ -205,36 +213,41 @@ class Database:
 
     @property
     def is_sqlite(self) -> bool:
-        """Whether this is the embedded database."""
+        """Whether this is the embedded SQLite database."""
         return self.engine.dialect.name == "sqlite"
 
     @contextmanager
     def reading(self) -> Iterator[Session]:
-        """A consistent snapshot, however long it is read; nothing in it is ever written."""
+        """Open a session on a consistent snapshot of the database; it must not write."""
         with Session(self.engine, expire_on_commit=False) as session:
             if not self.is_sqlite:
-                # On SQLite every transaction sees one moment; PostgreSQL must be asked for it.
+                # Every SQLite transaction reads one snapshot; PostgreSQL does so only at this
+                # isolation level.
                 session.connection(execution_options={"isolation_level": "REPEATABLE READ"})
             yield session
 
     @contextmanager
     def writing(self) -> Iterator[Session]:
-        """One transaction: committed as the block ends, rolled back if it raises. Not nestable."""
+        """Open a transaction that is committed at the end, or rolled back on an error.
+
+        It cannot be nested.
+        """
         with self.write_turn(), self._observed(), self._writer() as session:
             yield session
             self._commit(session)
 
     @contextmanager
     def write_turn(self) -> Iterator[None]:
-        """Keep every other writer of this process out, on SQLite."""
+        """On SQLite, block all other writers of this process."""
         with self._write_lock if self.is_sqlite else nullcontext():
             yield
 
     @asynccontextmanager
     async def writing_async(self) -> AsyncIterator[Session]:
-        """The same for a request: waits and commits without holding up the event loop.
+        """Open a writing transaction for a request without blocking the event loop.
 
-        Raises NotDurable when its turn does not come.
+        It is committed at the end, or rolled back if the block raises. Raises NotDurable if the
+        write lock could not be acquired in time.
         """
         async with self._turn():
             with self._observed(), self._writer() as session:
@@ -242,10 +255,11 @@ class Database:
                 await run_sync(self._commit, session)
 
     async def write(self, work: Callable[[Session], Result]) -> Result:
-        """The same on one thread, which waits, works and commits: for what comes in crowds.
+        """Run `work` in a writing transaction on one thread, which also waits and commits.
 
-        `work` gets the transaction and must not wait for anything else. On SQLite a crowd queues
-        for one thread, which goes from commit to commit. Raises NotDurable likewise.
+        For writes that arrive in large numbers: on SQLite they queue for one thread, which goes
+        from commit to commit. `work` gets the session and must not wait for anything else. Raises
+        NotDurable if its turn does not come in time.
         """
         if not self.is_sqlite:
             return await run_sync(self._in_transaction, work, limiter=self._writers)
@@ -285,7 +299,7 @@ class Database:
     def _take_turn(self, timeout_s: float = TURN_TIMEOUT_S) -> None:
         if not self._write_lock.acquire(timeout=max(0.0, timeout_s)):
             raise NotDurable(
-                "too much waits to be stored before this; nothing was promised",
+                "too many earlier requests are waiting to be stored; nothing was stored",
                 value=f"waited {TURN_TIMEOUT_S:g} s",
                 remedy="Try again in a moment.",
             )
@@ -298,7 +312,7 @@ class Database:
         session.flush()
         changes = session.in_transaction() and has_changes(session.connection())
         session.commit()
-        # A commit without changes says nothing of the disk.
+        # A commit without changes does not show whether the disk can be written.
         if changes:
             self.commits.number += 1
             if self.observer is not None:
@@ -314,17 +328,17 @@ class Database:
             raise
 
     def close(self) -> None:
-        """Return every connection."""
+        """Close the writing thread and every pooled connection."""
         self._queue.shutdown()
         self.engine.dispose()
 
 
 def make_engine(url: str, *, pooled: bool = True) -> Engine:
-    """An engine for `sqlite:///FILE` or `postgresql://...`, set up for durable commits.
+    """Create an engine for `sqlite:///FILE` or `postgresql://...`, configured for durable commits.
 
-    Not `pooled`, it opens a connection for every use. What a statement stores stays out of the
-    messages of errors, which get into logs: it may be somebody's answers. Raises InvalidInput for
-    another address.
+    If not `pooled`, it opens a connection for every use. Statement parameters are kept out of error
+    messages, which get into logs: they may be a participant's answers. Raises InvalidInput for any
+    other address.
     """
     parsed = database_address(url)
     pool: dict[str, Any] = {} if pooled else {"poolclass": NullPool}
@@ -335,8 +349,9 @@ def make_engine(url: str, *, pooled: bool = True) -> Engine:
         return create_engine(parsed, hide_parameters=True, connect_args=arguments, **pool)
     if parsed.database:
         Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
-        # Without a file there is one connection for all, and so no pool to size.
-        # The connection used last comes first: every one that is used keeps a cache of its own.
+        # An in-memory database has a single connection, hence no pool to size.
+        # Reuse the most recently used connection first: each used connection has a cache of its
+        # own.
         pool = pool or {"pool_size": 20, "max_overflow": 40, "pool_use_lifo": True}
     engine = create_engine(
         parsed,
@@ -350,15 +365,15 @@ def make_engine(url: str, *, pooled: bool = True) -> Engine:
 
 
 def open_database(url: str, observer: WriteObserver | None = None) -> Database:
-    """Open `url` without touching its schema."""
+    """Open the database at `url` without changing its schema."""
     return Database(make_engine(url), observer)
 
 
 def kept_row(db: Session, kind: type[Row], key: str) -> Row:
-    """The row that another row names, of a table whose rows are never deleted.
+    """Return the row that another row refers to, of a table whose rows are never deleted.
 
-    Raises DamagedValue where it is not there: foreign keys hold, so only damage brings that about.
-    A row that may be deleted meanwhile is looked for with `get` or `get_one`.
+    Raises DamagedValue if it does not exist: foreign keys are enforced, so only damage can cause
+    that. For a row that may have been deleted meanwhile, use `get` or `get_one` instead.
     """
     row = db.get(kind, key)
     if row is None:

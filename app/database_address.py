@@ -1,7 +1,7 @@
-"""The address of the database: read once, checked in words, and shown without its secrets.
+"""Parse and check the database's address, and show it without its secrets.
 
-Nobody else reads an address. What is wrong with one is said without any of it that could be part of
-a password, and what a PostgreSQL database must offer is looked at before anything works with it.
+No other module parses an address. Error messages leave out every part of it that could belong to a
+password. A PostgreSQL database's encoding, mode and permissions are checked before it is used.
 """
 
 import os
@@ -22,7 +22,7 @@ DRIVERS = {
     "postgres": "postgresql+psycopg",
     "postgresql+psycopg": "postgresql+psycopg",
 }
-"""How an address may begin, and what works with it."""
+"""The driver for each scheme that an address may begin with."""
 FORMS = ("postgresql://ROLE:PASSWORD@HOST:5432/DATABASE", "sqlite:////absolute/path.sqlite")
 LARGEST_PORT = 65_535
 IN_MEMORY = ":memory:"
@@ -32,22 +32,22 @@ _SQLITE_OPTIONS = frozenset(
         *("timeout", "isolation_level", "detect_types", "check_same_thread", "cached_statements"),
     }
 )
-"""Names that SQLite or its driver knows, and which may therefore be shown."""
+"""Options of SQLite and its driver: error messages may show only these names."""
 _SCHEME = re.compile(r"([A-Za-z0-9+.-]{1,30}):")
 _ESCAPED = "In a role or password write @ as %40, : as %3A, / as %2F, ? as %3F and % as %25"
 _PAGE = "See docs/postgresql.md"
 
 
 def database_address(url: str) -> URL:
-    """An address with the driver that works with it; an embedded database's path is absolute.
+    """Parse an address and add its driver; an embedded database's path becomes absolute.
 
-    Raises InvalidInput for one that cannot be one, without showing more of it than its scheme and
-    the names of SQLite's options.
+    Raises InvalidInput for an invalid address, showing no more of it than its scheme and the names
+    of SQLite's options.
     """
     if not url.strip():
         raise _unusable("is empty", f"Unset {VARIABLE} to work with the embedded database")
     if url != url.strip() or any(ord(character) < ord(" ") for character in url):
-        raise _unusable("begins or ends with a space, or holds a line break", "Remove it")
+        raise _unusable("begins or ends with a space, or contains a line break", "Remove it")
     scheme = _scheme_of(url)
     if scheme.startswith("postgres"):
         return _postgres_address(url, scheme)
@@ -55,7 +55,7 @@ def database_address(url: str) -> URL:
 
 
 def shown_address(url: str) -> str:
-    """Where the database is, for people: host, port and name, never a role or a password."""
+    """Return the address for display: host, port and name, never a role or a password."""
     address = database_address(url)
     if address.get_backend_name() == "sqlite":
         return address.database or "in memory"
@@ -65,15 +65,15 @@ def shown_address(url: str) -> str:
 
 
 def connect_arguments(address: URL) -> dict[str, Any]:
-    """What each connection to a PostgreSQL server is opened with."""
+    """Return the driver's arguments for opening a connection."""
     return {} if address.get_backend_name() == "sqlite" else {"client_encoding": "utf8"}
 
 
 def connected(url: str) -> Connection:
-    """A connection of its own to the PostgreSQL database at `url`, in no transaction.
+    """Open a separate connection to the PostgreSQL database at `url`, outside any transaction.
 
-    No pool knows it; close it together with its engine (`disconnect`). Raises InvalidInput or
-    NotDurable where there is none to be had, Conflict where the database could not hold the record.
+    It belongs to no pool; close it together with its engine (`disconnect`). Raises InvalidInput or
+    NotDurable if no connection can be made, Conflict if the database could not store the record.
     """
     address = database_address(url)
     try:
@@ -106,7 +106,7 @@ def connected(url: str) -> Connection:
 
 
 def disconnect(connection: Connection) -> None:
-    """Close what `connected` opened, also where the other end is gone."""
+    """Close a connection and its engine, even if the server has already dropped it."""
     engine = connection.engine
     try:
         connection.close()
@@ -117,7 +117,7 @@ def disconnect(connection: Connection) -> None:
 
 
 def first_line(error: DBAPIError) -> str:
-    """What a database says of an error, on one line: the lines behind it are SQL or hints."""
+    """Return the first line of a database error; the lines after it are SQL or hints."""
     lines = str(error.orig).strip().splitlines()
     return lines[0].strip().rstrip(".") if lines else type(error.orig).__name__
 
@@ -133,10 +133,10 @@ def _scheme_of(url: str) -> str:
 
 
 def _sqlite_address(url: str, scheme: str) -> URL:
-    """The address of one file, which everybody who reads it takes for the same one.
+    """Return the address of one file, whose name every reader understands in the same way.
 
-    Locks, permissions and logs depend on the file's name. So nothing is taken that lets SQLite open
-    another file than the one that is written there.
+    Locks, permissions and logs depend on the file's name. So anything is refused that makes SQLite
+    open a file other than the one named.
     """
     address = _parsed(url)
     if address.host is not None or address.port is not None:
@@ -149,21 +149,21 @@ def _sqlite_address(url: str, scheme: str) -> URL:
     file = address.database or ""
     if file.lower().startswith("file:"):
         raise _unusable(
-            "names its file as file:, which SQLite would read as an address of its own",
+            "names its file as file:, which SQLite would interpret as a URI",
             "Write the path alone",
             value="file:",
         )
     if "?" in url:
         names = ", ".join(sorted(_SQLITE_OPTIONS & set(address.query)))
         raise _unusable(
-            f"has options behind a question mark{f' ({names})' if names else ''}, which can lead "
-            "SQLite to another file than the one that is locked",
+            f"has options after a question mark{f' ({names})' if names else ''}, which can make "
+            "SQLite open a file other than the one that is locked",
             "Write the path alone, without a question mark; the path of a folder "
-            "(REEMBODY_DATA_DIR) may hold none either",
+            "(REEMBODY_DATA_DIR) may not contain one either",
             value=names or None,
         )
     if file not in ("", IN_MEMORY):
-        # As the driver does: `..` is taken off without following a link before it.
+        # As the driver does: `..` is resolved without following a link before it.
         absolute = os.path.abspath(file)  # noqa: PTH100 - `Path.resolve` follows links
         address = address.set(database=absolute)
     return address.set(drivername=DRIVERS[scheme])
@@ -173,7 +173,7 @@ def _postgres_address(url: str, scheme: str) -> URL:
     if url.count("@") > 1:
         raise _unusable("has more than one @", _ESCAPED)
     address = _parsed(url).set(drivername=DRIVERS[scheme])
-    # Neither may be shown: behind a character that was not escaped stands the rest of a password.
+    # Neither may be shown: after an unescaped character they contain the rest of a password.
     if address.host is not None and not re.fullmatch(r"[\w.:%-]+", address.host):
         raise _unusable("has a host name with a space or another character it cannot have")
     if address.port is not None and not 0 < address.port <= LARGEST_PORT:
@@ -210,7 +210,7 @@ _FACTS = text(
 
 
 def _require_usable(connection: Connection, shown: str) -> None:
-    """Raises Conflict where texts, tables or rows could not be stored."""
+    """Raise Conflict if text, tables or rows could not be stored in the database."""
     facts = connection.execute(_FACTS).one()
     if facts.encoding != "UTF8":
         raise Conflict(
@@ -224,7 +224,7 @@ def _require_usable(connection: Connection, shown: str) -> None:
     if facts.read_only == "on":
         raise Conflict(
             f"the database {shown} is read-only (a replica, or set so)",
-            remedy=f"Name the server that takes changes. {_PAGE}",
+            remedy=f"Use the address of the server that accepts changes. {_PAGE}",
         )
     if not facts.begun and not facts.creates:
         where = "has no schema" if facts.schema is None else f"may not create in {facts.schema}"

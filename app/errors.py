@@ -1,21 +1,21 @@
-"""Everything that can go wrong on purpose, on one screen.
+"""All errors that the application raises deliberately.
 
-ReembodyError                     something was refused; carries value, valid and remedy
+ReembodyError                     a request was refused; has value, valid and remedy
 ├── InvalidInput          422     the request is understood but its content cannot be used
 │   └── InvalidConfig     422     a study or instrument file has problems, each with its place
 ├── NotSignedIn           401     no valid login, token or pairing
-├── NotAllowed            403     signed in, but this is not theirs to do
-├── NotFound              404     nothing by that name (or not for this reader)
-├── Conflict              409     the request clashes with what is already recorded
-│   ├── KeptConflict      409     the same, and what was refused is kept in the record
-│   ├── StaleVersion      409     somebody else acted first; look again, then decide
-│   └── NotNow            409     the session is in a step where this cannot be done
+├── NotAllowed            403     signed in, but without the permission
+├── NotFound              404     does not exist, or must not be visible to this caller
+├── Conflict              409     the request contradicts what is already recorded
+│   ├── KeptConflict      409     the same, and the refused input is stored in the record
+│   ├── StaleVersion      409     the session has changed since the caller read it
+│   └── NotNow            409     not possible in the session's current step or status
 ├── Gone                  410     a pairing code was used or has expired
-│   └── Withdrawn         410     the participant has withdrawn: nothing more is taken of them
-├── TooLarge              413     more bytes than this interface takes
-├── TooManyAttempts       429     slow down; says for how long
-├── Busy                  503     as much of this work is under way as the server takes at once
-└── NotDurable            503     the record cannot be written now, so nothing was promised
+│   └── Withdrawn         410     the participant has withdrawn: no more of their data are stored
+├── TooLarge              413     the request has more bytes than allowed
+├── TooManyAttempts       429     too many attempts; says how long to wait
+├── Busy                  503     the server already runs as much of this work as it can
+└── NotDurable            503     the record cannot be written now, so nothing was stored
 
 Each error says what happened (`message`), the offending `value`, what is `valid`, and what to do
 next (`remedy`); `retry_after_s` is sent as the header Retry-After. Science and configuration raise
@@ -31,7 +31,7 @@ from typing import ClassVar
 
 
 class ReembodyError(Exception):
-    """Something was refused, with the reason and the way out."""
+    """Base class of refused requests, with the reason and the remedy."""
 
     code: ClassVar[str] = "error"
     status: ClassVar[int] = 500
@@ -55,7 +55,7 @@ class ReembodyError(Exception):
         self.retry_after_s = retry_after_s
 
     def as_json(self) -> dict[str, object]:
-        """The error as every client sees it."""
+        """Return the error's JSON object as sent to every client."""
         return {
             "code": self.code,
             "message": self.message,
@@ -80,81 +80,81 @@ class InvalidConfig(InvalidInput):
 
 
 class NotSignedIn(ReembodyError):
-    """No valid login, token or pairing came with the request."""
+    """The request has no valid login, token or pairing."""
 
     code = "not_signed_in"
     status = 401
 
 
 class NotAllowed(ReembodyError):
-    """The caller is known, but this is not theirs to do."""
+    """The caller is signed in but does not have the permission."""
 
     code = "not_allowed"
     status = 403
 
 
 class NotFound(ReembodyError):
-    """Nothing by that name, or nothing this reader may know of."""
+    """The object does not exist, or must not be visible to this caller."""
 
     code = "not_found"
     status = 404
 
 
 class Conflict(ReembodyError):
-    """The request clashes with what is already recorded."""
+    """The request contradicts what is already recorded."""
 
     code = "conflict"
     status = 409
 
 
 class KeptConflict(Conflict):
-    """The request clashes with the record, and the record keeps what was refused.
+    """The request contradicts the record, but what was refused is stored in the record.
 
-    The transaction that raises it is committed, so that nobody's words are lost.
+    The transaction that raises it is committed, so that no participant's answers are lost.
     """
 
 
 class StaleVersion(Conflict):
-    """Somebody else acted first: the caller decided on a state that has passed."""
+    """The session has changed since the caller read the version on which the request is based."""
 
     code = "stale"
 
 
 class NotNow(Conflict):
-    """The session is in a step or status where this cannot be done."""
+    """The request is not possible in the session's current step or status."""
 
     code = "not_now"
 
 
 class Gone(ReembodyError):
-    """A single-use thing was used already or has expired."""
+    """A single-use code or link was already used or has expired."""
 
     code = "gone"
     status = 410
 
 
 class Withdrawn(Gone):
-    """The participant has withdrawn, or their data were erased: nothing more is taken of them."""
+    """The participant has withdrawn, or their data were erased: no more of their data are stored."""
 
     code = "withdrawn"
 
 
 class TooLarge(ReembodyError):
-    """More bytes than this interface takes."""
+    """The request has more bytes than this interface accepts."""
 
     code = "too_large"
     status = 413
 
 
 class TooManyAttempts(ReembodyError):
-    """Too many attempts in a short time; the remedy says how long to wait."""
+    """Too many attempts were made in a short time; the remedy says how long to wait."""
 
     code = "too_many_attempts"
     status = 429
 
 
 class Busy(ReembodyError):
-    """As much of this work is under way as the server takes at once; nothing was queued."""
+    """The server already runs as much of this work as it can; nothing was queued."""
 
     code = "busy"
     status = 503
@@ -165,14 +165,14 @@ class DamagedValue(ValueError):
 
 
 class NotDurable(ReembodyError):
-    """The record cannot be written now, so nothing was promised."""
+    """The record cannot be written now, so nothing was stored."""
 
     code = "not_durable"
     status = 503
 
 
 def as_sentences(*parts: str) -> str:
-    """Messages one after the other, each with one full stop at its end; empty ones are left out."""
+    """Join messages, ending each with a full stop; empty messages are left out."""
     stripped = (part.strip() for part in parts)
     return " ".join(
         part if part.endswith((".", "!", "?")) else f"{part}." for part in stripped if part
@@ -180,11 +180,11 @@ def as_sentences(*parts: str) -> str:
 
 
 def missing_file(path: Path) -> str:
-    """That a file is not there, with the folder that was looked into, or is no regular file."""
+    """Describe why there is no regular file at `path`, naming the folder that was searched."""
     if path.is_dir():
         return f"{path} is a folder, where a file is needed"
     if path.exists():
-        return f"{path} is no regular file (a device, a pipe or the like)"
+        return f"{path} is not a regular file (a device, a pipe or the like)"
     if path.is_symlink():
         return f"{path} is a link that leads to no file"
     folder = path.absolute().parent
@@ -194,9 +194,9 @@ def missing_file(path: Path) -> str:
 
 
 def file_problem(error: OSError) -> str:
-    """What the operating system refuses about a file, without its numbers and brackets.
+    """Describe an operating system error about a file, without error numbers.
 
-    An error that names no file is quoted as it is.
+    An error that names no file is quoted unchanged.
     """
     if not isinstance(error.filename, str | bytes):
         return str(error)

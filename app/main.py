@@ -1,4 +1,4 @@
-"""The only wiring: settings in, a complete application out."""
+"""Assemble the application: from the settings to a complete FastAPI application."""
 
 import asyncio
 import logging
@@ -57,7 +57,7 @@ PARTS: tuple[PartMaker, ...] = (
     TryoutDesk.of,
     RefusedSignIns.of,
 )
-"""What features keep alive between requests; started in this order, stopped in reverse."""
+"""The features' long-lived parts, started in this order and stopped in reverse."""
 
 
 def create_app(
@@ -69,16 +69,17 @@ def create_app(
     ownership: Ownership | None = None,
     on_taken_over: Callable[[], object] = lambda: None,
 ) -> FastAPI:
-    """The application for `settings` (from the environment if None), reachable over `network`.
+    """Create the application for `settings` (by default those of the environment).
 
-    Start-up migrates the database, makes the first account (telling a random password to
-    `on_first_password`), stores the shipped studies and pauses phases that a crash cut off. Before
-    any of that it becomes the owner of the data, unless its caller did and hands the `ownership`
-    over; `on_taken_over` is called where another process has them later.
+    It is reachable over `network`. Start-up migrates the database, creates the first account
+    (passing a random password to `on_first_password`), stores the shipped studies and pauses phases
+    that a crash interrupted. Before that it takes ownership of the data, unless the caller already
+    did and passes the `ownership`; `on_taken_over` is called if another process takes ownership
+    later.
     """
     settings = settings or read_settings()
     clock, hub = clock or Clock(), Hub()
-    # Erasing has nothing to gain from room on this machine where the database is on another.
+    # Space reserved on this machine does not help erasures in a database on another machine.
     embedded = None if database_file(settings) is None else home_of(settings)
     storage = StorageHealth(
         clock,
@@ -116,7 +117,7 @@ def create_app(
                     part.start()
                     stopping.callback(part.stop)
             except Exception as error:
-                # For whoever serves it and wants to say why in words.
+                # For the command that serves the application, which reports the reason.
                 app.state.not_started = error
                 raise
             yield
@@ -152,9 +153,9 @@ def _prepare(context: AppContext, on_first_password: Callable[[str], None] | Non
         log.warning("others may read %s, and its mode cannot be changed", place)
     for one in remove_left(context.settings, starting=True):
         log.warning("removed %s, a half-made %s of %s", one.path, one.kind, one.since.isoformat())
-    kept = bring_up_to_date(context.settings, context.clock)
-    if kept is not None:
-        log.warning("the database was migrated; as it was before, it is in %s", kept)
+    backup = bring_up_to_date(context.settings, context.clock)
+    if backup is not None:
+        log.warning("the database was migrated; a backup from before is %s", backup)
     secret = context.settings.admin_password
     now = context.clock.utc_now()
     with context.database.writing() as db:

@@ -1,6 +1,6 @@
-"""Where the files live that are read but not imported: migrations, study configs, built pages.
+"""Locate the files that are read but not imported: migrations, study configs, built pages.
 
-A checkout keeps migrations and study configs in top-level folders, where people look for them. A
+A checkout has migrations and study configs in top-level folders, where people look for them. A
 wheel has no top level of its own, so the build puts copies under `app/_bundled/`. The built pages
 are in `app/static/` in both.
 """
@@ -11,17 +11,17 @@ _APP = Path(__file__).resolve().parent
 
 
 def migrations_dir() -> Path:
-    """The Alembic folder: `env.py` and `versions/`."""
+    """Return the Alembic folder, with `env.py` and `versions/`."""
     return _shipped("migrations")
 
 
 def study_configs_dir() -> Path:
-    """The studies and instruments that ship with the product, as YAML."""
+    """Return the folder of the shipped studies and instruments, as YAML files."""
     return _shipped("study_configs")
 
 
 def static_dir() -> Path:
-    """The built pages; absent until the frontend was built once."""
+    """Return the folder of the built pages; it does not exist until the frontend was built once."""
     return _APP / "static"
 
 

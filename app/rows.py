@@ -1,4 +1,4 @@
-"""Writing many rows of a table with few statements."""
+"""Insert many rows of a table with few statements."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -10,21 +10,22 @@ from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 LARGEST = 64
-"""Rows in a statement for SQLite; their number is cut into powers of two: few texts suffice."""
+"""Most rows per SQLite statement; counts are split into powers of two to need few statements."""
 Names = tuple[str, ...]
 
 
 def insert_rows(
     db: Session, table: Table, rows: Sequence[Mapping[str, Any]], *, moving: Names = ()
 ) -> None:
-    """Insert rows that all have the same keys; what has a default must be among them, too.
+    """Insert rows that all have the same keys; columns with a default must be given, too.
 
-    A row that is there already, by its primary key, gets the new values of the columns `moving`;
-    without them it is an error.
+    If a row with the same primary key exists, its columns `moving` get the new values; without
+    `moving` that is an error.
 
-    Drivers have a price for every row that they are handed singly; Python's SQLite driver also lets
-    go of the interpreter each time, and has to wait for it again. So SQLite gets many rows in one
-    statement, and PostgreSQL, whose driver takes long to read a long statement, gets columns.
+    Passing rows singly is expensive in every driver; Python's SQLite driver also releases the
+    interpreter lock for each row and has to wait for it again. So SQLite gets many rows in one
+    statement, and PostgreSQL, whose driver is slow to parse a long statement, gets arrays of
+    columns.
     """
     connection = db.connection()
     names = tuple(column.name for column in table.c if column.name in rows[0])
@@ -52,14 +53,14 @@ def _powers(count: int) -> Iterator[int]:
 
 @lru_cache(maxsize=256)
 def _from_rows(table: Table, names: Names, moving: Names, rows: int) -> str:
-    """For SQLite: the statement for so many rows, with a parameter for every value."""
+    """Return SQLite's statement for this many rows, with a parameter for every value."""
     row = f"({', '.join('?' * len(names))})"
     return _statement(table, names, moving, f"VALUES {', '.join([row] * rows)}")
 
 
 @lru_cache(maxsize=64)
 def _from_arrays(table: Table, names: Names, moving: Names) -> str:
-    """For PostgreSQL: one statement for any number, with a binary array for every column."""
+    """Return PostgreSQL's statement for any number of rows, with a binary array for every column."""
     dialect = postgresql.dialect()  # type: ignore[no-untyped-call]  # SQLAlchemy has no type for it
     types = (table.c[name].type.compile(dialect) for name in names)
     arrays = ", ".join(f"%b::{type_}[]" for type_ in types)
@@ -67,20 +68,20 @@ def _from_arrays(table: Table, names: Names, moving: Names) -> str:
 
 
 def _statement(table: Table, names: Names, moving: Names, source: str) -> str:
-    """Both databases say it with the same words, but for where the rows come from."""
+    """Return the insert statement, the same for both databases except for the `source` of its rows."""
     statement = sqlite.insert(table).values(dict.fromkeys(names))
     if moving:
         statement = statement.on_conflict_do_update(
             index_elements=list(table.primary_key),
             set_={name: statement.excluded[name] for name in moving},
         )
-    # Compiling all rows would take long, and the writer holds the lock meanwhile.
+    # Compiling all rows would be slow, and the writer holds the lock meanwhile.
     text = str(statement.compile(dialect=sqlite.dialect()))
     return text.replace(f"VALUES ({', '.join('?' * len(names))})", source)
 
 
 @lru_cache(maxsize=64)
 def _processors(table: Table, names: Names, dialect: Dialect) -> tuple[tuple[str, Any], ...]:
-    """What turns a column's values into the driver's; None where they are the same."""
+    """Return what converts each column's values for the driver; None where no conversion is needed."""
     impls = {name: table.c[name].type.dialect_impl(dialect) for name in names}
     return tuple((name, impl.bind_processor(dialect)) for name, impl in impls.items())

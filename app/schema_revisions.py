@@ -1,8 +1,8 @@
-"""Which schemas this program knows, which one a database has, and how it gets the newest.
+"""List the schema revisions of this program, read a database's revision, and migrate it.
 
 A revision is the name of the newest migration that was applied. A database may be older than the
-program (it is migrated), or newer: then it was used by a newer program, and an older one would not
-understand what it finds.
+program (it is migrated), or newer: then it was used by a newer program, and this one would not
+understand its content.
 """
 
 import errno
@@ -23,7 +23,7 @@ VERSION_TABLE = "alembic_version"
 
 
 def alembic_config(url: str) -> Config:
-    """Alembic's configuration for `url`, pointing at the migrations that ship with the product."""
+    """Return Alembic's configuration for `url`, with the migrations that ship with the product."""
     config = Config()
     config.set_main_option("script_location", str(migrations_dir()))
     config.attributes["url"] = url
@@ -31,37 +31,38 @@ def alembic_config(url: str) -> Config:
 
 
 def migrate(url: str) -> None:
-    """Bring the schema of `url` to the newest version, from whatever version it has."""
+    """Migrate the schema of the database at `url` to the newest revision."""
     command.upgrade(alembic_config(url), "head")
 
 
 def migrate_file(file: Path, revision: str = "head") -> None:
-    """The same for a SQLite file that nobody else has open, so that all of it is in the file.
+    """Migrate a SQLite file that no other program has open, so that the file alone is complete.
 
-    The last connection copies the log into the file and removes it; where it cannot, it says
-    nothing, and whoever then moves or reads the file alone has half of it. Raises OSError for that.
+    SQLite's last connection copies the log into the file and removes it; if it cannot, it reports
+    no error, and whoever then moves or reads the file alone has an incomplete database. Raises
+    OSError in that case.
     """
     command.upgrade(alembic_config(f"sqlite:///{file}"), revision)
     _require_whole(file)
 
 
 def make_file(file: Path, revision: str = "head") -> None:
-    """A new SQLite file with the schema of a revision and nothing in it.
+    """Create a SQLite file with the schema of a revision and no content.
 
-    The steps to it are taken once in a process. Raises OSError or sqlite3.Error where it cannot be
-    written; FileExistsError where there is one.
+    The migrations are run only once per process. Raises OSError or sqlite3.Error if the file cannot
+    be written, FileExistsError if it exists.
     """
     with file.open("xb") as new:
         new.write(_empty(newest_revision() if revision == "head" else revision))
     with closing(sqlite3.connect(file)) as connection:
-        # As whoever works with it would have it; what it is in memory has no log.
+        # The server uses WAL mode, which the in-memory database cannot have.
         connection.execute("PRAGMA journal_mode=WAL")
     _require_whole(file)
 
 
 @lru_cache(maxsize=4)
 def _empty(revision: str) -> bytes:
-    """What a SQLite file with the schema of a revision holds before anything is in it."""
+    """Return the bytes of an empty SQLite file with the schema of a revision."""
     config = alembic_config("sqlite://")
     engine = config.attributes["engine"] = make_engine("sqlite://")
     try:
@@ -82,18 +83,18 @@ def _require_whole(file: Path) -> None:
 
 @lru_cache(maxsize=1)
 def known_revisions() -> tuple[str, ...]:
-    """Every revision of this program, oldest first."""
+    """Return every revision of this program, oldest first."""
     script = ScriptDirectory.from_config(alembic_config("sqlite://"))
     return tuple(step.revision for step in script.walk_revisions())[::-1]
 
 
 def newest_revision() -> str:
-    """The revision that this program works with."""
+    """Return the revision that this program works with."""
     return known_revisions()[-1]
 
 
 def revision_of(connection: Connection) -> str | None:
-    """The revision of a database; None where no migration was ever applied."""
+    """Return the revision of a database; None if no migration was ever applied."""
     if not inspect(connection).has_table(VERSION_TABLE):
         return None
     found: str | None = connection.scalar(

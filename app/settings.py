@@ -1,7 +1,7 @@
-"""What the installation decides: where data live, which address is served.
+"""Settings of the installation, such as where data are stored and which address is served.
 
-Built once in `create_app` or a command, never at import, so that two applications in one process
-(tests, the rehearsal's own server) can differ.
+They are built in `create_app` or a command, never at import, so that two applications in one
+process (tests, the rehearsal's own server) can have different settings.
 """
 
 import os
@@ -14,17 +14,17 @@ from app.errors import InvalidInput
 
 PREFIX = "REEMBODY_"
 NEVER_EMPTY = ("data_dir", "database_url")
-"""An empty value would mean somewhere else than whoever wrote it thinks of."""
+"""Settings that may not be empty: the data would end up in an unexpected place."""
 
 
 class Settings(BaseSettings):
     """Frozen settings, read from `REEMBODY_*` variables and overridden by arguments.
 
-    `database_url` empty means the embedded SQLite in `data_dir`. `admin_password` is for scripts;
-    without it the first start makes a random one and prints it once. Below `low_disk_bytes` of free
-    space in `data_dir` the console warns. A running phase is paused after `headset_silent_s`
-    without a frame. A capture file may have `max_capture_bytes`, every other request
-    `max_body_bytes`.
+    `database_url` empty means the embedded SQLite database in `data_dir`. `admin_password` is for
+    scripts; without it the first start makes a random one and prints it once. When less than
+    `low_disk_bytes` are free in `data_dir`, the console warns. A running phase is paused after
+    `headset_silent_s` without a frame. A capture file may have up to `max_capture_bytes`, every
+    other request `max_body_bytes`.
 
     `lan` opens https on `lan_port` of every address (or of `lan_host`), with `certificate` and
     `key` or with the built-in authority, whose help page is on `help_port`. An address that others
@@ -58,21 +58,22 @@ class Settings(BaseSettings):
 
     @property
     def scratch_dir(self) -> Path:
-        """Where files are made that are fetched and go again: beside the data, and as protected."""
+        """The folder for temporary files, such as exports to download, inside the data folder."""
         return (self.data_dir / "scratch").resolve()
 
     @property
     def resolved_database_url(self) -> str:
-        """The address of the database, the embedded SQLite file unless one is set."""
+        """The address of the database: the embedded SQLite file, unless one is set."""
         if self.database_url:
             return self.database_url
         return f"sqlite:///{(self.data_dir / 'reembody.sqlite').resolve()}"
 
 
 def read_settings() -> Settings:
-    """The settings of the environment.
+    """Read the settings from the environment.
 
-    Raises InvalidInput that names each variable at fault, and no value: one may hold a password.
+    Raises InvalidInput that names each invalid variable but no value: a value may contain a
+    password.
     """
     for name in NEVER_EMPTY:
         variable = f"{PREFIX}{name.upper()}"
@@ -80,7 +81,7 @@ def read_settings() -> Settings:
         if given and not given[0].strip():
             raise InvalidInput(
                 f"{variable} is set, but empty",
-                remedy="Unset it to work with the usual place, or give it a value",
+                remedy="Unset it to use the default, or give it a value",
             )
     try:
         return Settings()

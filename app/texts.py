@@ -1,9 +1,8 @@
-"""Words that people see, kept in both languages beside the thing that they name.
+"""Texts that people see, in both languages, defined next to what they describe.
 
-A registry (`app/features/record/preflight/checks.py`, `app/adapters/captures/formats.py` and their
-like) holds objects that know their own words. Pages cannot import Python, so their tables of texts
-are generated: `python -m app.cli.page_texts` writes them, and a test fails while one is out of
-date.
+A registry (such as `app/features/record/preflight/checks.py` or `app/adapters/captures/formats.py`)
+contains objects with their own texts. Pages cannot import Python, so their tables of texts are
+generated: `python -m app.cli.page_texts` writes them, and a test fails while one is out of date.
 """
 
 import json
@@ -19,8 +18,8 @@ _PLACEHOLDER = re.compile(r"{{(\w+)}}")
 class Words:
     """One text in English and in German.
 
-    `{{name}}` stands for a value that the page fills in; both languages must have the same ones.
-    Raises ValueError where a text is empty or the placeholders differ.
+    `{{name}}` stands for a value that the page fills in; both languages must have the same
+    placeholders. Raises ValueError if a text is empty or the placeholders differ.
     """
 
     en: str
@@ -41,12 +40,12 @@ class Words:
             )
 
     def in_language(self, language: str) -> str:
-        """The text in "en" or "de"; raises KeyError for any other language."""
+        """Return the text in "en" or "de"; raise KeyError for any other language."""
         return {"en": self.en, "de": self.de}[language]
 
 
 def typescript_table(name: str, texts: Mapping[str, Words]) -> str:
-    """TypeScript: the constants `nameEn` and `nameDe`, flat tables from key to text."""
+    """Generate the TypeScript constants `nameEn` and `nameDe`, flat tables from key to text."""
     lines = []
     for language in LANGUAGES:
         constant = f"{name}{language.capitalize()}"
@@ -61,7 +60,7 @@ def typescript_table(name: str, texts: Mapping[str, Words]) -> str:
 
 
 def typescript_object(name: str, values: Mapping[str, object]) -> str:
-    """TypeScript: the constant `name`, an object of plain values whose type knows each of them."""
+    """Generate the TypeScript constant `name`, an object of plain values with literal types."""
     items = [
         f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)},"
         for key, value in values.items()
@@ -70,6 +69,6 @@ def typescript_object(name: str, values: Mapping[str, object]) -> str:
 
 
 def typescript_list(name: str, values: Iterable[str]) -> str:
-    """TypeScript: the constant `name`, a tuple of texts whose type knows each of them."""
+    """Generate the TypeScript constant `name`, a tuple of texts with literal types."""
     items = [f"  {json.dumps(value, ensure_ascii=False)}," for value in values]
     return "\n".join([f"export const {name} = [", *items, "] as const;"]) + "\n"

@@ -45,13 +45,13 @@ SECRET = "tiger-in-the-tank"
         ("sqlite:///file:/srv/lab.sqlite?uri=true", "names its file as file:"),
         ("sqlite:///file:lab.sqlite", "names its file as file:"),
         ("sqlite:///FILE::memory:?cache=shared", "names its file as file:"),
-        ("sqlite:////srv/lab.sqlite?uri=true", "behind a question mark (uri)"),
+        ("sqlite:////srv/lab.sqlite?uri=true", "after a question mark (uri)"),
         ("sqlite:////srv/lab.sqlite?mode=memory&vfs=unix-none", "question mark (mode, vfs)"),
         ("sqlite:////srv/lab.sqlite?immutable=1", "question mark (immutable)"),
-        (f"sqlite:////srv/lab.sqlite?key={SECRET}", "options behind a question mark,"),
-        (f"sqlite:////srv/lab.sqlite?{SECRET}=1", "options behind a question mark,"),
-        ("sqlite:////srv/lab?", "options behind a question mark,"),
-        ("sqlite:///:memory:?uri=1", "options behind a question mark (uri)"),
+        (f"sqlite:////srv/lab.sqlite?key={SECRET}", "options after a question mark,"),
+        (f"sqlite:////srv/lab.sqlite?{SECRET}=1", "options after a question mark,"),
+        ("sqlite:////srv/lab?", "options after a question mark,"),
+        ("sqlite:///:memory:?uri=1", "options after a question mark (uri)"),
     ],
 )
 def test_an_address_that_cannot_be_one_is_refused_without_its_secret(url: str, said: str) -> None:

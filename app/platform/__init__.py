@@ -1,1 +1,1 @@
-"""What every request needs, whatever the feature: access, context, hub, limiters, jobs."""
+"""Infrastructure shared by all features: access control, context, hub, rate limits, jobs."""

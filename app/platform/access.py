@@ -1,13 +1,13 @@
-"""Which studies, sessions and other objects a person may know of, and who is kept blind.
+"""Decide which studies, sessions and other objects a caller may see, and who is kept blind.
 
-What is not theirs does not exist for them: a foreign object is answered like one that was never
-there, so its address tells nothing.
+A caller gets the same response for an object of a foreign study as for one that never existed, so
+that its address discloses nothing.
 
 Blinding is one rule, `hidden_sessions`. An order belongs to a slot of the ledger, and a slot whose
 session was aborted or withdrawn is given to the next participant. So in a blinded study the order
-of a slot, and with it the condition of every session that held it, is known once the session that
-holds it *now* is completed, or was revealed for a reason that is on record. Operators never know
-it: known orders narrow down those that are left.
+of a slot, and with it the condition of every session that held it, is disclosed once the session
+that holds it *now* is completed, or was revealed for a reason that is on record. It is never
+disclosed to operators: known orders narrow down the remaining ones.
 """
 
 import json
@@ -38,7 +38,7 @@ _LOCKED_BY_ID = _BY_ID.with_for_update(key_share=True)
 
 @dataclass(frozen=True)
 class Caller:
-    """A person of the lab; `actor` is how the record names them."""
+    """A signed-in person of the lab."""
 
     account_id: str
     username: str
@@ -47,17 +47,17 @@ class Caller:
 
     @property
     def actor(self) -> str:
-        """The name in the event log."""
+        """The caller's name in the event log."""
         return f"account:{self.username}"
 
 
 def caller_of(account: Account) -> Caller:
-    """The person behind an account."""
+    """Return the caller for an account."""
     return Caller(account.id, account.username, account.role, account.all_studies)
 
 
 def is_theirs(caller: Caller) -> ColumnElement[bool]:
-    """The condition under which a row of `studies` is the caller's to see."""
+    """Return the SQL condition for the rows of `studies` that the caller may see."""
     if caller.all_studies:
         return true()
     own = select(StudyMember.study_id).where(StudyMember.account_id == caller.account_id)
@@ -65,14 +65,14 @@ def is_theirs(caller: Caller) -> ColumnElement[bool]:
 
 
 def add_member(db: Session, caller: Caller, study: Study) -> None:
-    """Let the caller see a study they have made."""
+    """Let the caller see a study that they have created."""
     if not caller.all_studies:
         db.add(StudyMember(account_id=caller.account_id, study_id=study.id))
         db.flush()
 
 
 def require_object(db: Session, caller: Caller, template: str, params: Mapping[str, str]) -> None:
-    """Raise NotFound where the route's object belongs to a study that is not the caller's."""
+    """Raise NotFound if the route's object belongs to a study that the caller may not see."""
     if caller.all_studies:
         return
     if template.startswith("/api/studies/{key}"):
@@ -89,7 +89,7 @@ def require_object(db: Session, caller: Caller, template: str, params: Mapping[s
 
 
 def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudySession:
-    """The session; `lock` makes writers of the same session queue. Raises NotFound."""
+    """Return the session or raise NotFound; `lock` makes writers of the same session queue."""
     session = db.scalar(_LOCKED_BY_ID if lock else _BY_ID, {"session_id": session_id})
     if session is None:
         raise NotFound("there is no such session", value=session_id)
@@ -99,7 +99,7 @@ def session_by_id(db: Session, session_id: str, *, lock: bool = False) -> StudyS
 def is_blind(
     db: Session, caller: Caller, protocol: StudyProtocol, session: StudySession | None
 ) -> bool:
-    """Whether the caller must not learn the condition of a session (or of some, if None)."""
+    """Return whether the caller must not learn the condition of a session (or of any, if None)."""
     if not protocol.blinding.operator:
         return False
     if caller.role == "operator" or session is None:
@@ -108,11 +108,11 @@ def is_blind(
 
 
 def hidden_sessions(db: Session, study: Study, caller: Caller | None = None) -> frozenset[str]:
-    """Ids of the sessions of a study whose condition must not leave the record.
+    """Return the ids of a study's sessions whose condition must not be disclosed.
 
-    `caller`: who gets it; None for whatever is made for all who read results, who are never
-    operators. The versions of a study are told apart: a session stays blinded although a newer
-    version is not.
+    `caller` is the recipient; None stands for all who read results, who are never operators. Each
+    version of a study has its own blinding: a session stays blinded although a newer version is
+    not.
     """
     blinded = _blinded_versions(db, study)
     if not blinded:
@@ -124,9 +124,9 @@ def hidden_sessions(db: Session, study: Study, caller: Caller | None = None) -> 
 
 
 def revealed_sessions(db: Session, study: Study) -> frozenset[str]:
-    """Ids of a study's blinded sessions that are not completed, and whose condition is known.
+    """Return the ids of a study's blinded, incomplete sessions whose condition is disclosed.
 
-    A copy that holds any of them says so on the record.
+    A copy of the data that contains any of them is recorded as such.
     """
     blinded = _blinded_versions(db, study)
     if not blinded:
@@ -146,7 +146,10 @@ def _blinded_versions(db: Session, study: Study) -> list[str]:
 
 
 def _not_known(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
-    """Of these sessions those whose slot is held by one that is neither completed nor revealed."""
+    """Return those of the given sessions whose order is still undisclosed.
+
+    That is: their slot is now held by a session that is neither completed nor revealed.
+    """
     open_ = (which, StudySession.status != "completed")
     asked = dict(
         db.execute(
@@ -157,7 +160,7 @@ def _not_known(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
     )
     if not asked:
         return frozenset()
-    # By a query, not by a list of ids: that could be longer than a statement may be.
+    # A subquery, because a list of ids could exceed the limit on parameters.
     slots = (
         select(SlotAttempt.slot_id)
         .join(StudySession, StudySession.id == SlotAttempt.session_id)
@@ -170,7 +173,7 @@ def _not_known(db: Session, which: ColumnElement[bool]) -> frozenset[str]:
     )
     holders: dict[str, tuple[str, str]] = {}
     for slot_id, session_id, outcome in attempts:
-        # Whoever gave the slot up holds it no longer than until somebody takes it.
+        # A session that gave up its slot counts as the holder only until another session takes it.
         if slot_id not in holders or holders[slot_id][1] not in ("open", "completed"):
             holders[slot_id] = (session_id, outcome)
     revealed = set(

@@ -1,11 +1,12 @@
-"""Whether a request comes from somebody the lab knows, before anything of its body is read.
+"""Decide, before its body is read, whether a request comes from somebody the lab knows.
 
-Whoever shows no token that opens something is a stranger: strangers share a budget per address and
-may send little (`app.api.guards`). A valid token is never counted, so a flood from the same address
-(a lab often has one for all of its devices) refuses no paired tablet, headset or login.
+A client without a valid token is a stranger: strangers share a budget per address and may send
+little (`app.api.guards`). A request with a valid token is never counted, so a flood from the same
+address (a lab often has one for all of its devices) does not block any paired tablet, headset or
+login.
 
-This lets nobody in: every route still asks for the login or pairing itself. So a token that was
-found valid may be taken for known for a minute longer, without a look into the database.
+This authorises nothing: every route still checks the login or pairing itself. So a token that was
+found valid may be treated as valid for another minute without a database query.
 """
 
 from collections import OrderedDict
@@ -30,19 +31,19 @@ BEARER_SUBPROTOCOL = "bearer."
 KNOWN_FOR_S = 60.0
 MOST_KNOWN = 4096
 LOOKS_AT_ONCE = 2
-"""A flood of invented tokens takes this many threads and leaves the others to those who are in."""
+"""Most threads that check tokens, so that a flood of invented ones leaves the others free."""
 _TOKEN_LENGTH = 43
-"""Of `secrets.token_urlsafe(32)`; nothing else is worth a look."""
+"""The length of `secrets.token_urlsafe(32)`; other tokens cannot be valid."""
 
 
 def bearer_token(request: HTTPConnection) -> str | None:
-    """The token of an `Authorization: Bearer` header, if there is one."""
+    """Return the token of an `Authorization: Bearer` header, if there is one."""
     scheme, _, token = request.headers.get("authorization", "").partition(" ")
     return token.strip() if scheme.lower() == "bearer" and token else None
 
 
 def tokens_of(connection: HTTPConnection) -> tuple[str, ...]:
-    """Every token that a request or a handshake shows, valid or not."""
+    """Return every token that a request or a handshake presents, valid or not."""
     shown: list[str | None] = [bearer_token(connection)]
     if "cookie" in connection.headers:
         shown += [read_cookie(connection, LOGIN_COOKIE), read_cookie(connection, TABLET_COOKIE)]
@@ -57,7 +58,7 @@ def tokens_of(connection: HTTPConnection) -> tuple[str, ...]:
 
 @dataclass
 class Admission:
-    """Knows the tokens that opened something within the last minute."""
+    """Checks tokens, and caches those found valid within the last minute."""
 
     database: Database
     clock: Clock
@@ -65,7 +66,7 @@ class Admission:
     _looking: CapacityLimiter = field(default_factory=lambda: CapacityLimiter(LOOKS_AT_ONCE))
 
     async def knows(self, tokens: tuple[str, ...]) -> bool:
-        """Whether one of them opens something."""
+        """Return whether one of the tokens is a valid login or pairing."""
         for token in tokens[:4]:
             if len(token) == _TOKEN_LENGTH and await self._is_valid(token):
                 return True
@@ -80,7 +81,7 @@ class Admission:
         try:
             valid = await run_sync(self._opens_something, token, key, limiter=self._looking)
         except DBAPIError:
-            # The route will say that the database cannot answer.
+            # The route itself will report that the database is unavailable.
             return True
         if valid:
             self._known[key] = now_s + KNOWN_FOR_S

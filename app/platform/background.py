@@ -1,8 +1,8 @@
-"""What runs beside the requests, and whether it does: threads, queues, workers, watches.
+"""Monitor what runs in the background: threads, queues, worker processes, watches.
 
-Each has a name. One that ends by an error is noticed, started again where that is safe, and named
-by `/api/health` until it works again, or has not failed for a while. Nothing here knows what any of
-them does.
+Each has a name. When one ends with an error, it is restarted where that is safe, and `/api/health`
+reports it until it works again or has not failed for a while. This module does not depend on what
+any of them does.
 """
 
 import asyncio
@@ -22,17 +22,17 @@ from app.clock import Clock
 log = logging.getLogger(__name__)
 RESTARTS_AFTER_S = 0.5
 REMEMBERED_NS = 600_000_000_000
-"""How long a failure is named that nothing has proved to be over: a queue may have no next task."""
+"""How long a failure without a later success is reported: a queue may have no next task."""
 Urgency = Literal["critical", "warning"]
 State = Literal["failing", "stopped"]
 
 
 class Failing(BaseModel):
-    """Something in the background that has failed, as health and the consoles name it.
+    """A background task that has failed, as reported by the health endpoint and the consoles.
 
-    `state`: whether it goes on and is tried again, or has stopped until the server is restarted.
-    `times`: how often it failed since it worked last. `error`: the kind of the newest error; what
-    it says stands in the log.
+    `state`: "failing" if it is retried, "stopped" until the server is restarted. `times`: how often
+    it has failed since it last worked. `error`: the class of the newest error; its message is in
+    the log.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -47,7 +47,7 @@ class Failing(BaseModel):
 
 @dataclass(frozen=True)
 class Incident:
-    """A time, now over, in which something in the background did not work."""
+    """A period, now over, during which a background task did not work."""
 
     name: str
     urgency: Urgency
@@ -64,7 +64,10 @@ class _Trouble:
 
 @dataclass(eq=False)
 class Background:
-    """Safe from any thread. `on_change` is called when something begins or ceases to fail."""
+    """A monitor of background tasks, safe to use from any thread.
+
+    `on_change` is called when a task starts to fail or recovers.
+    """
 
     clock: Clock
     on_change: Callable[[], None] = lambda: None
@@ -77,10 +80,10 @@ class Background:
     def thread(
         self, name: str, work: Callable[[], None], *, critical: bool = False
     ) -> threading.Thread:
-        """Have `work` done in a thread; it is begun anew whenever it ends by an error.
+        """Run `work` in a thread, restarting it whenever it ends with an error.
 
-        It ends for good when `work` returns, which is how it is stopped. `critical`: the record of
-        a running session depends on it.
+        The thread ends when `work` returns, which is how to stop it. `critical`: the record of a
+        running session depends on it.
         """
         thread = threading.Thread(target=self._keep_doing, args=(name, work), name=name)
         thread.daemon = True
@@ -96,11 +99,11 @@ class Background:
             try:
                 work()
             except Exception as error:
-                log.exception("%s ended by an error and is started again", name)
+                log.exception("%s ended with an error and is restarted", name)
                 self.failed(name, error)
                 time.sleep(RESTARTS_AFTER_S)
             except BaseException as error:
-                log.exception("%s ended for good", name)
+                log.exception("%s ended with an error and is not restarted", name)
                 self.failed(name, error, state="stopped")
                 raise
             else:
@@ -109,7 +112,7 @@ class Background:
                 return
 
     def watch_process(self) -> None:
-        """Name every other thread of this process that ends by an error, whoever began it."""
+        """Report every other thread of this process that ends with an error, whoever started it."""
         before = threading.excepthook
 
         def ended(what: threading.ExceptHookArgs) -> None:
@@ -120,11 +123,11 @@ class Background:
         threading.excepthook = ended
 
     def watch_loop(self, loop: asyncio.AbstractEventLoop) -> None:
-        """The same for tasks of an event loop that ended by an error which nobody looked at."""
+        """Report tasks of an event loop that ended with an error that no code retrieved."""
 
         def ended(loop: asyncio.AbstractEventLoop, what: dict[str, Any]) -> None:
             task, error = what.get("task") or what.get("future"), what.get("exception")
-            # Without a task it is a connection that broke: nothing of ours.
+            # An error without a task is a broken connection, not a failure of the server.
             if task is not None and isinstance(error, BaseException):
                 self.failed("event-loop", error)
             loop.default_exception_handler(what)
@@ -132,7 +135,7 @@ class Background:
         loop.set_exception_handler(ended)
 
     def watched(self, name: str, done: "Future[Any]") -> None:
-        """Take note of how a task of a queue ends; for `Future.add_done_callback`, by name."""
+        """Record the outcome of a queue's task under `name`; a callback of its future."""
         if done.cancelled():
             return
         error = done.exception()
@@ -149,7 +152,7 @@ class Background:
         *,
         state: State = "failing",
     ) -> None:
-        """Something has failed; it is named from now on."""
+        """Record that the named task has failed, and report it from now on."""
         now, now_ns = self.clock.utc_now(), self.clock.monotonic_ns()
         with self._lock:
             before = self._troubles.get(name)
@@ -166,8 +169,8 @@ class Background:
             self.on_change()
 
     def well(self, name: str) -> None:
-        """It works, or works again."""
-        # Asked for often, and by the writer of all movement: no lock where nothing ever failed.
+        """Record that the named task works, or works again."""
+        # Called often, even by the telemetry writer: skip the lock if nothing has failed.
         if name not in self._troubles:
             return
         with self._lock:
@@ -175,11 +178,11 @@ class Background:
             if trouble is None:
                 return
             self._over(trouble.shown)
-        log.warning("%s works again; it did not since %s", name, trouble.shown.since.isoformat())
+        log.warning("%s works again; it had failed since %s", name, trouble.shown.since.isoformat())
         self.on_change()
 
     def failing(self) -> tuple[Failing, ...]:
-        """What does not work now, or failed lately, the oldest first."""
+        """Return what does not work now or failed recently, oldest first."""
         with self._lock:
             self._look_at_threads()
             self._forget_old()
@@ -187,7 +190,7 @@ class Background:
         return tuple(sorted(shown, key=lambda one: (one.since, one.name)))
 
     def take_incidents(self) -> tuple[Incident, ...]:
-        """What is over, each once: for whoever puts it on record."""
+        """Return each incident that is over exactly once, for the caller to record."""
         if not self._incidents:
             return ()
         with self._lock:
@@ -195,11 +198,11 @@ class Background:
         return taken
 
     def _look_at_threads(self) -> None:
-        # One may be gone although nobody ended it, as when memory ran out in its last words.
+        # A thread may die without reporting it, as when memory runs out while it logs its error.
         for name, thread in list(self._threads.items()):
             known = self._troubles.get(name)
             if not thread.is_alive() and (known is None or known.shown.state != "stopped"):
-                self.failed(name, RuntimeError("the thread is gone"), state="stopped")
+                self.failed(name, RuntimeError("the thread has died"), state="stopped")
 
     def _forget_old(self) -> None:
         now_ns = self.clock.monotonic_ns()

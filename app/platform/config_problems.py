@@ -1,4 +1,4 @@
-"""What is wrong with a study or instrument file, and with one that was stored and then damaged."""
+"""Report problems of a study or instrument file, and of a stored one that was damaged."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,7 +11,7 @@ from app.protocol import ConfigError, sha256_of
 
 
 class ProblemView(BaseModel):
-    """One thing to correct in a file: where, what, what is valid, what to do. Lines from 1."""
+    """One problem of a file: its place, the message, what is valid, what to do. Lines count from 1."""
 
     path: str
     line: int
@@ -23,26 +23,29 @@ class ProblemView(BaseModel):
 
 
 def problem_views(error: ConfigError) -> list[ProblemView]:
-    """Every problem of the file, in its order."""
+    """Return every problem of the file, in the order of the file."""
     return [ProblemView(**problem.as_json()) for problem in error.problems]
 
 
 def invalid_config(what: str, error: ConfigError) -> InvalidConfig:
-    """The refusal of a file with every problem in its details; `what` is "study" or the like."""
+    """Make the error for an invalid file, with every problem in its details.
+
+    `what` names the kind of file, such as "study".
+    """
     problems = [view.model_dump() for view in problem_views(error)]
     count = len(problems)
     return InvalidConfig(
         f"the {what} file has {count} problem{'s' if count != 1 else ''}",
-        remedy="Mend the lines named below; nothing was stored.",
+        remedy="Correct the lines listed below; nothing was stored.",
         details=problems,
     )
 
 
 @contextmanager
 def unpacking(stored: str, content_hash: str) -> Iterator[None]:
-    """Raise NotDurable where a stored text is unpacked that is not the one that was stored.
+    """Raise NotDurable if parsing a stored text fails because the text was damaged.
 
-    Whatever unpacking it raises passes where the text still has its hash.
+    If the text still has its hash, the original error is raised.
     """
     try:
         yield

@@ -1,8 +1,8 @@
-"""What a running application is made of; built once in `create_app`, handed to every request.
+"""The parts of a running application, built once in `create_app` and passed to every request.
 
 What every request may need has a name here. A feature that keeps something alive between requests
-(a process, a queue, a thread) brings a `Part`, which the application starts and stops with itself;
-the feature asks for it by its class. So nothing here knows any feature.
+(a process, a queue, a thread) adds a `Part`, which the application starts and stops with itself,
+and which the feature looks up by its class. So this module depends on no feature.
 """
 
 from collections.abc import Callable
@@ -21,14 +21,14 @@ from app.settings import Settings
 
 
 class Part:
-    """Something that lives as long as the server does."""
+    """A component that lives as long as the server."""
 
     def start(self) -> None:
-        """Begin; the database is open and migrated."""
+        """Start the component; the database is already open and migrated."""
         return
 
     def stop(self) -> None:
-        """End, with every thread and process of its own."""
+        """Stop the component with all its threads and processes."""
         return
 
 
@@ -37,7 +37,7 @@ P = TypeVar("P", bound=Part)
 
 @dataclass(frozen=True)
 class AppContext:
-    """The parts that services need, by name, and those that features bring, by class."""
+    """The parts that services need, by name, and the features' own parts, by class."""
 
     settings: Settings
     database: Database
@@ -51,7 +51,7 @@ class AppContext:
     _parts: dict[type[Part], Part] = field(default_factory=dict)
 
     def add(self, part: Part) -> None:
-        """Keep a feature's part; there is one of each class."""
+        """Add a feature's part; there is one of each class."""
         self._parts[type(part)] = part
 
     @property
@@ -60,11 +60,11 @@ class AppContext:
         return tuple(self._parts.values())
 
     def part(self, kind: type[P]) -> P:
-        """The part of this class; raises KeyError where the application has none."""
+        """Return the part of this class; raise KeyError if the application has none."""
         part = self._parts[kind]
         assert isinstance(part, kind)  # noqa: S101 - narrows what `add` keeps under its class
         return part
 
 
 PartMaker = Callable[[AppContext], Part]
-"""Makes a feature's part of the context, which holds the parts that were made before."""
+"""Makes a feature's part from the context, which contains the parts made before it."""

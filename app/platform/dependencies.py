@@ -1,6 +1,7 @@
-"""What an endpoint asks for: the application's parts, a transaction, and who is calling.
+"""Dependencies of endpoints: the application's context, a transaction, and the caller.
 
-`Writing` commits before the response leaves, so whoever hears "stored" can rely on it.
+`Writing` commits before the response is sent, so a client that gets the response "stored" can rely
+on it.
 """
 
 from collections.abc import AsyncIterator, Callable, Iterator
@@ -24,7 +25,7 @@ Result = TypeVar("Result")
 
 
 async def get_context(request: Request) -> AppContext:
-    """The running application's parts; asynchronous, since a thread of its own would cost more."""
+    """Return the running application's context; async, because a thread would cost more."""
     context = request.app.state.context
     assert isinstance(context, AppContext)  # noqa: S101 - narrows what create_app put there
     return context
@@ -50,16 +51,16 @@ async def _writing(context: Context) -> AsyncIterator[Session]:
 
 
 async def _make_room(context: Context) -> None:
-    """Before the transaction is opened, hence first among the dependencies of its route."""
+    """Free reserved disk space; must be the route's first dependency, before the transaction opens."""
     await run_sync(context.storage.make_room)
 
 
 FREES_SPACE = Depends(_make_room)
-"""For routes that free space or stop what takes it: they go on where the disk is full."""
+"""For routes that free space or stop using it: they also work on a full disk."""
 
 
 async def write(context: AppContext, work: Callable[[Session], Result]) -> Result:
-    """What `work` gives in a transaction like that of `Writing`, all of it on one thread."""
+    """Run `work` in a transaction like that of `Writing`, all of it on one thread."""
     refusals: list[KeptConflict] = []
 
     def kept(db: Session) -> Result | None:
@@ -80,16 +81,19 @@ Writing = Annotated[Session, Depends(_writing, scope="function")]
 
 
 def get_caller(request: Request, context: Context) -> Caller:
-    """The signed-in person, by cookie or bearer token, who may call this route on this object.
+    """Return the signed-in person, if they may call this route on this object.
 
-    Raises NotSignedIn, NotAllowed where the route is not for their role, and NotFound where the
-    object is of a study that is not theirs.
+    They are identified by cookie or bearer token. Raises NotSignedIn; NotAllowed if the route is
+    not allowed for their role; NotFound if the object belongs to a study that they may not see.
     """
     return admitted(request, context, request.method)
 
 
 def admitted(request: HTTPConnection, context: AppContext, method: str) -> Caller:
-    """The same for a request or a socket; `method` as the policy names it. Raises likewise."""
+    """Return the caller of a request or a socket; `method` is the method's name in the policy.
+
+    Raises the same errors as `get_caller`.
+    """
     caller = known_caller(request, context)
     template = _template(request)
     roles = allowed(method, template)
@@ -106,7 +110,7 @@ def admitted(request: HTTPConnection, context: AppContext, method: str) -> Calle
 
 
 def known_caller(request: HTTPConnection, context: Context) -> Caller:
-    """The signed-in person, whatever the route; raises NotSignedIn."""
+    """Return the signed-in person, whatever the route; raise NotSignedIn if there is none."""
     token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE)
     if not token:
         raise NotSignedIn("nobody is signed in", remedy="Log in first.")
@@ -115,13 +119,13 @@ def known_caller(request: HTTPConnection, context: Context) -> Caller:
 
 
 def get_tablet(request: Request, context: Context) -> Device:
-    """The paired tablet; raises NotSignedIn when it is unknown or was replaced."""
+    """Return the paired tablet; raise NotSignedIn if it is unknown or was replaced."""
     with context.database.reading() as db:
         return tablet_in(db, request, context)
 
 
 def tablet_in(db: Session, request: Request, context: AppContext) -> Device:
-    """The same within a transaction that goes on."""
+    """Return the paired tablet, using a transaction that is already open."""
     _require_device_route(request, TABLET)
     token = read_cookie(request, TABLET_COOKIE) or bearer_token(request)
     tablet = _device(db, token, "tablet")
@@ -130,7 +134,7 @@ def tablet_in(db: Session, request: Request, context: AppContext) -> Device:
 
 
 def get_headset(request: Request, context: Context) -> Device:
-    """The paired headset; raises NotSignedIn when it is unknown or was replaced."""
+    """Return the paired headset; raise NotSignedIn if it is unknown or was replaced."""
     _require_device_route(request, HEADSET)
     with context.database.reading() as db:
         return _device(db, bearer_token(request), "headset")
@@ -138,12 +142,14 @@ def get_headset(request: Request, context: Context) -> Device:
 
 def _require_device_route(request: Request, who: frozenset[str]) -> None:
     if allowed(request.method, _template(request)) != who:
-        raise NotAllowed("this route is not open to devices", remedy="Use the device's own page.")
+        raise NotAllowed("devices may not call this route", remedy="Use the device's own page.")
 
 
 def _template(request: HTTPConnection) -> str:
-    """The route's path with the names of its parameters; all routes are included under one prefix,
-    which the route itself does not know, unless it is a socket's.
+    """Return the route's full path template, with the names of its parameters.
+
+    All HTTP routes are included under one prefix, which the route's own path lacks; the path of a
+    socket's route has it.
     """
     path = str(request.scope["route"].path)
     return path if path.startswith(f"{API_PREFIX}/") else f"{API_PREFIX}{path}"

@@ -1,4 +1,4 @@
-"""Where the data of a laboratory stand on disk, and who may look at them."""
+"""Locate a laboratory's data on disk, and protect them from other users of the machine."""
 
 import glob
 import os
@@ -12,21 +12,21 @@ from app.errors import Conflict
 from app.settings import Settings
 
 OTHERS = 0o077
-"""The bits of a mode that let anybody but the owner do something."""
+"""The bits of a file mode that give other users any permission."""
 BEGINNING = ".beginning-"
-"""How the folder's name begins in which a new database is made."""
+"""The prefix of the folder in which a new database is made."""
 DATABASE_SUFFIXES = ("", "-wal", "-shm", "-journal")
 _MOST_LOOKED_AT = 2000
-"""Files among which another name is looked for."""
+"""Most files to search for another hard link."""
 _OURS = ("backups", "quarantine", "scratch", "walking", "tls", "half-made", "erasures.jsonl")
-"""What is ours in a folder that may hold other things, beside the database's own files."""
+"""Our files in a folder that may contain others, apart from the database's own files."""
 _TRACES = ("backups/*.reembody", "quarantine/*", "erasures.jsonl", "erasure-unfinished")
 _TRACES_IN_DATA_DIR = ("*.reembody", "walking/*", "scratch/exports/*", "*/codebook.csv", "*.yaml")
-"""Backups, fits of walking models, exports, tuned avatars."""
+"""Backups, fitted walking models, exports, tuned avatars."""
 
 
 def database_file(settings: Settings) -> Path | None:
-    """The embedded database's file; None for PostgreSQL, and for one in memory."""
+    """Return the embedded database's file; None for PostgreSQL and for a database in memory."""
     url = database_address(settings.resolved_database_url)
     if url.get_backend_name() != "sqlite" or url.database in (None, "", IN_MEMORY):
         return None
@@ -34,21 +34,21 @@ def database_file(settings: Settings) -> Path | None:
 
 
 def home_of(settings: Settings) -> Path:
-    """The folder of what belongs to the database: that of its file, else the data folder."""
+    """Return the folder of the database file and its companions, or the data folder without a file."""
     file = database_file(settings)
     return (settings.data_dir if file is None else file.parent).absolute()
 
 
 def backups_of(settings: Settings) -> Path:
-    """The folder for backups that are made without being asked for."""
+    """Return the folder for automatic backups."""
     return home_of(settings) / "backups"
 
 
 def is_there(file: Path) -> bool:
-    """Whether there is a database file, or a link that should lead to one.
+    """Return whether there is a database file, or a link that should lead to one.
 
-    A link into a disk that is not there is no place to begin a new database in. Raises OSError
-    where nobody can tell, as in a folder that may not be looked into.
+    If a link points to a disk that is not mounted, no new database may be created. Raises OSError
+    if it cannot be determined, as in a folder that may not be read.
     """
     try:
         os.lstat(file)
@@ -58,12 +58,11 @@ def is_there(file: Path) -> bool:
 
 
 def require_one_name(settings: Settings) -> None:
-    """Raise Conflict where the embedded database, its log or its index has a second hard link.
+    """Raise Conflict if the embedded database, its log or its index has a second hard link.
 
-    SQLite keeps the log beside the name by which it opened the file. By another name it finds
-    another log or none, and no lock on a folder keeps the two apart. Links that lead to a name
-    (symbolic ones) do no harm: they are followed first. A file system that does not count the names
-    says 0 or 1.
+    SQLite keeps the log next to the name by which it opened the file. Under another name it finds
+    another log or none, and no lock on a folder keeps the two apart. Symbolic links do no harm:
+    they are followed first. A file system that does not count hard links reports 0 or 1.
     """
     file = database_file(settings)
     if file is None:
@@ -98,7 +97,7 @@ def _more_than_one_name(file: Path, found: os.stat_result) -> Conflict:
 
 
 def _another_name(file: Path, found: os.stat_result) -> Path | None:
-    """Another name of a file in its folder, or its own in a folder beside that: where most are."""
+    """Find another hard link to a file in its folder, or of the same name in a sibling folder."""
     near = chain(file.parent.glob("*"), file.parent.parent.glob(f"*/{glob.escape(file.name)}"))
     for one in islice(near, _MOST_LOOKED_AT):
         try:
@@ -111,7 +110,7 @@ def _another_name(file: Path, found: os.stat_result) -> Path | None:
 
 
 def traces_of_a_database(settings: Settings) -> list[str]:
-    """What in the folder of the data was left by a database, in words; nothing for a new folder."""
+    """List what a previous database has left in the data folder; an empty list for a new folder."""
     home, found = home_of(settings), list[str]()
     patterns = [*_TRACES]
     file = database_file(settings)
@@ -132,11 +131,11 @@ def traces_of_a_database(settings: Settings) -> list[str]:
 
 
 def protect(settings: Settings) -> list[Path]:
-    """Take from others what they may do with the data; what it could not be taken of.
+    """Remove other users' access to the data; return the paths for which that failed.
 
-    Folders become 0700 and files 0600, where they are more than that and belong to whoever runs
-    this. The data folder itself is closed, too, unless it is everybody's (as /tmp is) or somebody's
-    home. Links are not followed.
+    Folders become 0700 and files 0600, if they have more permissions than that and belong to the
+    user who runs this. The data folder itself is closed, too, unless everybody uses it (such as
+    /tmp) or it is somebody's home. Links are not followed.
     """
     failed: list[Path] = []
     if os.name != "posix":
@@ -148,7 +147,7 @@ def protect(settings: Settings) -> list[Path]:
             if stat.S_ISLNK(found.st_mode) or not found.st_mode & OTHERS:
                 continue
             path.chmod(0o700 if stat.S_ISDIR(found.st_mode) else 0o600)
-            # A file system without such modes takes the call and changes nothing.
+            # A file system without permission bits accepts the call and changes nothing.
             if os.lstat(path).st_mode & OTHERS:
                 failed.append(path)
         except FileNotFoundError:

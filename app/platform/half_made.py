@@ -1,10 +1,11 @@
-"""Files that are being made outside of the database, and what is left of them after a crash.
+"""Track files that are being made outside the database, and clean up after a crash.
 
-An export or a backup is written beside its place, anywhere on the machine, and moved there once it
-is whole. Whoever makes one keeps a note of it in the data folder, locked as long as the process
-lives. So what a crash left is known: it is listed, removed at the next start of the server and
-with every erasure, which must not leave half an export of an erased person behind. What is made
-within the data folder (uploads, a new database, a backup that is migrated) is known by its place.
+An export or a backup is written next to its destination, anywhere on the machine, and moved there
+once it is complete. Meanwhile the process keeps a note of it in the data folder, which it locks as
+long as it lives. So the leftovers of a crash are known: they are listed, and removed at the next
+start of the server and with every erasure, which must not leave an incomplete export of an erased
+person. What is made within the data folder (uploads, a new database, a backup that is migrated) is
+recognised by its location.
 """
 
 import json
@@ -23,7 +24,7 @@ from app.settings import Settings
 
 Kind = Literal["backup", "export", "upload", "restore", "database", "check"]
 PARTIAL = ".partial"
-"""How the names of folders end in which something is made beside its place."""
+"""The suffix of folders in which something is made next to its destination."""
 UPLOADS = "uploads"
 _BY_PLACE: tuple[tuple[Kind, str], ...] = (
     ("upload", f"scratch/{UPLOADS}/*"),
@@ -37,9 +38,10 @@ _BY_PLACE: tuple[tuple[Kind, str], ...] = (
 
 @dataclass(frozen=True)
 class HalfMade:
-    """Something that is not whole: what it is, where it lies, since when.
+    """An incomplete file or folder: its kind, its path, and since when it exists.
 
-    `to`: where it would have been. `study_key`: of an export. `going_on`: its process lives.
+    `to`: its intended destination. `study_key`: the study of an export. `going_on`: whether the
+    process that makes it still runs.
     """
 
     kind: Kind
@@ -52,7 +54,7 @@ class HalfMade:
 
 
 def uploads_of(settings: Settings) -> Path:
-    """The folder for files on their way into the database; it is made if need be."""
+    """Return the folder for files on their way into the database, creating it if necessary."""
     folder = settings.scratch_dir / UPLOADS
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     return folder
@@ -60,20 +62,20 @@ def uploads_of(settings: Settings) -> Path:
 
 @dataclass(frozen=True)
 class Notes:
-    """The notes of an installation on what is made outside of its folder."""
+    """The notes of an installation on what is being made outside its folder."""
 
     folder: Path
 
     @classmethod
     def of(cls, settings: Settings) -> "Notes":
-        """Those beside the database."""
+        """Return the notes kept next to the database."""
         return cls(home_of(settings) / "half-made")
 
     @contextmanager
     def on(
         self, kind: Kind, path: Path, *, to: Path, now: datetime, study_key: str | None = None
     ) -> Iterator[None]:
-        """Keep a note while `path` is there; raises OSError where none can be kept."""
+        """Keep a note while `path` exists; raise OSError if none can be written."""
         self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         note = self.folder / f"{path.name}.json"
         words = {
@@ -91,13 +93,13 @@ class Notes:
             try:
                 yield
             finally:
-                # A note that cannot be removed is no reason to fail: the next start removes it.
+                # Do not fail if the note cannot be removed: the next start removes it.
                 if not os.path.lexists(path):
                     with suppress(OSError):
                         note.unlink()
 
     def all(self) -> list[HalfMade]:
-        """What is noted, oldest first; a note that was not finished says nothing yet."""
+        """Return what is noted, oldest first, without notes that are themselves incomplete."""
         found = [one for note in self.folder.glob("*.json") if (one := _read(note)) is not None]
         return sorted(found, key=lambda one: (one.since, one.path))
 
@@ -106,9 +108,10 @@ class Notes:
 def made_beside(
     kind: Kind, to: Path, *, now: datetime, notes: Notes | None, study_key: str | None = None
 ) -> Iterator[Path]:
-    """A folder beside `to`, that only its owner can look into and that is gone afterwards.
+    """Make a private temporary folder next to `to`, and remove it afterwards.
 
-    With `notes` it is noted before it is there. Raises OSError where it cannot be made.
+    Only its owner can read it. With `notes`, a note is written before the folder exists. Raises
+    OSError if the folder cannot be made.
     """
     to = to.absolute()
     folder = to.parent / f".{to.name}.{secrets.token_hex(4)}{PARTIAL}"
@@ -125,44 +128,47 @@ def made_beside(
 
 
 def half_made(settings: Settings) -> list[HalfMade]:
-    """Everything that is not whole, going on or left by a crash, oldest first."""
+    """Return all incomplete files, in progress or left by a crash, oldest first."""
     home = home_of(settings)
     found = Notes.of(settings).all()
     for kind, pattern in _BY_PLACE:
         for folder in {home.resolve(), settings.data_dir.resolve()}:
             for path in folder.glob(pattern):
-                with suppress(OSError):  # it went away meanwhile
+                with suppress(OSError):  # it was removed meanwhile
                     since = datetime.fromtimestamp(path.lstat().st_mtime, UTC)
                     found.append(HalfMade(kind, path, since))
     return sorted(found, key=lambda one: (one.since, one.path))
 
 
 def remove_left(settings: Settings, *, starting: bool = False) -> list[HalfMade]:
-    """Remove what processes left that are gone; what was removed.
+    """Remove the incomplete files of processes that have ended; return what was removed.
 
-    `starting`: no server has the folder yet, so that what is known by its place is nobody's, too.
-    What cannot be removed (its disk is not there) stays on the list.
+    `starting`: no server uses the folder yet, so that files recognised by their location are
+    removed as well. What cannot be removed (its disk is not mounted) stays on the list.
     """
     found = half_made(settings) if starting else Notes.of(settings).all()
     removed = [one for one in found if not one.going_on and _remove(one)]
     if starting:
-        # A crash cut them off: nothing was begun yet.
+        # The crash happened while the note was written, before anything was made.
         for note in [one for one in Notes.of(settings).folder.glob("*.json") if not _read(one)]:
             note.unlink(missing_ok=True)
     return removed
 
 
 def _remove(one: HalfMade) -> bool:
-    """Whether it was there and is gone. A note that names something else removes nothing."""
+    """Remove an incomplete file; return whether it existed and no longer does.
+
+    A note that names any other kind of path removes nothing.
+    """
     there = os.path.lexists(one.path)
     with suppress(OSError):
         if one.note is None or one.path.name.endswith(PARTIAL):
-            # An export that was being replaced goes back to its place.
+            # Restore the earlier export that was being replaced.
             if one.to is not None and (one.path / "old").is_dir() and not one.to.exists():
                 (one.path / "old").rename(one.to)
             shutil.rmtree(one.path) if one.path.is_dir() else one.path.unlink(missing_ok=True)
     gone = not os.path.lexists(one.path)
-    # On a disk that is not there it is not gone.
+    # If its disk is not mounted, it still exists.
     if gone and one.note is not None and one.path.parent.is_dir():
         with suppress(OSError):
             one.note.unlink()
@@ -188,7 +194,7 @@ def _read(note: Path) -> HalfMade | None:
 
 
 def _lock(file: IO[str], *, wait: bool = True) -> bool:
-    """Lock a note until the process ends; whether it is ours. True where there are no locks."""
+    """Lock a note until the process ends; return whether it succeeded. True without file locks."""
     try:
         import fcntl
     except ImportError:

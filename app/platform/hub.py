@@ -1,8 +1,8 @@
-"""Telling the pages and headsets of a session that something changed.
+"""Notify the pages and headsets of a session that something changed.
 
-A subscriber holds one slot per topic, not a queue: a slow reader misses intermediate news and gets
-the newest, so nobody who does not read can make the server hold more. The record does not depend on
-this; it is in the database before anything is published.
+A subscriber has one slot per topic, not a queue: a slow reader misses intermediate news and gets
+the newest, so an idle reader cannot make the server's memory grow. The record does not depend on
+this: it is in the database before anything is published.
 """
 
 import asyncio
@@ -19,7 +19,10 @@ from sqlalchemy.orm import Session
 
 @dataclass(eq=False)
 class Subscription:
-    """One reader's newest unread news, by topic; what is not of its `topics` never reaches it."""
+    """One reader's newest unread news, by topic.
+
+    News of topics other than `topics` is not delivered.
+    """
 
     loop: asyncio.AbstractEventLoop
     topics: frozenset[str]
@@ -27,7 +30,7 @@ class Subscription:
     _arrived: asyncio.Event = field(default_factory=asyncio.Event)
 
     def offer(self, topic: str, value: Any) -> None:
-        """Leave news from any thread; replaces what was unread on the same topic."""
+        """Deliver news from any thread, replacing unread news of the same topic."""
         try:
             self.loop.call_soon_threadsafe(self._put, topic, value)
         except RuntimeError:  # the loop is closing: this reader is gone
@@ -38,9 +41,9 @@ class Subscription:
         self._arrived.set()
 
     async def next(self, timeout_s: float) -> dict[str, Any]:
-        """All unread news, waiting up to `timeout_s`; empty when nothing came."""
+        """Return all unread news, waiting up to `timeout_s`; empty if none arrived."""
         try:
-            # Not wait_for: on Python 3.11 it swallows a cancellation that meets the news.
+            # Not wait_for: on Python 3.11 it swallows a cancellation that coincides with the news.
             async with asyncio.timeout(timeout_s):
                 await self._arrived.wait()
         except TimeoutError:
@@ -52,7 +55,7 @@ class Subscription:
 
 @dataclass(eq=False)
 class Hub:
-    """Who listens to which session, and which headsets are connected now."""
+    """The subscribers of each session, and the headsets that are connected now."""
 
     _subscribers: dict[str, set[Subscription]] = field(default_factory=dict)
     _headsets: dict[str, int] = field(default_factory=dict)
@@ -62,18 +65,18 @@ class Hub:
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
     def note_seen(self, device_id: str, now: datetime) -> None:
-        """A device has just asked for something."""
+        """Record that a device has just sent a request."""
         with self._lock:
             self._seen[device_id] = now
 
     def last_seen(self, device_id: str) -> datetime | None:
-        """When a device last asked for something, since the server started."""
+        """Return when a device last sent a request; None if it has not since the server started."""
         with self._lock:
             return self._seen.get(device_id)
 
     @contextmanager
     def subscribe(self, session_id: str, *more: str) -> Iterator[Subscription]:
-        """Listen to a session's changes, and to `more` topics, from within a running event loop."""
+        """Subscribe to a session's changes and to `more` topics, from within a running event loop."""
         subscription = Subscription(asyncio.get_running_loop(), frozenset(("session", *more)))
         with self._lock:
             self._subscribers.setdefault(session_id, set()).add(subscription)
@@ -87,7 +90,7 @@ class Hub:
                     self._subscribers.pop(session_id, None)
 
     def publish(self, session_id: str, topic: str, value: Any = None) -> None:
-        """Offer news to every reader of a session, from any thread."""
+        """Deliver news to every reader of a session, from any thread."""
         with self._lock:
             readers = tuple(self._subscribers.get(session_id, ()))
         for reader in readers:
@@ -95,36 +98,36 @@ class Hub:
                 reader.offer(topic, value)
 
     def has_listeners(self, session_id: str, topic: str) -> bool:
-        """Whether news of a topic would reach anybody: else they need not be made."""
+        """Return whether anybody subscribes to a topic: otherwise its news need not be made."""
         with self._lock:
             readers = self._subscribers.get(session_id, ())
             return any(topic in reader.topics for reader in readers)
 
     def publish_after_commit(self, db: Session, session_id: str) -> None:
-        """Publish "session changed" once this transaction is on disk, and only then."""
+        """Publish "session changed" only once this transaction is on disk."""
         after_commit(db, lambda: self.publish(session_id, "session"))
 
     def publish_storage(self) -> None:
-        """Tell every reader of every session that storing began or ceased to fail."""
+        """Notify every reader that storage or a background task has failed or recovered."""
         with self._lock:
             readers = [reader for group in self._subscribers.values() for reader in group]
         for reader in readers:
             reader.offer("storage", None)
 
     def publish_access(self) -> None:
-        """Let every reader of every session look whether it may still read."""
+        """Make every reader of every session check whether it may still read."""
         with self._lock:
             readers = [reader for group in self._subscribers.values() for reader in group]
         for reader in readers:
             reader.offer("access", None)
 
     def headset_joined(self, session_id: str) -> None:
-        """A headset's socket is open."""
+        """Record that a headset's socket was opened."""
         with self._lock:
             self._headsets[session_id] = self._headsets.get(session_id, 0) + 1
 
     def headset_left(self, session_id: str) -> None:
-        """A headset's socket has closed."""
+        """Record that a headset's socket was closed."""
         with self._lock:
             left = self._headsets.get(session_id, 0) - 1
             if left > 0:
@@ -135,22 +138,22 @@ class Hub:
                 self._signals.pop(session_id, None)
 
     def note_signal(self, session_id: str, signal: Mapping[str, Any]) -> None:
-        """How good a connected headset's data are now, as the console's figures tell it."""
+        """Record the current signal quality of a connected headset, as the console shows it."""
         with self._lock:
             if session_id in self._headsets:
                 self._signals[session_id] = signal
 
     def signal(self, session_id: str) -> Mapping[str, Any] | None:
-        """The newest of these figures; None without a headset, or before its first look."""
+        """Return the newest signal quality; None without a headset or before the first measurement."""
         with self._lock:
             return self._signals.get(session_id)
 
     def note_frames(self, session_id: str, now_s: float) -> None:
-        """Frames have come on one of the session's sockets, at this monotonic time."""
+        """Record that frames arrived on one of the session's sockets at this monotonic time."""
         self._heard_s[session_id] = now_s
 
     def frames_heard_s(self, session_id: str) -> float:
-        """When frames came last, on whichever socket; minus infinity before the first."""
+        """Return when frames last arrived, on any socket; minus infinity before the first."""
         return self._heard_s.get(session_id, float("-inf"))
 
     @property
@@ -159,21 +162,21 @@ class Hub:
         return bool(self._headsets)
 
     def sessions_with_headsets(self) -> tuple[str, ...]:
-        """The sessions that have a headset's socket open now."""
+        """Return the sessions with an open headset socket."""
         with self._lock:
             return tuple(self._headsets)
 
     def headset_connected(self, session_id: str) -> bool:
-        """Whether a headset's socket is open now."""
+        """Return whether the session has an open headset socket."""
         with self._lock:
             return session_id in self._headsets
 
 
 def after_commit(db: Session, action: Callable[[], None]) -> None:
-    """Run `action` once this transaction is on disk; never, if it is rolled back."""
+    """Run `action` once this transaction is on disk, or never if it is rolled back."""
 
     def run(session: Session) -> None:
-        # Releasing a savepoint counts as a commit here, yet nothing is on disk.
+        # SQLAlchemy also reports the release of a savepoint as a commit, yet nothing is on disk.
         if not session.in_nested_transaction():
             action()
 

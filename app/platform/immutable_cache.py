@@ -1,8 +1,8 @@
-"""What never changes once it is stored, kept between requests.
+"""Cache stored values that never change, such as versions of studies.
 
 A version of a study or of an instrument is never edited, and a session keeps its version and its
-slot for life. Reading and unpacking them anew would be most of the work of a request that stores a
-form. They are kept by database and by what names them there.
+slot for life. Reading and parsing them for every request would be most of the work of storing a
+form. Values are cached by database and by their key in it.
 """
 
 import threading
@@ -18,7 +18,7 @@ Value = TypeVar("Value")
 
 
 class Unchanging(Generic[Key, Value]):
-    """Values by key, read once; of more than `size` the one that was wanted longest ago goes."""
+    """A cache of immutable values by key; beyond `size` it evicts the least recently used."""
 
     def __init__(self, size: int) -> None:
         self._size = size
@@ -26,9 +26,10 @@ class Unchanging(Generic[Key, Value]):
         self._lock = threading.Lock()
 
     def get(self, db: Session, key: Key, read: Callable[[], Value]) -> Value:
-        """The value of `key` in this database, from `read` if it is not kept.
+        """Return the value of `key` in this database, calling `read` if it is not cached.
 
-        What raises is not kept. Two threads may read the same at once; nobody waits here.
+        If `read` raises, nothing is cached. Two threads may read the same value simultaneously;
+        neither waits for the other.
         """
         name = (db.get_bind().engine.url, key)
         with self._lock:

@@ -1,7 +1,7 @@
-"""A line before a process: one thing is done after the other, each within its time.
+"""Queue jobs for a worker process, which runs one at a time, each with a time limit.
 
-Whoever comes when too many wait is told to come again. What was computed is kept for a while, so
-that a page which asks again gets it at once.
+A job that arrives when too many are waiting is refused. Results are cached for a while, so that a
+page which repeats a request gets its answer immediately.
 """
 
 import asyncio
@@ -23,24 +23,24 @@ from app.platform.workers import Worker
 
 log = logging.getLogger(__name__)
 WITHIN_S = 120.0
-"""The longest that anything may take, unless a line says otherwise."""
+"""The default time limit of a job."""
 WAITING = 20
-"""How many may wait for their turn before the next is told to come again."""
+"""Most jobs that may wait; the next is refused."""
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
 @dataclass(frozen=True)
 class Words:
-    """What a line says of the work it is for.
+    """The messages of a queue, worded for the kind of job it runs.
 
     Attributes:
-        busy: why nobody else may wait.
-        cannot: what did not go through, before the reason.
-        ended: the reason, where the process ended.
-        less: what to do where it was too much for the process.
-        otherwise: what to do where nobody foresaw it.
-        log: what the log says then.
+        busy: why no more jobs may wait.
+        cannot: what failed, followed by the reason.
+        ended: the reason if the process ended.
+        less: the remedy if the job was too large for the process.
+        otherwise: the remedy for an unexpected error.
+        log: the log message for an unexpected error.
     """
 
     busy: str
@@ -53,11 +53,11 @@ class Words:
 
 @dataclass
 class WorkingLine(Part, ABC):
-    """Has one thing done after the other; `within_s` is the time for each."""
+    """Runs jobs one after the other in a worker process; `within_s` is the time limit of each."""
 
     words: ClassVar[Words]
     fill_the_process: ClassVar[tuple[type[Exception], ...]] = ()
-    """Errors after which the process may not have its memory back: it is ended."""
+    """Errors after which the process may not have freed its memory: it is restarted."""
 
     within_s: float = WITHIN_S
     _worker: Worker = field(default_factory=Worker)
@@ -66,25 +66,25 @@ class WorkingLine(Part, ABC):
     _kept: "OrderedDict[Hashable, Any]" = field(default_factory=OrderedDict)
 
     def watched_by(self, background: Background, name: str) -> Self:
-        """Have it noticed under a name when its process dies."""
+        """Report the death of the worker process to `background` under a name."""
         self._worker.watched_by(background, name)
         return self
 
     async def run(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """Have a task done.
+        """Run a job and return its result.
 
-        Raises InvalidInput where it says that it cannot be, runs out of time or of memory, or
-        fails; and NotDurable where too many wait.
+        Raises InvalidInput if the job refuses its input, exceeds its time or memory, or fails;
+        NotDurable if too many jobs are waiting.
         """
         async with self._my_turn():
             return await self._done(task, *args, **kwargs)
 
     async def computed(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T:
-        """The same for what may be kept: the answer depends on nothing but hashable arguments."""
+        """Run a job with a cached result: it must depend on nothing but its hashable arguments."""
         name = (task, args, tuple(sorted(kwargs.items())))
         if name not in self._kept:
             async with self._my_turn():
-                # Whoever was before may have asked for the same.
+                # The preceding job may have computed the same result.
                 if name not in self._kept:
                     self._kept[name] = await self._done(task, *args, **kwargs)
                     while self._keeps_too_much():
@@ -96,16 +96,16 @@ class WorkingLine(Part, ABC):
         return kept
 
     def stop(self) -> None:
-        """Let the process go."""
+        """End the worker process."""
         self._worker.end()
 
     @abstractmethod
     def _keeps_too_much(self) -> bool:
-        """Whether the oldest of what is kept has to go."""
+        """Return whether the oldest cached result has to be evicted."""
 
     @abstractmethod
     def _refusal(self, error: Exception) -> InvalidInput | None:
-        """What a task told on purpose, for whoever asked; None for any other error."""
+        """Return the error for the caller if the job raised `error` deliberately, otherwise None."""
 
     @asynccontextmanager
     async def _my_turn(self) -> AsyncIterator[None]:

@@ -1,12 +1,12 @@
-"""Who may call what: one table, read by the dependencies that let people in and by the tests.
+"""The roles that may call each route: one table, read by the dependencies and by the tests.
 
-A route that is not listed is refused for everybody, so a new one is closed until it is put here.
-Which *objects* of a route somebody may see (their studies, their sessions) is decided in `access`.
+A route that is not listed is denied to everybody, so a new one is closed until it is added here.
+Which *objects* of a route a caller may see (their studies, their sessions) is decided in `access`.
 
 Roles of people: an *admin* runs the installation, an *experimenter* designs and runs studies, an
-*operator* runs sessions and never learns the condition where a study is blinded, an *analyst*
-reads pseudonymous data and changes nothing. Devices are paired with one session: a *tablet* and a
-*headset* open that session only.
+*operator* runs sessions and never learns the condition in a blinded study, an *analyst* reads
+pseudonymous data and changes nothing. Devices are paired with one session: a *tablet* and a
+*headset* have access to that session only.
 """
 
 ADMIN = frozenset({"admin"})
@@ -19,7 +19,7 @@ TABLET = frozenset({"tablet"})
 HEADSET = frozenset({"headset"})
 
 POLICY: dict[str, frozenset[str]] = {
-    # Before anybody is known.
+    # Without a login.
     "GET /api/health": ANYONE,
     "GET /api/me": ANYONE,
     "POST /api/login": ANYONE,
@@ -28,7 +28,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/tablet/paired": ANYONE,
     "POST /api/invitations/look": ANYONE,
     "POST /api/invitations/accept": ANYONE,
-    # The lab's people.
+    # Accounts and the installation.
     "PUT /api/me/password": LAB,
     "GET /api/accounts": ADMIN,
     "PATCH /api/accounts/{account_id}": ADMIN,
@@ -40,14 +40,14 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/audit/check": ADMIN,
     "GET /api/network": RUNNERS,
     "GET /api/storage": DESIGNERS,
-    # Studies: what they ask, in which order, and how far they are.
+    # Studies: their protocols, orders and progress.
     "GET /api/studies": LAB,
     "POST /api/studies": DESIGNERS,
     "GET /api/studies/{key}": LAB,
     "GET /api/studies/{key}/sessions": LAB,
     "GET /api/studies/{key}/ledger": LAB,
     "POST /api/studies/{key}/sessions": RUNNERS,
-    # A scripted participant, marked as simulated, for whoever wants to see a session.
+    # A scripted participant, marked as simulated, for trying out a session.
     "POST /api/studies/{key}/tryout": DESIGNERS,
     "GET /api/tryout": DESIGNERS,
     "DELETE /api/tryout": DESIGNERS,
@@ -66,11 +66,11 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/studies/{key}/suggestions": LAB,
     "POST /api/studies/{key}/suggestions": RUNNERS,
     "POST /api/suggestions/{suggestion_id}/decision": DESIGNERS,
-    # How slow the equipment itself is.
+    # The latency of the equipment itself.
     "GET /api/calibrations": LAB,
     "POST /api/calibrations": DESIGNERS,
     "POST /api/calibrations/{calibration_id}/retire": DESIGNERS,
-    # Instruments hold no study's secrets.
+    # Instruments contain nothing confidential of a study.
     "GET /api/instruments": LAB,
     "GET /api/instruments/{key}": LAB,
     "POST /api/instruments": DESIGNERS,
@@ -90,7 +90,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/captures/{capture_id}/verification": LAB,
     "GET /api/captures/{capture_id}/retargeted": LAB,
     "GET /api/captures/{capture_id}/retargeted-motion": LAB,
-    # So do the avatars' configurations.
+    # Avatar configurations belong to the lab as well.
     "GET /api/avatars": LAB,
     "POST /api/avatars": DESIGNERS,
     "POST /api/avatars/check": DESIGNERS,
@@ -99,12 +99,12 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/avatars/{key}/versions": DESIGNERS,
     "GET /api/avatars/{key}/versions/{number}": LAB,
     "GET /api/avatars/{key}/versions/{number}/file": LAB,
-    # And the models whose bodies they may have.
+    # Humanoid models, which avatars can take their bodies from.
     "GET /api/humanoids": LAB,
     "POST /api/humanoids": DESIGNERS,
     "GET /api/humanoids/{content_hash}": LAB,
     "GET /api/humanoids/{content_hash}/file": LAB,
-    # How people walk: scenes, walks, and the models that are fitted on them.
+    # Walking: scenes, walks, and the models that are fitted to them.
     "GET /api/walking/scenes": LAB,
     "POST /api/walking/scenes": DESIGNERS,
     "GET /api/walking/scenes/{scene_key}": LAB,
@@ -126,7 +126,7 @@ POLICY: dict[str, frozenset[str]] = {
     "POST /api/walking/models/{model_id}/prediction": LAB,
     "POST /api/walking/models/{model_id}/slice": LAB,
     "POST /api/walking/paths": LAB,
-    # What came out. An operator runs sessions; comparing conditions is not part of it.
+    # Results. Operators run sessions; comparing conditions is not part of their role.
     "GET /api/studies/{key}/codebook": READERS,
     "GET /api/studies/{key}/dashboard": READERS,
     "GET /api/studies/{key}/dashboard/{figure}/rows": READERS,
@@ -148,7 +148,7 @@ POLICY: dict[str, frozenset[str]] = {
     "GET /api/studies/{key}/imports": READERS,
     "GET /api/studies/{key}/imports/{import_id}": READERS,
     "GET /api/studies/{key}/imports/{import_id}/table": READERS,
-    # What participants may ask for.
+    # Participants' rights.
     "GET /api/studies/{key}/participants": DESIGNERS,
     "POST /api/studies/{key}/participants/{participant_id}/erasure": DESIGNERS,
     "GET /api/studies/{key}/participants/{participant_id}/access": DESIGNERS,
@@ -192,5 +192,5 @@ POLICY: dict[str, frozenset[str]] = {
 
 
 def allowed(method: str, template: str) -> frozenset[str]:
-    """Who may call a route, by its path template; nobody where it is not listed."""
+    """Return who may call a route, by its path template; nobody if it is not listed."""
     return POLICY.get(f"{method.upper()} {template}", frozenset())

@@ -1,8 +1,8 @@
-"""Slowing callers down: attempts in a sliding window, and budgets that refill.
+"""Limit how often clients may try: attempts in a sliding window, and budgets that refill.
 
-Everything is kept in memory, is forgotten at a restart, and has a fixed size: a million names or
-addresses push each other out, the one that was quiet for longest first. Guesses stay bounded even
-then, because passwords are checked a few at a time whoever asks (`app.features.people.accounts`).
+Everything is kept in memory, is forgotten at a restart, and has a fixed size: beyond it, the name
+or address that has been inactive longest is evicted. Guesses stay bounded even then, because only a
+few passwords are checked at a time, whoever sends them (`app.features.people.accounts`).
 """
 
 import threading
@@ -15,11 +15,11 @@ from app.errors import TooManyAttempts
 
 MOST_KEYS = 20_000
 IPV6_PREFIX = 64
-"""One household or lab has at least this many IPv6 addresses, so they count as one."""
+"""A household or lab has at least a /64 of IPv6 addresses, so these are counted together."""
 
 
 def network_of(address: str | None) -> str:
-    """Whom a client's address counts for: itself, or the /64 of an IPv6 address."""
+    """Return what a client's address is counted under: itself, or the /64 of an IPv6 address."""
     try:
         parsed = ip_address((address or "").partition("%")[0])
     except ValueError:
@@ -39,7 +39,7 @@ class RateLimiter:
     window_s: float
     monotonic_ns: Callable[[], int]
     most_keys: int = MOST_KEYS
-    # The key that was tried last stands last. Lists: a deque takes 600 bytes for its first element.
+    # The most recently tried key is last. Lists, because a deque takes 600 bytes for one element.
     _attempts: OrderedDict[str, list[float]] = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -47,7 +47,7 @@ class RateLimiter:
         return len(self._attempts)
 
     def attempt(self, key: str) -> None:
-        """Count an attempt; raises TooManyAttempts when the window is full."""
+        """Count an attempt; raise TooManyAttempts if the window is full."""
         now_s = self.monotonic_ns() / 1e9
         with self._lock:
             recent = self._recent(key, now_s)
@@ -63,12 +63,12 @@ class RateLimiter:
             recent.append(now_s)
 
     def succeed(self, key: str) -> None:
-        """Forget the attempts of a caller who got it right."""
+        """Clear the attempts of a key after a success."""
         with self._lock:
             self._attempts.pop(key, None)
 
     def take_back(self, key: str) -> None:
-        """Uncount the newest attempt: it was no guess, or was never looked at."""
+        """Remove the newest attempt: it was not a guess, or was never checked."""
         with self._lock:
             recent = self._attempts.get(key)
             if recent:
@@ -89,13 +89,13 @@ class RateLimiter:
 
 @dataclass
 class Budget:
-    """What each key may spend: `capacity` at once, refilled by `per_s` a second."""
+    """A budget for each key: up to `capacity`, refilled by `per_s` a second."""
 
     capacity: float
     per_s: float
     monotonic_ns: Callable[[], int]
     most_keys: int = MOST_KEYS
-    # What was left, and when (s); a key that is missing has all of it.
+    # The remaining budget and its time (s); a missing key has the full capacity.
     _left: OrderedDict[str, tuple[float, float]] = field(default_factory=OrderedDict)
     _lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -103,7 +103,7 @@ class Budget:
         return len(self._left)
 
     def spend(self, key: str, cost: float = 1.0) -> None:
-        """Take `cost` from a key's budget; raises TooManyAttempts where less than that is left."""
+        """Take `cost` from a key's budget; raise TooManyAttempts if less than that remains."""
         left = self._take(key, cost)
         if left < 0:
             wait_s = max(1.0, -left / self.per_s)
@@ -115,11 +115,14 @@ class Budget:
             )
 
     def charge(self, key: str, cost: float) -> None:
-        """Take `cost`, or what is left, for something that turned out dearer than it looked."""
+        """Take `cost`, or what remains, for a request that turned out more expensive than expected."""
         self._take(key, cost, all_of_it=True)
 
     def _take(self, key: str, cost: float, *, all_of_it: bool = False) -> float:
-        """What is left after taking `cost`; below 0 there was not enough, and nothing was taken."""
+        """Take `cost` and return the remainder; if it is negative, nothing was taken.
+
+        With `all_of_it`, an insufficient budget is emptied instead.
+        """
         now_s = self.monotonic_ns() / 1e9
         with self._lock:
             left, at_s = self._left.get(key, (self.capacity, now_s))
@@ -135,11 +138,12 @@ class Budget:
 
 @dataclass(frozen=True)
 class Limits:
-    """What one name or address may try, the lab's own included.
+    """The limits for one name or address, including the lab's own.
 
     `names`: sign-ins for one name from one address. `sign_ins`: failed ones from one address,
     whatever the names. `codes`: pairing codes and invitations from one address. `strangers`: every
-    request without a valid login or pairing, pages included. Whoever holds one is never counted.
+    request without a valid login or pairing, pages included. A request with a valid login or
+    pairing is never counted.
     """
 
     names: RateLimiter
@@ -149,8 +153,9 @@ class Limits:
 
 
 def usual_limits(monotonic_ns: Callable[[], int]) -> Limits:
-    """Far above what a lab behind one address needs, far below what slows a session down.
+    """Return the default limits.
 
+    They are far above what a lab behind one address needs, and far below what slows a session down.
     A tablet's first page takes about 15 requests, the console's 40.
     """
     return Limits(

@@ -1,8 +1,8 @@
-"""Room on the disk that is kept for what frees some: a file that is given up when it is full.
+"""Reserve disk space in a file that is deleted when the disk is full.
 
-To erase, to end a session or to put on record that an export was fetched, something has to be
-written first. Without this file none of it could be done on a disk that has no byte left. While it
-is given up, nothing else is written, or movement would take that room within a second.
+To erase data, to end a session or to record that an export was fetched, something has to be written
+first. Without this file none of that would be possible on a full disk. While the reserve is
+released, nothing else is written, or telemetry would use up the space within a second.
 """
 
 import contextlib
@@ -14,20 +14,20 @@ from pathlib import Path
 NAME = "reserve"
 MOST_BYTES = 32 * 1024 * 1024
 LARGEST_SHARE = 8
-"""At most one in so many of the bytes that are free when it is made."""
+"""The reserve takes at most one part in this many of the free bytes."""
 FEWEST_BYTES = 1024 * 1024
 
 
 @dataclass(eq=False)
 class SpaceReserve:
-    """The file in `folder`; None where the database is on another machine."""
+    """The reserve's file in `folder`; None where the database is on another machine."""
 
     folder: Path | None
     given_up: bool = False
     _bytes: int = MOST_BYTES
 
     def keep(self) -> None:
-        """Make the file where there is room for it; a disk that is too small goes without."""
+        """Create the file if there is space for it; a disk that is too small has no reserve."""
         if self.folder is None:
             return
         with contextlib.suppress(OSError):
@@ -37,7 +37,7 @@ class SpaceReserve:
                 self._allocate()
 
     def give_up(self) -> None:
-        """Let go of the room; `take_back` has to succeed before anybody else may have it."""
+        """Delete the file; other writers must wait until `take_back` succeeds."""
         if self.folder is None or self.given_up or not self._size():
             return
         with contextlib.suppress(OSError):
@@ -45,11 +45,11 @@ class SpaceReserve:
             self.given_up = True
 
     def take_back(self) -> bool:
-        """Whether all of it is there again, or was never gone."""
+        """Try to restore the file; return whether it exists in full or was never deleted."""
         if not self.given_up:
             return True
         try:
-            # Looked at first: an attempt would fill the disk for a moment, in somebody's way.
+            # Check first: an attempt would fill the disk for a moment and make other writes fail.
             if shutil.disk_usage(self._path().parent).free < self._bytes + FEWEST_BYTES:
                 return False
             self._allocate()

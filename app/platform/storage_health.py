@@ -1,9 +1,9 @@
-"""Whether the record can be written: what went wrong, since when, and what to do about it.
+"""Track whether the record can be written: what failed, since when, and what to do about it.
 
-Told of every writing transaction by the database (`failed`, `succeeded`). With a headset connected
-there is one a second at least, so trouble is known within a second. While it lasts nothing is
-acknowledged, headsets keep what they have, and whatever would start something new is refused
-(`require_storage`). Everything goes on by itself with the first commit that succeeds.
+The database reports every writing transaction (`failed`, `succeeded`). With a headset connected
+there is at least one per second, so trouble is detected within a second. While it lasts nothing is
+acknowledged, headsets keep their data, and requests that would start something new are refused
+(`require_storage`). Normal operation resumes with the first commit that succeeds.
 """
 
 import logging
@@ -28,7 +28,7 @@ LOOK_EVERY_NS = TRY_AGAIN_NS = 5_000_000_000
 
 @dataclass(frozen=True)
 class Failure:
-    """Trouble that lasts: since when, and when it was last met (ns, monotonic)."""
+    """A persisting storage failure: since when, and when it last occurred (ns, monotonic)."""
 
     since: datetime
     last_ns: int
@@ -36,7 +36,10 @@ class Failure:
 
 
 class StorageState(BaseModel):
-    """`reason` and `remedy` are set while it fails; `low_disk` warns before it does."""
+    """Whether storage works; `reason` and `remedy` are set while it fails.
+
+    `low_disk` warns before it fails.
+    """
 
     model_config = ConfigDict(frozen=True)
 
@@ -49,7 +52,7 @@ class StorageState(BaseModel):
 
 @dataclass(frozen=True)
 class Outage:
-    """A time, now over, in which nothing could be stored."""
+    """A period, now over, during which nothing could be stored."""
 
     since: datetime
     until: datetime
@@ -58,7 +61,10 @@ class Outage:
 
 @dataclass(eq=False)
 class StorageHealth:
-    """Safe from any thread. `on_change` is called when it begins and ceases to fail."""
+    """The state of storage, safe to use from any thread.
+
+    `on_change` is called when storage starts to fail and when it recovers.
+    """
 
     clock: Clock
     folder: Path
@@ -73,7 +79,7 @@ class StorageHealth:
     _looked_ns: int | None = None
 
     def failed(self, error: Exception) -> None:
-        """A writing transaction did not come about; only trouble with storage counts."""
+        """Record that a writing transaction failed, if the error is a storage failure."""
         trouble = explain(error)
         if trouble is None:
             return
@@ -87,7 +93,10 @@ class StorageHealth:
             self.on_change()
 
     def succeeded(self) -> None:
-        """Changes are on disk; that counts only if they did not need the reserve for it."""
+        """Record that changes are on disk, which ends a failure.
+
+        A failure ends only if the disk reserve can be restored, too.
+        """
         if self._failure is None:
             return
         with self._lock:
@@ -98,36 +107,36 @@ class StorageHealth:
                 return
             outage = Outage(failure.since, self.clock.utc_now(), failure.trouble.message)
             self._outages.append(outage)
-        log.warning("the record is written again; it was not since %s", outage.since.isoformat())
+        log.warning("the record is written again; it had failed since %s", outage.since.isoformat())
         self.on_change()
 
     def make_room(self) -> None:
-        """For whatever frees space, before it writes: on a full disk it has the reserve."""
+        """Release the disk reserve if the disk is full; call it before a write that frees space."""
         failure = self._failure
         if failure is not None and failure.trouble == FULL:
             with self._lock:
                 self.reserve.give_up()
 
     def must_wait(self) -> bool:
-        """Whether what fills the disk has to wait, until the reserve is there again."""
+        """Return whether writes that fill the disk have to wait until the reserve is restored."""
         if not self.reserve.given_up:
             return False
         with self._lock:
             return not self.reserve.take_back()
 
     def is_untried(self, for_ns: int) -> bool:
-        """Whether it fails, and nobody has tried to write for so long."""
+        """Return whether storage fails and no write was attempted for `for_ns`."""
         failure = self._failure
         return failure is not None and self.clock.monotonic_ns() - failure.last_ns > for_ns
 
     def take_outages(self) -> tuple[Outage, ...]:
-        """The outages that are over, each told once: for whoever puts them on record."""
+        """Return each outage that is over exactly once, for the caller to record."""
         with self._lock:
             taken, self._outages = tuple(self._outages), []
         return taken
 
     def state(self) -> StorageState:
-        """How it stands now. The disk's space is looked at every few seconds, when asked for."""
+        """Return the current state; free disk space is measured at most every few seconds."""
         low_disk, failure = self._is_low(), self._failure
         if failure is None:
             return StorageState(low_disk=low_disk)
@@ -140,9 +149,10 @@ class StorageHealth:
         )
 
     def require_storage(self) -> None:
-        """For whatever starts something: raises NotDurable while nothing can be stored.
+        """Raise NotDurable while nothing can be stored; for requests that start something new.
 
-        When nobody has tried for a while, this one may: without headsets nobody else would.
+        If no write was attempted for a while, the request may pass: without headsets there would be
+        no other attempt.
         """
         failure = self._failure
         if failure is None or self.clock.monotonic_ns() - failure.last_ns > TRY_AGAIN_NS:
@@ -165,5 +175,5 @@ class StorageHealth:
         try:
             return self.free_bytes(self.folder)
         except OSError:
-            # No such folder: the data are somewhere else, on a database server.
+            # The folder does not exist: the data are elsewhere, on a database server.
             return float("inf")

@@ -1,8 +1,8 @@
-"""Text that can be stored and sent again: no NUL characters and no lone surrogates.
+"""Reject text that cannot be stored and sent: NUL characters and lone surrogates.
 
-PostgreSQL stores no NUL, and neither database nor any answer of ours can encode half a surrogate
-pair. Python's JSON reader lets both through, so they are refused where text comes in: in the head
-of a request (`require_text_in_head`), and in JSON bodies and messages (`require_text_in_json`).
+PostgreSQL stores no NUL, and neither the databases nor JSON responses can encode half a surrogate
+pair. Python's JSON parser accepts both, so they are rejected on input: in the head of a request
+(`require_text_in_head`), and in JSON bodies and messages (`require_text_in_json`).
 """
 
 import json
@@ -14,16 +14,16 @@ from urllib.parse import unquote_to_bytes
 from app.errors import InvalidInput
 
 _BAD = re.compile("[\0\ud800-\udfff]")
-# An escape that may stand for one; "\\u0000" in a JSON text is a backslash and five characters.
+# An escape sequence that may encode one ("\\u0000" in JSON is a backslash and five characters).
 _SUSPECT = re.compile(r"\\u(?:0000|[dD][89a-fA-F])")
 _BAD_IN_HEADER = re.compile(rb"\x00|\xed[\xa0-\xbf]")
 
 
 def require_text_in_head(path: bytes, query: bytes, headers: Iterable[tuple[bytes, bytes]]) -> None:
-    """Raise InvalidInput where path, query or a header holds what is no text.
+    """Raise InvalidInput if the path, the query or a header contains invalid text.
 
-    `path` and `query` are percent-encoded, as they were sent. Other bytes than UTF-8 are allowed in
-    headers, which old clients write in Latin-1.
+    `path` and `query` are percent-encoded, as they were sent. Headers may contain bytes other than
+    UTF-8, because old clients write them in Latin-1.
     """
     for what, raw in (("path", path), ("query string", query)):
         if b"%" not in raw and raw.isascii():
@@ -37,9 +37,9 @@ def require_text_in_head(path: bytes, query: bytes, headers: Iterable[tuple[byte
 
 
 def require_text_in_json(sent: bytes | str) -> None:
-    """Raise InvalidInput where a JSON text or a string inside it holds what cannot be stored.
+    """Raise InvalidInput if a JSON text or a string inside it contains what cannot be stored.
 
-    What is no JSON at all is left to whoever reads it next.
+    Text that is not JSON is left to the parser that reads it next.
     """
     if isinstance(sent, bytes):
         try:
@@ -64,12 +64,12 @@ def require_text_in_json(sent: bytes | str) -> None:
 
 
 def printable(text: str) -> str:
-    """The text with lone surrogates written out, so that it can be encoded."""
+    """Return the text with lone surrogates escaped, so that it can be encoded."""
     return text.encode("utf-8", "backslashreplace").decode()
 
 
 def _first_bad(content: Any) -> str | None:
-    """The path of the first string with an unusable character; None where there is none."""
+    """Return the path of the first string with an invalid character; None if there is none."""
     waiting: list[tuple[str, Any]] = [("", content)]
     while waiting:
         place, value = waiting.pop()
@@ -96,7 +96,7 @@ def _is_utf8(raw: bytes) -> bool:
 
 def _refusal(where: str) -> InvalidInput:
     return InvalidInput(
-        f"{where} holds a NUL character or half of a surrogate pair, which are no text",
+        f"{where} contains a NUL character or half of a surrogate pair, which are not valid text",
         valid="Unicode text without U+0000 and U+D800 to U+DFFF",
         remedy="Leave the character out; nothing was stored.",
     )

@@ -1,13 +1,13 @@
-"""Tokens: what proves who is calling, and the cookies that hold one in a browser.
+"""Tokens, which prove who is calling, and the cookies that store one in a browser.
 
-A token is random and of 256 bits. The database keeps its SHA-256, so a stolen database opens
-nothing, and every token can be revoked.
+A token is 256 random bits. The database stores its SHA-256, so a stolen database gives no access,
+and every token can be revoked.
 
-A cookie is out of reach of scripts, of other sites, and of other hosts. Over https its name begins
-with `__Host-`: the browser then takes the cookie only if it is Secure, for this host alone and for
+A cookie is inaccessible to scripts, other sites and other hosts. Over https its name begins with
+`__Host-`: the browser then accepts the cookie only if it is Secure, for this host alone and for
 every path, so nobody who controls plain http or a neighbouring name can plant one. Over http (this
-machine, a USB cable) that prefix is not allowed and the name is plain. A request is read for the
-name of its own scheme only.
+machine, a USB cable) that prefix is not allowed and the name is plain. Only the cookie name that
+belongs to a request's own scheme is read.
 """
 
 import hashlib
@@ -26,12 +26,12 @@ HOST_ONLY = "__Host-"
 
 
 def hash_token(token: str) -> str:
-    """What is stored of a random token."""
+    """Return the hash that is stored in place of a random token."""
     return hashlib.sha256(token.encode()).hexdigest()
 
 
 def account_of_token(db: Session, token: str, now: datetime) -> Account:
-    """Whose login this is; raises NotSignedIn when it is unknown, expired or revoked."""
+    """Return the account of a login; raise NotSignedIn if it is unknown, expired or revoked."""
     row = db.get(LoginToken, hash_token(token))
     if row is None or row.revoked_at is not None or row.expires_at <= now:
         raise NotSignedIn("the login has ended", remedy="Log in again.")
@@ -42,7 +42,7 @@ def account_of_token(db: Session, token: str, now: datetime) -> Account:
 
 
 def device_of_token(db: Session, token: str, kind: str) -> Device:
-    """The device that holds this token; raises NotSignedIn when it is unknown or was revoked."""
+    """Return the device with this token; raise NotSignedIn if it is unknown or was revoked."""
     device = db.scalar(_BY_TOKEN, {"token_hash": hash_token(token)})
     if device is None or device.kind != kind or device.revoked_at is not None:
         raise NotSignedIn(
@@ -52,17 +52,17 @@ def device_of_token(db: Session, token: str, kind: str) -> Device:
 
 
 def cookie_name(request: HTTPConnection, name: str) -> str:
-    """What the cookie `name` is called where `request` comes from."""
+    """Return the full name of the cookie `name` under the scheme of `request`."""
     return f"{HOST_ONLY}{name}" if _is_secure(request) else name
 
 
 def read_cookie(request: HTTPConnection, name: str) -> str | None:
-    """The token in the cookie `name`."""
+    """Return the token in the cookie `name`; None if there is no such cookie."""
     return request.cookies.get(cookie_name(request, name))
 
 
 def set_cookie(request: Request, response: Response, name: str, token: str, age_s: int) -> None:
-    """Let the browser keep a token in the cookie `name` for `age_s`."""
+    """Store a token in the browser's cookie `name` for `age_s`."""
     response.set_cookie(
         cookie_name(request, name),
         token,
@@ -75,7 +75,7 @@ def set_cookie(request: Request, response: Response, name: str, token: str, age_
 
 
 def delete_cookie(request: Request, response: Response, name: str) -> None:
-    """Let the browser forget the cookie `name`; a browser obeys only if all attributes agree."""
+    """Delete the browser's cookie `name`; browsers do so only if all attributes match."""
     response.delete_cookie(
         cookie_name(request, name),
         path="/",

@@ -1,4 +1,4 @@
-"""What a refusal of the database or the disk means, in words for people, with the way out."""
+"""Explain errors of the database or the disk to people, with a remedy."""
 
 import errno
 import sqlite3
@@ -12,7 +12,7 @@ from app.errors import DamagedValue, NotDurable
 
 
 class Trouble(NamedTuple):
-    """What keeps the record from being written, and what to do."""
+    """The reason why the record cannot be written, and the remedy."""
 
     message: str
     remedy: str
@@ -20,32 +20,32 @@ class Trouble(NamedTuple):
 
 FULL = Trouble(
     "the disk of the server is full",
-    "Free space on the disk that holds the data folder. Everything goes on by itself then.",
+    "Free space on the disk of the data folder. Storage then resumes automatically.",
 )
 LOCKED = Trouble(
-    "another program holds the database",
-    "Close what has the database open (a viewer, a backup, a file sync). It goes on by itself.",
+    "another program has locked the database",
+    "Close what has it open (a viewer, a backup, a file sync). Storage then resumes automatically.",
 )
 READ_ONLY = Trouble(
     "the database cannot be opened for writing",
-    "Check that the data folder is there and that the server may write to it.",
+    "Check that the data folder exists and that the server may write to it.",
 )
 DAMAGED = Trouble(
     "the database is damaged",
     "Stop the server, keep the data folder as it is, and restore the newest backup.",
 )
 REFUSED = Trouble(
-    "the disk or the database does not take what is written",
+    "the disk or the database does not accept writes",
     "Check the disk of the server: it may be full, over a quota, unplugged or broken.",
 )
 NOT_ALLOWED = Trouble(
-    "the system does not allow it",
-    "Check that the folder is there, and that who runs this may read and write it.",
+    "the operating system does not allow it",
+    "Check that the folder exists, and that your account may read and write it.",
 )
 WORN = Trouble(
     "the disk cannot be read or written", "Check the disk: it may be unplugged or broken."
 )
-BUSY = Trouble("two transactions were in each other's way", "Nothing has to be mended.")
+BUSY = Trouble("two transactions conflicted", "Nothing needs to be repaired.")
 
 _BY_SQLITE_CODE = {
     sqlite3.SQLITE_FULL: FULL,
@@ -69,11 +69,11 @@ _BY_ERRNO = {
 }
 _DISK_FULL_STATE = "53100"
 _STORAGE_STATES = ("08", "53", "57P", "58", "XX001", "XX002")
-"""PostgreSQL (appendix A of its manual): connection, resources, shutdown, system, damage."""
+"""PostgreSQL error codes (appendix A): connection, resources, shutdown, system, damage."""
 
 
 def explain(error: Exception) -> Trouble | None:
-    """What a refusal of the database or the disk means, in words for people.
+    """Return the explanation of an error of the database or the disk.
 
     None if storage is not at fault, as in a deadlock, or when a constraint is violated.
     """
@@ -90,16 +90,16 @@ def explain(error: Exception) -> Trouble | None:
         return FULL
     if isinstance(state, str):
         return REFUSED if state.startswith(_STORAGE_STATES) else None
-    # Without a code: the connection to the database server is gone.
+    # An error without a code means that the connection to the database server was lost.
     return REFUSED if isinstance(error, OperationalError) else None
 
 
 def proves_damage(error: Exception) -> bool:
-    """Whether an error of SQLite's shows that the file itself is damaged, not that it is held up.
+    """Return whether a SQLite error shows that the file itself is damaged, not just unavailable.
 
     Damage can make SQLite's own message undecodable: then Python's driver raises UnicodeDecodeError
-    in its place, or an error without a code where a stored text cannot be decoded. Ours is that a
-    stored text is no time.
+    in its place, or an error without a code if a stored text cannot be decoded. This program raises
+    DamagedValue if a stored value cannot be parsed.
     """
     origin = error.orig if isinstance(error, DBAPIError) else error
     if isinstance(origin, UnicodeDecodeError | DamagedValue):
@@ -114,9 +114,9 @@ def proves_damage(error: Exception) -> bool:
 
 @contextmanager
 def plainly(what: str) -> Iterator[None]:
-    """Raise NotDurable in place of what a disk or a database refuses, as one sentence.
+    """Convert errors of a disk or a database to NotDurable with a one-sentence message.
 
-    `what` begins it, as in "the database FILE cannot be opened". Other errors pass.
+    `what` begins the sentence, as in "the database FILE cannot be opened". Other errors pass.
     """
     try:
         yield
@@ -125,7 +125,7 @@ def plainly(what: str) -> Iterator[None]:
 
 
 def in_plain_words(what: str, error: Exception) -> NotDurable:
-    """The error that `plainly` raises for `error`."""
+    """Return the error that `plainly` raises for `error`."""
     if isinstance(error, OSError):
         trouble = _BY_ERRNO.get(error.errno or 0, REFUSED)
         return NotDurable(f"{what}: {error.strerror or error}", remedy=trouble.remedy)

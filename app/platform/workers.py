@@ -1,8 +1,8 @@
-"""A process of one's own for what computes long, which ends with the server.
+"""Run long computations in a separate process, which ends with the server.
 
-In a thread of the server it would hold up every running session: Python computes in one thread at a
-time. The process steps back where running sessions want the processor, and is made when something
-is there to do. One that has died is replaced at the next task.
+In a thread of the server they would hold up every running session, because Python computes in one
+thread at a time. The process has a lower priority than running sessions, and is started with its
+first task. A process that has died is replaced at the next task.
 """
 
 import multiprocessing
@@ -19,17 +19,17 @@ from app.gc_tuning import relax_gc
 from app.platform.background import Background
 
 NICENESS = 5
-"""Running sessions go first where both want the processor."""
+"""The process's niceness, so that running sessions get the processor first."""
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
 @dataclass
 class Worker:
-    """One process that does one task after the other.
+    """One process that runs one task after the other.
 
     `prepare` runs in the process before its first task; it and every task must be functions of a
-    module, their arguments and answers picklable.
+    module, their arguments and results picklable.
     """
 
     prepare: Callable[[], None] | None = None
@@ -38,12 +38,12 @@ class Worker:
     _lock: threading.RLock = field(default_factory=threading.RLock)
 
     def watched_by(self, background: Background, name: str) -> Self:
-        """Have it noticed under a name when the process dies without being ended."""
+        """Report it to `background` under a name if the process dies without being ended."""
         self._watched = (background, name)
         return self
 
     def submit(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> "Future[T]":
-        """Have a task done after those that wait; a dead process fails it as BrokenProcessPool."""
+        """Queue a task; its future fails with BrokenProcessPool if the process dies."""
         with self._lock:
             if self._pool is None:
                 context = multiprocessing.get_context("spawn")
@@ -60,12 +60,12 @@ class Worker:
         return future
 
     def end(self) -> None:
-        """Let the process go, with what it is doing; the next task gets a new one."""
+        """Kill the process with its current task; the next task gets a new process."""
         with self._lock:
             pool, self._pool = self._pool, None
         if pool is not None:
             for process in list((getattr(pool, "_processes", None) or {}).values()):
-                # Not asked to end: it may be stuck where Python does not look at signals.
+                # Killed, not terminated: it may be stuck where Python does not handle signals.
                 process.kill()
             pool.shutdown(wait=True, cancel_futures=True)
 
@@ -78,12 +78,15 @@ class Worker:
                 background, name = self._watched
                 background.failed(name, error)
         elif self._watched is not None:
-            # Whatever became of the task, the process did it.
+            # Whatever the outcome of the task, the process works.
             background, name = self._watched
             background.well(name)
 
     def _forget(self, pool: ProcessPoolExecutor) -> bool:
-        """Leave a pool whose process is gone; False where that was done, or the end was wanted."""
+        """Discard a pool whose process has died.
+
+        Return False if it was already discarded, or was ended on purpose.
+        """
         with self._lock:
             known = self._pool is pool
             if known:
@@ -93,7 +96,7 @@ class Worker:
 
 def _begin(prepare: Callable[[], None] | None) -> None:
     threading.Thread(target=_end_with_the_server, daemon=True).start()
-    # Ctrl-C reaches every process of a terminal; when to end is for the server to say.
+    # Ctrl-C reaches every process of a terminal, but the server decides when this one ends.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(os, "nice"):
         os.nice(NICENESS)
@@ -103,7 +106,7 @@ def _begin(prepare: Callable[[], None] | None) -> None:
 
 
 def _end_with_the_server() -> None:
-    """A server that was killed cannot end anybody."""
+    """Exit as soon as the server has ended: a killed server cannot end its processes."""
     server = multiprocessing.parent_process()
     if server is not None:
         server.join()

@@ -1,4 +1,4 @@
-"""What travels between a headset and the server; written down in docs/protocol.md."""
+"""The messages between a headset and the server, as specified in docs/protocol.md."""
 
 from app.wire.batch import (
     ACTIVE,

@@ -10,7 +10,7 @@
     16      u64      seq of the first frame; seqs are consecutive within an epoch
     24      u16      frame count n, 1..1024
     26      u16      values per frame w, 91
-    28      u32      CRC-32 of everything behind the header
+    28      u32      CRC-32 of everything after the header
     32      f64      active time of the phase at the last frame, s
     40      f64      client monotonic time when the batch was closed, s
     48      16 bytes reserved, 0
@@ -18,7 +18,7 @@
     ...     u8[n]    frame flags (bit 0: the phase's clock ran), zero-padded to a multiple of 8
     ...     f32[n,w] root position x, y, z (m, world) then 22 joints' local rotations w, x, y, z
 
-The frames of the target and the actual stream that show the same moment carry the same seq.
+The frames of the target and the actual stream that show the same moment have the same seq.
 """
 
 import struct
@@ -42,7 +42,7 @@ ACTIVE = 1
 
 
 class StreamName(StrEnum):
-    """`target` is what the tracking asks for, `actual` what the remote avatar does."""
+    """The stream of a batch: `target` is the tracked pose, `actual` the pose of the remote avatar."""
 
     TARGET = "target"
     ACTUAL = "actual"
@@ -53,11 +53,11 @@ _CODE_OF_STREAM = {name: code for code, name in _STREAM_OF_CODE.items()}
 
 
 class MalformedBatchError(ValueError):
-    """The bytes are not a batch; nothing of them was taken."""
+    """The bytes are not a valid batch; none of them were stored."""
 
 
 class BatchHeader(NamedTuple):
-    """The first 64 bytes, checked against the length of the message."""
+    """The first 64 bytes of a batch, checked against the length of the message."""
 
     stream: StreamName
     epoch: int
@@ -85,12 +85,12 @@ class Batch(NamedTuple):
 
 
 def body_bytes(frame_count: int, values_per_frame: int) -> int:
-    """How many bytes follow the header of such a batch."""
+    """Return the number of bytes that follow the header of such a batch."""
     return 8 * frame_count + _padded(frame_count) + 4 * frame_count * values_per_frame
 
 
 def decode_header(message: bytes) -> BatchHeader:
-    """Read and check the header; MalformedBatchError names the field, its value and the rule."""
+    """Parse and check the header; MalformedBatchError names the field, its value and the rule."""
     if len(message) < HEADER_BYTES:
         raise MalformedBatchError(
             f"message of {len(message)} bytes; a batch has {HEADER_BYTES} and more"
@@ -118,7 +118,10 @@ def decode_header(message: bytes) -> BatchHeader:
 
 
 def _require_usable(seq: int, phase_id: int, times_s: Mapping[str, float]) -> None:
-    """What the header says of the whole batch must be usable; samples may be anything."""
+    """Raise MalformedBatchError if the header's seq, phase or times are invalid.
+
+    The samples themselves may have any value.
+    """
     if seq >= 2**62:
         raise MalformedBatchError(f"seq {seq} is out of range; seqs start at 0 in each epoch")
     if phase_id >= 2**31:
@@ -129,7 +132,7 @@ def _require_usable(seq: int, phase_id: int, times_s: Mapping[str, float]) -> No
 
 
 def decode_batch(message: bytes) -> Batch:
-    """The batch in `message`; raises MalformedBatchError, also when the checksum does not match."""
+    """Decode `message`; raise MalformedBatchError if it is invalid or its checksum does not match."""
     header = decode_header(message)
     crc = zlib.crc32(memoryview(message)[HEADER_BYTES:])
     if crc != header.crc32:
@@ -157,7 +160,7 @@ def encode_batch(
     active_s: float,
     closed_at_s: float,
 ) -> bytes:
-    """The message for frames `times_s` (n,), `flags` (n,), `values` (n, 91)."""
+    """Encode frames: `times_s` (n,), `flags` (n,), `values` (n, 91)."""
     n, w = values.shape
     if w != VALUES_PER_FRAME or times_s.shape != (n,) or flags.shape != (n,):
         raise MalformedBatchError(

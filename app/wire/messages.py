@@ -1,9 +1,9 @@
-"""The JSON messages beside the binary batches, typed for both ends.
+"""The JSON messages that accompany the binary batches, typed for headset and server.
 
 A headset sends `hello` first and may then send `report`, `produced`, `probe` and `probed` messages
 and binary batches. The server answers with `welcome`, and sends `state` on every change of the
 session, `ack` after each commit, `resend` where it expected an earlier seq, `flag` for bad samples,
-`refused` for a report that did not fit, and `error` before it closes.
+`refused` for a report that did not fit the session's state, and `error` before it closes.
 """
 
 from typing import Annotated, Any, Literal, Self
@@ -21,21 +21,21 @@ Seq = Annotated[int, Field(ge=0, lt=MAX_SEQ)]
 Epoch = Annotated[int, Field(ge=1, le=MAX_EPOCH)]
 Count = Annotated[int, Field(ge=0, lt=2**31)]
 Nanoseconds = Annotated[int, Field(ge=0, lt=2**63)]
-# Not every database takes a NUL in a text.
+# PostgreSQL stores no NUL in a text.
 Name = Annotated[str, Field(pattern=r"^[^\x00]*$")]
 
 
 class Message(BaseModel):
-    """Base of all messages: frozen, nothing unknown."""
+    """Base of all messages: frozen, without unknown fields."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class Hello(Message):
-    """Opens a connection. `epoch` is null for a new run of the client.
+    """The client's first message. `epoch` is null for a new run of the client.
 
-    `avatars`: what the client can show. One that cannot show the session's avatar is refused: the
-    record would name another than the participant saw.
+    `avatars`: the kinds of avatar that the client can show. A client that cannot show the session's
+    avatar is refused: the record would name an avatar that the participant did not see.
     """
 
     type: Literal["hello"] = "hello"
@@ -48,7 +48,7 @@ class Hello(Message):
 
 
 class PhaseReport(Message):
-    """What the headset did to the clock of a phase, at its own monotonic time."""
+    """A change of a phase's clock by the headset, at the headset's monotonic time."""
 
     kind: Literal["phase"] = "phase"
     phase_id: Count
@@ -67,7 +67,7 @@ class PhaseReport(Message):
 
 
 class MaterialisedReport(Message):
-    """The participant pressed the grips and the avatar appeared."""
+    """Reports that the participant pressed the grips and the avatar appeared."""
 
     kind: Literal["materialised"] = "materialised"
     t_s: Seconds
@@ -119,14 +119,14 @@ class Report(Message):
 
 
 class Probe(Message):
-    """Asks for the server's clock."""
+    """Request for the server's clock reading."""
 
     type: Literal["probe"] = "probe"
     client_sent_s: Seconds
 
 
 class Probed(Message):
-    """The client's raw reading of one exchange; all null where no answer came in time."""
+    """The client's raw readings of one clock probe; all null if no answer came in time."""
 
     type: Literal["probed"] = "probed"
     client_sent_s: Seconds
@@ -143,9 +143,9 @@ class Probed(Message):
 
 
 class Produced(Message):
-    """How far the client itself has come in an epoch: its next seqs, sent or not.
+    """The next seq of each of the client's streams in an epoch, whether sent or not.
 
-    What the server holds is compared with this, so that nothing can be missing unnoticed.
+    It is compared with what the server has stored, so that no loss goes unnoticed.
     """
 
     type: Literal["produced"] = "produced"
@@ -159,7 +159,7 @@ CLIENT_MESSAGE: TypeAdapter[ClientMessages] = TypeAdapter(ClientMessage)
 
 
 class StreamPosition(Message):
-    """All of `seq < next_seq` of a stream is on disk."""
+    """All frames of a stream with `seq < next_seq` are on disk."""
 
     stream: str
     epoch: int
@@ -167,10 +167,10 @@ class StreamPosition(Message):
 
 
 class PhaseOrder(Message):
-    """The phase to run; the headset converges to it. Latency is known here and nowhere else.
+    """The phase to run, which the headset brings itself in line with.
 
-    `until_completions`: a practice ends once so many tasks are completed, before its time is up;
-    null everywhere else.
+    Of the headset's messages only this one contains the latency. `until_completions`: a practice
+    ends once this many tasks are completed, before its time is up; null for all other phases.
     """
 
     phase_id: int
@@ -189,7 +189,7 @@ class PhaseOrder(Message):
 
 
 class ParticipantInfo(Message):
-    """What the task needs to know of the participant; null until it was answered."""
+    """What the task needs to know about the participant; null until it was answered."""
 
     handedness: str | None = None
     footedness: str | None = None
@@ -197,7 +197,7 @@ class ParticipantInfo(Message):
 
 
 class HeadsetState(Message):
-    """Where the session stands, as the headset needs it."""
+    """The state of the session, as far as the headset needs it."""
 
     type: Literal["state"] = "state"
     version: int
@@ -211,7 +211,7 @@ class HeadsetState(Message):
 
 
 class Welcome(Message):
-    """Answers a hello: the client's epoch, where each stream stands, the study's tasks."""
+    """The answer to a hello: the client's epoch, the position of each stream, the study's tasks."""
 
     type: Literal["welcome"] = "welcome"
     protocol: int
@@ -229,14 +229,14 @@ class Welcome(Message):
 
 
 class Ack(Message):
-    """These positions are on disk."""
+    """Acknowledges that the frames up to these positions are on disk."""
 
     type: Literal["ack"] = "ack"
     positions: tuple[StreamPosition, ...]
 
 
 class Resend(Message):
-    """A seq was skipped: send again from `next_seq`."""
+    """A seq was skipped: the client must send again from `next_seq`."""
 
     type: Literal["resend"] = "resend"
     stream: str
@@ -245,7 +245,7 @@ class Resend(Message):
 
 
 class Flag(Message):
-    """Samples were stored as they came, and are flagged."""
+    """Reports bad samples, which were stored unchanged and are flagged."""
 
     type: Literal["flag"] = "flag"
     code: Literal["non_finite", "non_unit"]
@@ -257,7 +257,7 @@ class Flag(Message):
 
 
 class RefusedReport(Message):
-    """A report was stored and does not count, because it did not fit the session's state."""
+    """A report was stored but does not count, because it did not fit the session's state."""
 
     type: Literal["refused"] = "refused"
     epoch: int
@@ -267,7 +267,7 @@ class RefusedReport(Message):
 
 
 class Failure(Message):
-    """Why the server closes the connection."""
+    """The reason why the server closes the connection."""
 
     type: Literal["error"] = "error"
     code: str
@@ -276,7 +276,7 @@ class Failure(Message):
 
 
 class ProbeAnswer(Message):
-    """The server's clock around a probe."""
+    """The server's clock readings when it received a probe and when it answered."""
 
     type: Literal["probe"] = "probe"
     client_sent_s: float

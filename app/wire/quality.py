@@ -1,7 +1,7 @@
-"""What is wrong with a frame, told without touching it.
+"""Flag bad frames without changing them.
 
-Bad samples are stored as they came. These flags travel beside them: into the stream's counters, to
-the console as an alarm, back to the client as a notice, and into every export.
+Bad samples are stored unchanged. Their flags go into the stream's counters, to the console as an
+alarm, back to the client as a notice, and into every export.
 """
 
 from collections.abc import Iterator, Sequence
@@ -13,26 +13,26 @@ from numpy.typing import NDArray
 from app.wire.batch import BODY_JOINTS, Batch
 
 UNIT_TOLERANCE = 1e-3
-"""A float32 unit quaternion that went through a few products stays within this of length 1."""
+"""A float32 unit quaternion that is the product of a few keeps its length within this of 1."""
 FRAMES_AT_ONCE = 2048
-"""Enough that the calls cost next to nothing, and few enough that the copies need little memory."""
+"""Enough to make the overhead of calls negligible, few enough to keep the copies small."""
 
 
 @dataclass(frozen=True)
 class FrameFlags:
-    """Per frame (n,): any non-finite value, any rotation that is not of unit length."""
+    """Flags of n frames, each (n,): any non-finite value; any rotation that is not of unit length."""
 
     non_finite: NDArray[np.bool_]
     non_unit: NDArray[np.bool_]
 
     @property
     def bad(self) -> NDArray[np.bool_]:
-        """Frames that no summary may use."""
+        """Frames that must not be used in any summary."""
         return self.non_finite | self.non_unit
 
 
 def flag_frames(times_s: NDArray[np.float64], values: NDArray[np.float32]) -> FrameFlags:
-    """Judge frames: `times_s` (n,) in s, `values` (n, 91) as on the wire."""
+    """Flag frames: `times_s` (n,) in s, `values` (n, 91) as in a batch."""
     finite = np.isfinite(values).all(axis=1) & np.isfinite(times_s)
     with np.errstate(invalid="ignore", over="ignore"):
         rotations = values[:, 3:].reshape(len(values), BODY_JOINTS, 4).astype(np.float64)
@@ -42,7 +42,7 @@ def flag_frames(times_s: NDArray[np.float64], values: NDArray[np.float32]) -> Fr
 
 
 def flag_batches(batches: Sequence[Batch]) -> Iterator[FrameFlags]:
-    """The flags of each batch. Judging many together is much cheaper than one by one."""
+    """Yield the flags of each batch. Checking many together is much cheaper than one by one."""
     for group in _grouped(batches):
         flags = flag_frames(
             np.concatenate([batch.times_s for batch in group]),

@@ -88,7 +88,7 @@ def test_a_folder_or_a_device_is_said_to_be_one(data: Path, tmp_path: Path) -> N
     """As the backup, and as the list of erasures: they are there, but are no files."""
     (tmp_path / "away").symlink_to(tmp_path / "gone")
     said = {
-        Path("/dev/zero"): "/dev/zero is no regular file",
+        Path("/dev/zero"): "/dev/zero is not a regular file",
         tmp_path: f"{tmp_path} is a folder, where a file is needed",
         tmp_path / "away": "is a link that leads to no file",
         tmp_path / "missing": "there is no file missing in",

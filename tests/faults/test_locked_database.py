@@ -53,7 +53,7 @@ def test_a_locked_database_costs_nothing_but_time(
 
 def check_waits(watch: Watch, lasts_s: float) -> None:
     """The queue of a headset holds what it made meanwhile and no more; nobody waits for long."""
-    assert watch.reason == "another program holds the database"
+    assert watch.reason == "another program has locked the database"
     # 2 streams of 15 messages a second, a report a second, and what was under way.
     assert watch.longest_queue <= (lasts_s + LONGEST_WRITE_S) * 31 + 31
     assert watch.longest_wait_s < LONGEST_WRITE_S
