@@ -1,1 +1,4 @@
-"""The science of Reembody: arrays in, frozen results out; no web, database or settings."""
+"""The scientific code of Reembody: functions on arrays that return frozen results.
+
+Nothing in here knows about the web, the database or the settings.
+"""

@@ -1,14 +1,15 @@
-"""Functions compiled to machine code: once with no liberty, once with one.
+"""Decorators that compile numerical functions to machine code with Numba.
 
-`compiled` keeps every sum in its order and fuses nothing, so that compiled and plain NumPy forms
-agree to the last bit where both use only + - * / and square roots. The interpreter's lock is
-released: threads work side by side.
+`compiled` keeps every sum in its order and fuses no operations, so that compiled and plain NumPy
+forms agree to the last bit where both use only + - * / and square roots. It releases the
+interpreter's lock, so several threads can run compiled code in parallel.
 
-`compiled_fused` allows fused multiply-add, for what runs at every frame. Sums keep their order here
-too, so that equal frames come out equal.
+`compiled_fused` allows fused multiply-add, for code that runs at every frame. Sums keep their order
+here too, so that equal frames give equal results.
 
-Either compiles at the first call, or reads what an earlier process compiled. Decorating loads the
-compiler (half a second), so kernels are kept in modules of their own, imported when first needed.
+Either compiles at the first call, or loads what an earlier process compiled. Applying a decorator
+loads the compiler (half a second), so kernels are kept in modules of their own, imported when first
+needed.
 """
 
 from collections.abc import Callable
@@ -18,7 +19,7 @@ _F = TypeVar("_F", bound=Callable[..., object])
 
 
 def compiled(function: _F) -> _F:
-    """Compile strictly: the result is that of IEEE arithmetic, operation by operation."""
+    """Compile with strict IEEE arithmetic: every operation is rounded on its own, in order."""
     return _cached(function, nogil=True)
 
 
@@ -30,11 +31,11 @@ def compiled_fused(function: _F) -> _F:
 def _cached(function: _F, *, nogil: bool = False, fastmath: bool | set[str] = False) -> _F:
     import numba
 
-    def made(*, cache: bool) -> _F:
+    def compile_function(*, cache: bool) -> _F:
         compile_ = numba.njit(cache=cache, nogil=nogil, error_model="numpy", fastmath=fastmath)
         return cast("_F", compile_(function))
 
     try:
-        return made(cache=True)
-    except RuntimeError:  # there is no folder that this user may write to
-        return made(cache=False)
+        return compile_function(cache=True)
+    except RuntimeError:  # no folder in which this user may write the cache
+        return compile_function(cache=False)

@@ -1,9 +1,9 @@
-"""The delayed-copy avatar: every joint but the hips moves as the participant did a moment ago.
+"""The delayed-copy avatar: every joint except the hips repeats the participant's movement later.
 
-At time t a joint takes the local rotation the participant's joint had at t - delay, by slerp
-between the two samples around that time; before the first sample it holds the first. The hips, and
-with them the place of the body, follow at once: a delayed view point would make people sick.
-A delay of zero hands the rotations through untouched, to the bit.
+At time t a joint takes the local rotation that the participant's joint had at t - delay, by slerp
+between the two samples around that time; before the first sample it keeps the first rotation. The
+hips, and with them the position of the body, follow without delay: a delayed viewpoint would make
+people sick. With a delay of zero the rotations are returned unchanged, to the bit.
 
 Source: Karas (2020), section 7.1: latency is added to the target rotations of every body part
 except the hips, and 0 ms bypasses the buffer.
@@ -20,7 +20,7 @@ _HIPS = 0
 
 
 class DelayError(ValueError):
-    """A delay or a time cannot be: negative, not finite, or out of order."""
+    """A delay or a time is not valid: negative, not finite, or out of order."""
 
 
 def delayed_pose(
@@ -29,13 +29,14 @@ def delayed_pose(
     """Return the avatar's local rotations (M, 22, 4) at the query times.
 
     Args:
-        times_s: (N,) rising times of the samples.
+        times_s: (N,) strictly increasing times of the samples.
         rotations: (N, 22, 4) the participant's local rotations, wxyz.
-        query_times_s: (M,) times to answer for. The undelayed hips are interpolated there too.
+        query_times_s: (M,) times at which to compute the pose. The undelayed hips are interpolated
+            at these times too.
         delay_s: at least zero.
 
     Raises:
-        DelayError: no samples, times that do not rise, or an impossible delay.
+        DelayError: there are no samples, the times do not increase, or the delay is not valid.
     """
     _check_delay(delay_s)
     if times_s.size == 0 or times_s.shape[0] != rotations.shape[0]:
@@ -43,7 +44,7 @@ def delayed_pose(
             f"{times_s.shape[0]} times and {rotations.shape[0]} samples: give one time per sample."
         )
     if not np.isfinite(times_s).all() or bool(np.any(np.diff(times_s) <= 0.0)):
-        raise DelayError("Sample times must be finite and rise from sample to sample.")
+        raise DelayError("Sample times must be finite and rise strictly from sample to sample.")
     result = _sample(times_s, rotations, query_times_s - delay_s)
     if delay_s > 0.0:
         hips = rotations[:, _HIPS : _HIPS + 1]
@@ -52,7 +53,7 @@ def delayed_pose(
 
 
 def _sample(times_s: FloatArray, rotations: FloatArray, at_s: FloatArray) -> FloatArray:
-    """Return rotations at any times, held at both ends and copied exactly at a sample's time."""
+    """Interpolate the rotations at any times: exact at a sample, constant beyond both ends."""
     after = np.searchsorted(times_s, at_s, side="left")
     last = times_s.shape[0] - 1
     result: FloatArray = rotations[np.minimum(after, last)]  # fancy indexing copies
@@ -67,10 +68,12 @@ def _sample(times_s: FloatArray, rotations: FloatArray, at_s: FloatArray) -> Flo
 
 
 class DelayBuffer:
-    """The same avatar one frame at a time, with a delay that may be changed at any moment.
+    """Computes the delayed-copy avatar frame by frame, with a delay that can change at any moment.
 
-    The buffer keeps the samples of the longest delay it may be asked for. A change takes effect
-    with the next frame; the avatar then jumps in time, as the study's conditions do.
+    The buffer keeps enough samples for the longest delay that it allows. A change of the delay
+    takes
+    effect with the next frame; the avatar then jumps in time, as it does between the study's
+    conditions.
     """
 
     def __init__(self, delay_s: float, *, longest_delay_s: float = 2.0) -> None:
@@ -81,33 +84,33 @@ class DelayBuffer:
 
     @property
     def delay_s(self) -> float:
-        """The delay in force."""
+        """The current delay, in seconds."""
         return self._delay_s
 
     def set_delay(self, delay_s: float) -> None:
-        """Change the delay from the next frame on.
+        """Change the delay, from the next frame on.
 
         Raises:
-            DelayError: below zero, not finite, or longer than the buffer keeps.
+            DelayError: below zero, not finite, or longer than the buffer allows.
         """
         _check_delay(delay_s)
         if delay_s > self._longest_s:
             raise DelayError(
-                f"A delay of {delay_s} s is longer than the {self._longest_s} s this buffer keeps:"
+                f"A delay of {delay_s} s exceeds the {self._longest_s} s that this buffer allows:"
                 " make it with a larger longest_delay_s."
             )
         self._delay_s = delay_s
 
     def push(self, time_s: float, rotations: FloatArray) -> FloatArray:
-        """Take the participant's local rotations (22, 4) of now and return the avatar's.
+        """Add the participant's current local rotations (22, 4) and return the avatar's.
 
-        The arrays are kept, not copied: do not change them afterwards.
+        The arrays are stored, not copied: do not change them afterwards.
 
         Raises:
-            DelayError: the time is not after the one before.
+            DelayError: the time is not later than the previous one.
         """
         if not math.isfinite(time_s) or (self._samples and time_s <= self._samples[-1][0]):
-            raise DelayError(f"Time {time_s} s does not follow the last sample's: push in order.")
+            raise DelayError(f"Time {time_s} s is not later than the last sample: push in order.")
         self._samples.append((time_s, rotations))
         self._forget(time_s - self._longest_s)
         if self._delay_s == 0.0:
@@ -117,7 +120,8 @@ class DelayBuffer:
         return delayed
 
     def _forget(self, before_s: float) -> None:
-        # One sample at or before the oldest time asked for must stay, to interpolate from.
+        # One sample at or before the oldest possible query must stay, as the start of the
+        # interpolation.
         while len(self._samples) > 2 and self._samples[1][0] <= before_s:
             self._samples.popleft()
 

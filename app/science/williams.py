@@ -7,18 +7,20 @@ Row = tuple[int, ...]
 
 
 def williams(n: int) -> tuple[Row, ...]:
-    """The orders of n treatments 0..n-1: n rows for an even n, 2n for an odd one.
+    """Return the orders of n treatments 0..n-1: n rows for an even n, 2n for an odd one.
 
-    Every treatment stands equally often at every position (once; twice for an odd n), and every
-    ordered pair of different treatments is equally often neighbours. For n = 3 these are all six
-    permutations. Raises ValueError for n below 1.
+    Every treatment is equally often at every position (once; twice for an odd n), and every ordered
+    pair of different treatments is adjacent equally often. For n = 3 these are all six
+    permutations.
+    Raises ValueError for n below 1.
     """
     if n < 1:
         raise ValueError(f"{n} treatments cannot be ordered; give at least 1.")
-    # 0, 1, n-1, 2, n-2, ...: the steps from one to the next, modulo n, are all different.
+    # 0, 1, n-1, 2, n-2, ...: the differences of neighbours, modulo n, are all different.
     first = [(place + 1) // 2 if place % 2 else -(place // 2) for place in range(n)]
     rows = [tuple((one + shift) % n for one in first) for shift in range(n)]
     if n % 2 == 0 or n == 1:
         return tuple(rows)
-    # The steps of an odd n miss half of the pairs; read backwards the rows have the other half.
+    # For an odd n these rows contain half of the ordered pairs; reversed, they contain the other
+    # half.
     return (*rows, *(row[::-1] for row in rows))

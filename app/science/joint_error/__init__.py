@@ -1,8 +1,8 @@
-"""How far an avatar's joints are from what they were asked for.
+"""How far an avatar's joints are from the rotations that they should have.
 
-`joint_errors` has the definition, `joint_error_summary` its figures over a phase, `recorded_errors`
-those of two recorded streams, against the present pose and against the delayed command, and
-`joint_error_course` their course over the phase's active time.
+`joint_errors` computes the error as defined, `joint_error_summary` its statistics over a phase,
+`recorded_errors` the errors of two recorded streams, against the present pose and against the
+delayed command, and `joint_error_course` their course over the phase's active time.
 """
 
 from app.science.joint_error.course import COURSE_BIN_S, active_times, joint_error_course
@@ -14,16 +14,16 @@ from app.science.joint_error.errors import (
     joint_error_summary,
     joint_errors,
 )
-from app.science.joint_error.recorded import Asked, Recorded, recorded_errors
+from app.science.joint_error.recorded import Recorded, ReferenceMotion, recorded_errors
 
 __all__ = [
     "COURSE_BIN_S",
     "ERROR_AXES",
     "ERROR_JOINTS",
-    "Asked",
     "Clipping",
     "JointErrorSummary",
     "Recorded",
+    "ReferenceMotion",
     "active_times",
     "joint_error_course",
     "joint_error_summary",

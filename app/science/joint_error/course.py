@@ -1,12 +1,12 @@
-"""How the joint error of a phase develops: its mean in bins of active time.
+"""How the joint error develops during a phase: its mean in bins of active time.
 
-People learn a delay, or tire of it, and a mean over the whole phase shows neither. A bin's value is
-the mean over all samples that fall into it, a sample being one joint in one frame: so the mean of
-the bins, each weighted by its samples, is the mean of the phase.
+People adapt to a delay, or tire of it, and a mean over the whole phase shows neither. The value of
+a bin is the mean over all samples in it, a sample being one joint in one frame: so the mean of the
+bins, each weighted by its samples, is the mean of the phase.
 
-Active time is that in which the phase's clock ran (`active_times`). The clock of a phase stands in
-pauses and on walks back, and every frame says whether it ran when the frame was shown. So the
-frames themselves hold the active time, and it can be found again for as long as they are kept.
+Active time is the time in which the phase's clock ran (`active_times`). The clock is stopped in
+pauses and on walks back, and every frame records whether it was running when the frame was shown.
+So the active time can be computed from the stored frames alone.
 """
 
 from dataclasses import dataclass
@@ -20,21 +20,21 @@ from app.science.rotations import FloatArray
 COURSE_BIN_S = 5.0
 """Active time in a bin, s: some 450 frames, so that single movements even out, and still twelve
 bins in a phase of a minute."""
-# The phase's count of seconds may be a rounding above a whole number of bins.
+# The phase's own duration may exceed a whole number of bins by a rounding error.
 _ROUNDING_S = 1e-6
 
 
 class CourseError(ValueError):
-    """Errors and times do not belong together."""
+    """The shapes of the joint errors and of their times do not match."""
 
 
 @dataclass(frozen=True, eq=False)
 class JointErrorCourse:
-    """Means of B bins; the first begins when the phase's clock first ran, and none is left out.
+    """Mean joint errors in B consecutive bins of active time, from the start of the phase's clock.
 
     Attributes:
         mean_rad: (B,) mean angle; NaN for a bin without samples.
-        samples: (B,) joints times frames that count.
+        samples: (B,) number of samples (joints times frames) that count.
     """
 
     bin_s: ClassVar[float] = COURSE_BIN_S
@@ -46,17 +46,17 @@ class JointErrorCourse:
 def joint_error_course(
     angles_rad: FloatArray, active_s: FloatArray, duration_s: float
 ) -> JointErrorCourse:
-    """Return the course of N frames.
+    """Return the mean joint error in each bin of active time, from N frames.
 
     Args:
         angles_rad: (N, J) angle of each joint; NaN where a sample does not count.
         active_s: (N,) active time of each frame, s, finite and not below zero.
-        duration_s: active time that the phase had by its own count. Frames behind it, as from a
-            clock that jumped, belong to its last bin; so no bin holds a few frames only because
-            the two counts differ by less than a frame.
+        duration_s: the phase's active time by its own count. Later frames, as after a jump of the
+            clock, belong to its last bin; so no bin has only a few frames because the two counts
+            differ by less than a frame.
 
     Returns:
-        The bins up to the last that has a frame; none without frames.
+        The bins up to the last that has a frame; no bins if there are no frames.
 
     Raises:
         CourseError: the shapes do not fit.
@@ -79,23 +79,26 @@ def joint_error_course(
 def active_times(times_s: FloatArray, active: npt.NDArray[np.bool_]) -> FloatArray:
     """Return the active time at each of N frames, in s since the first.
 
-    From a frame in which the clock runs, time counts up to the next frame, also over a gap; what a
-    frame that stopped the clock is late by and what one that started it is late by cancel out on
-    average. A time that is not finite, or not later than all before, adds nothing.
+    From a frame in which the clock runs, time counts up to the next frame, also over a gap. A frame
+    that reports a stop of the clock comes a little late, and so does one that reports a start; on
+    average the two delays cancel out. A time that is not finite, or not later than all previous
+    ones,
+    adds nothing.
 
     Args:
-        times_s: (N,) on one clock, in the order in which the frames were made; may hold anything.
+        times_s: (N,) on one clock, in the order in which the frames were made; any values are
+            allowed.
         active: (N,) whether the phase's clock ran.
 
     Returns:
-        (N,) s, from 0 on, never falling.
+        (N,) s, starting at 0, never decreasing.
     """
-    passed_s = np.zeros(len(times_s))
+    elapsed_s = np.zeros(len(times_s))
     finite = np.isfinite(times_s)
     if not finite.any():
-        return passed_s
-    # Before the first usable time nothing has passed.
-    known_s = np.where(finite, times_s, -np.inf)
-    latest_s = np.maximum(np.maximum.accumulate(known_s), times_s[np.argmax(finite)])
-    passed_s[1:] = np.cumsum(np.diff(latest_s) * active[:-1])
-    return passed_s
+        return elapsed_s
+    # No time elapses before the first finite time.
+    finite_s = np.where(finite, times_s, -np.inf)
+    latest_s = np.maximum(np.maximum.accumulate(finite_s), times_s[np.argmax(finite)])
+    elapsed_s[1:] = np.cumsum(np.diff(latest_s) * active[:-1])
+    return elapsed_s

@@ -5,16 +5,16 @@ rotation that leads from the target to the actual one, seen in the parent's fram
 
     q_error = q_actual q_target^-1,   angle = |log q_error|,   (x, y, z) = log q_error,
 
-the rotation vector of the shorter way round, in radians along the parent's axes. So +x says that
+the rotation vector of the shorter way round, in radians along the parent's axes. So +x means that
 the joint has turned too far about its parent's x axis. The angle is the geodesic distance. The hips
-carry no delay and have no parent, and are left out.
+have no delay and no parent, and are left out.
 
 A sample counts only if both quaternions are finite and of unit length within 0.001; others are
 flagged and counted, not repaired. This is the joint error of Karas (2020), sections 3 and 7.
 
-The target is never clamped: what the limits of an avatar's hinges take away is error. How often
-they did stands beside it, as the share of the samples that count (`Clipping`), so that a joint that
-could not follow is told from one that followed badly.
+The target is never clamped: a rotation that the limits of an avatar's hinges prevent is part of
+the error. The share of samples in which a limit did so is given as well (`Clipping`), which
+distinguishes a joint that could not follow from one that followed badly.
 """
 
 from dataclasses import dataclass
@@ -35,19 +35,19 @@ from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 
 #: The joints that have an error, in order: all but the hips.
 ERROR_JOINTS: tuple[str, ...] = JOINT_NAMES[1:]
-#: What is summarised for each joint: the angle and the rotation vector's parts.
+# : What is summarised for each joint: the angle and the components of the rotation vector.
 ERROR_AXES: tuple[str, ...] = ("angle", "x", "y", "z")
 _P95 = 95.0
 _Bools = npt.NDArray[np.bool_]
 
 
 class JointErrorError(ValueError):
-    """Target and actual rotations do not belong together."""
+    """The shapes of target, actual and clipping do not match."""
 
 
 @dataclass(frozen=True, eq=False)
 class JointErrors:
-    """Errors of N frames; radians.
+    """The joint errors of N frames, in radians.
 
     Attributes:
         values_rad: (N, 21, 4) in the order of ERROR_JOINTS and ERROR_AXES; zero where not valid.
@@ -60,16 +60,17 @@ class JointErrors:
 
 @dataclass(frozen=True, eq=False)
 class Clipping:
-    """Where the limits of an avatar's hinges took something from the target; N frames.
+    """Where the limits of an avatar's hinges reduced the target rotation, for N frames.
 
-    A hinge counts for the axis it lies along in the T-pose. Only the first hinge of a joint keeps
-    to the parent's axis in every pose; the others are carried by it.
+    A hinge belongs to the axis along which it lies in the T-pose. Only the first hinge of a joint
+    stays
+    on the parent's axis in every pose; the others turn with it.
 
     Attributes:
-        clipped: (N, 21, 3) of the hinge along x, y and z.
+        clipped: (N, 21, 3) whether the hinge along x, y and z reached its limit.
         turns: (21, 3) whether there is such a hinge, and it is not locked.
-        hinged: (21,) whether the joint has a hinge at all, locked or not. One that has none is not
-            asked for anything, so it has no error.
+        hinged: (21,) whether the joint has a hinge at all, locked or not. A joint without hinges
+            has no target of its own, so it has no error.
     """
 
     clipped: _Bools
@@ -78,29 +79,34 @@ class Clipping:
 
     @property
     def by_axis(self) -> _Bools:
-        """(N, 21, 4) in the order of ERROR_AXES; the angle is clipped where one of its axes is."""
+        """Where each axis is clipped: (N, 21, 4), in the order of ERROR_AXES.
+
+        The angle counts as clipped where one of its axes is.
+        """
         each = self.clipped & self.turns
         return np.concatenate((each.any(axis=2, keepdims=True), each), axis=2)
 
     @property
     def driven(self) -> _Bools:
-        """(21, 4) where there can be a share, in the order of ERROR_AXES."""
+        """Which joints and axes can be clipped: (21, 4), in the order of ERROR_AXES."""
         return np.concatenate((self.turns.any(axis=1, keepdims=True), self.turns), axis=1)
 
 
 @dataclass(frozen=True, eq=False)
 class JointErrorSummary:
-    """Errors of a phase, per joint and axis; radians; NaN for a joint without a valid sample.
+    """The joint errors of a phase, per joint and axis, in radians.
+
+    Values are NaN for a joint without a valid sample.
 
     Attributes:
         mean_rad: (21, 4) signed mean.
-        rms_rad: (21, 4) root of the mean square.
+        rms_rad: (21, 4) root mean square.
         p95_rad: (21, 4) 95th percentile of the absolute value (linear interpolation).
         max_rad: (21, 4) largest absolute value.
         count: (21,) valid samples.
         left_out: (21,) samples that did not count.
-        clipped_share: (21, 4) share of the valid samples in which a limit took something from the
-            target; NaN without a hinge that turns, and everywhere for a body without limits.
+        clipped_share: (21, 4) share of the valid samples in which a limit reduced the target; NaN
+            without a hinge that turns, and everywhere for a body without limits.
     """
 
     joints: ClassVar[tuple[str, ...]] = ERROR_JOINTS
@@ -129,13 +135,13 @@ def joint_errors(target: FloatArray, actual: FloatArray) -> JointErrors:
             f"Target {target.shape} and actual {actual.shape} do not fit: both must be (N, 22, 4),"
             " frame for frame."
         )
-    goal = np.asarray(target[:, 1:], dtype=np.float64)
-    got = np.asarray(actual[:, 1:], dtype=np.float64)
-    valid = is_unit(goal) & is_unit(got)
+    expected = np.asarray(target[:, 1:], dtype=np.float64)
+    observed = np.asarray(actual[:, 1:], dtype=np.float64)
+    valid = is_unit(expected) & is_unit(observed)
     if not valid.all():
-        goal = np.where(valid[..., np.newaxis], goal, identity())
-        got = np.where(valid[..., np.newaxis], got, identity())
-    vector = to_rotation_vector(multiply(got, conjugate(goal)))
+        expected = np.where(valid[..., np.newaxis], expected, identity())
+        observed = np.where(valid[..., np.newaxis], observed, identity())
+    vector = to_rotation_vector(multiply(observed, conjugate(expected)))
     angle = np.sqrt(np.einsum("...i,...i->...", vector, vector))
     return JointErrors(np.concatenate((angle[..., np.newaxis], vector), axis=-1), valid)
 
@@ -147,10 +153,10 @@ def summarise_joint_errors(
 
     Args:
         errors: of N frames.
-        clipping: of the same frames; left out for a body without limits.
+        clipping: of the same frames; None for a body without limits.
 
     Raises:
-        JointErrorError: the clipping is of another number of frames.
+        JointErrorError: the clipping has another number of frames.
     """
     joints, axes = len(ERROR_JOINTS), len(ERROR_AXES)
     rows = np.full((4, joints, axes), np.nan)
@@ -190,9 +196,10 @@ def _clipped_shares(valid: _Bools, clipping: Clipping | None) -> FloatArray:
 def joint_error_summary(
     target: FloatArray, actual: FloatArray, clipping: Clipping | None = None
 ) -> JointErrorSummary:
-    """Return the summary of two recordings.
+    """Return the error summary of a target and an actual recording.
 
     See `joint_errors` for shapes and `summarise_joint_errors` for the clipping, and both for the
-    errors raised.
+    errors
+    raised.
     """
     return summarise_joint_errors(joint_errors(target, actual), clipping)

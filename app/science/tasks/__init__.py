@@ -1,13 +1,13 @@
-"""The hand and foot box tasks: place, contacts, rules and summaries.
+"""The hand and foot box tasks: layout, contacts, rules and summaries.
 
-    layout = build_layout(...)                        the place, the same for everybody
+    layout = build_layout(...)                        the surfaces, the same for every participant
     run = TaskRun(TaskRules(layout, writing_hand), part_names)
     run.command(CommandKind.START, time_s)
     run.frame(time_s, *touching_and_near(SurfaceArrays.of(layout), segments_m, radii_m, margin_m))
     run.state, run.events, run.intervals, run.summary()
 
-`TaskRun` is a convenience; underneath, `advance(state, step)` is pure. The same rules run in the
-headset; both are held to the vectors in `tests/vectors/tasks`.
+`TaskRun` is a convenience around the pure function `advance(state, step)`. The headset implements
+the same rules; the test vectors in `tests/vectors/tasks` check both implementations.
 """
 
 from app.science.tasks.clock import ActiveClock, ClockError

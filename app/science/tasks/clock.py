@@ -1,7 +1,7 @@
-"""The active clock of a phase: it stands still while the phase is paused.
+"""The active clock of a phase, which is stopped while the phase is paused.
 
-The clock is told when it runs; it never reads a clock itself. All times are seconds of one
-monotonic clock (the headset's), so wall time and active time differ only by the pauses.
+The clock is given every time as an argument and never reads a system clock. All times are seconds
+of one monotonic clock (the headset's), so wall time and active time differ only by the pauses.
 """
 
 import math
@@ -9,15 +9,15 @@ from dataclasses import dataclass
 
 
 class ClockError(ValueError):
-    """The clock was asked for something impossible, such as going back in time."""
+    """A call to the clock that is not valid in its state, such as a time that goes back."""
 
 
 @dataclass(frozen=True)
 class ActiveClock:
-    """A frozen clock; every method returns a new value.
+    """An immutable clock that counts active time; every method returns a new value.
 
-    `active_before_s`: active time up to the last start of the clock. `running_since_s`: when it
-    last began or resumed, None while it stands. `last_s`: its latest change.
+    `active_before_s`: active time up to the last start of the clock. `running_since_s`: when it was
+    last started or resumed, None while it is stopped. `last_s`: the time of its latest change.
     """
 
     active_before_s: float = 0.0
@@ -25,36 +25,44 @@ class ActiveClock:
     last_s: float | None = None
 
     def begin(self, time_s: float) -> "ActiveClock":
-        """Start from zero active time. Raises ClockError when it has begun before."""
+        """Start from zero active time. Raises ClockError if it was started before."""
         if self.last_s is not None:
-            raise ClockError(f"The clock has begun already. Resume it instead (at {time_s} s).")
+            raise ClockError(f"The clock was started before. Resume it instead (at {time_s} s).")
         self._check(time_s)
         return ActiveClock(0.0, time_s, time_s)
 
     def pause(self, time_s: float) -> "ActiveClock":
-        """Stand still from `time_s` on. Raises ClockError when not running or back in time."""
+        """Stop at `time_s`. Raises ClockError if the clock is not running or the time goes back."""
         if self.running_since_s is None:
-            raise ClockError(f"The clock stands already. Resume it before pausing (at {time_s} s).")
+            raise ClockError(f"The clock is stopped. Resume it before pausing (at {time_s} s).")
         return ActiveClock(self.active_s(time_s), None, time_s)
 
     def resume(self, time_s: float) -> "ActiveClock":
-        """Run again from `time_s` on. Raises ClockError when running, not begun or back in time."""
+        """Run again from `time_s` on.
+
+        Raises ClockError if the clock is running or was never started, or if the time goes back.
+        """
         if self.last_s is None:
-            raise ClockError(f"The clock has not begun. Begin it before resuming (at {time_s} s).")
+            raise ClockError(
+                f"The clock has not started. Begin it before resuming (at {time_s} s)."
+            )
         if self.running_since_s is not None:
-            raise ClockError(f"The clock runs already. Pause it before resuming (at {time_s} s).")
+            raise ClockError(f"The clock is running. Pause it before resuming (at {time_s} s).")
         self._check(time_s)
         return ActiveClock(self.active_before_s, time_s, time_s)
 
     def active_s(self, time_s: float) -> float:
-        """Active time at `time_s`, which is now or later. Raises ClockError back in time."""
+        """Return the active time at `time_s`, which must not be earlier than the latest change.
+
+        Raises ClockError if it is.
+        """
         self._check(time_s)
         if self.running_since_s is None:
             return self.active_before_s
         return self.active_before_s + (time_s - self.running_since_s)
 
     def reaches_s(self, active_s: float) -> float | None:
-        """When the active time will be `active_s` if nothing pauses it; None while it stands."""
+        """Return when the active time will reach `active_s` if not paused; None while stopped."""
         if self.running_since_s is None:
             return None
         return self.running_since_s + (active_s - self.active_before_s)

@@ -3,11 +3,11 @@
 A body part is a capsule: all points within `radius` of a segment. It touches a block when the exact
 distance between segment and block is at most its radius. World frame, metres.
 
-Two cheap questions come first, because a body is usually near nothing: is the part's bounding box
-near *any* surface (one box around them all), and then near *this* surface?
+Two cheap tests come first, because a body is usually far from all surfaces: whether the part's
+bounding box meets the one box around *all* surfaces, and then whether it meets *this* surface.
 
-A contact that flickers at its edge would be counted many times. So a contact, once begun, may be
-held until the part is `release_margin_m` further away than where it began (hysteresis).
+A contact that flickers at its edge would be counted many times. So a contact, once begun, may
+continue until the part is `release_margin_m` further away than where it began (hysteresis).
 """
 
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from app.science.tasks.surfaces import TaskLayout
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-# Keeps the pair table of the batched form at a few megabytes.
+# Limits the pair table of the batched form to a few megabytes.
 _FRAMES_AT_ONCE = 256
 
 
@@ -35,7 +35,7 @@ class SurfaceArrays:
 
     @classmethod
     def of(cls, layout: TaskLayout) -> "SurfaceArrays":
-        """Corners of every surface of a layout, in the layout's order."""
+        """Return the corners of every surface of a layout, in the layout's order."""
         center = np.array([surface.center_m for surface in layout.surfaces])
         half = np.array([surface.half_size_m for surface in layout.surfaces])
         keys = tuple(surface.key for surface in layout.surfaces)
@@ -43,15 +43,15 @@ class SurfaceArrays:
 
     @cached_property
     def bounds_m(self) -> tuple[Floats, Floats]:
-        """(3,) corners of the one box around all surfaces."""
+        """The lower and upper corner, (3,) each, of the box around all surfaces."""
         return self.low_m.min(axis=0), self.high_m.max(axis=0)
 
 
 def touching(arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats) -> Bools:
-    """Touches of one frame: bool (S, P).
+    """Return which parts touch which surfaces in one frame: bool (S, P).
 
     `segments_m`: (P, 2, 3) start and end of each part; `radii_m`: (P,). World frame, metres.
-    Raises ValueError where the shapes do not fit.
+    Raises ValueError if the shapes do not fit.
     """
     return touching_and_near(arrays, segments_m, radii_m, 0.0)[0]
 
@@ -59,9 +59,11 @@ def touching(arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats) -> Bool
 def touching_and_near(
     arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats, release_margin_m: float
 ) -> tuple[Bools, Bools]:
-    """Touches of one frame, and what is still near enough to hold a touch: two bool (S, P).
+    """Return which parts touch which surfaces in one frame, and which are near enough to go on.
 
-    Arguments as in `touching`; `release_margin_m` >= 0. Raises ValueError where they do not fit.
+    Both results are bool (S, P); near are those whose contact, once begun, would continue.
+    Arguments as
+    in `touching`; `release_margin_m` >= 0. Raises ValueError if the shapes do not fit.
     """
     n_parts = _check(segments_m, radii_m, release_margin_m, 3)
     is_touching = np.zeros((len(arrays.keys), n_parts), dtype=np.bool_)
@@ -79,9 +81,9 @@ def touching_and_near(
 def touching_frames(
     arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats, release_margin_m: float = 0.0
 ) -> tuple[Bools, Bools]:
-    """Touches of N frames, and what is near enough to hold one: two bool (N, S, P).
+    """Return what `touching_and_near` returns, for N frames: two arrays, bool (N, S, P).
 
-    `segments_m`: (N, P, 2, 3); `radii_m`: (P,). Raises ValueError where they do not fit.
+    `segments_m`: (N, P, 2, 3); `radii_m`: (P,). Raises ValueError if the shapes do not fit.
     """
     n_parts = _check(segments_m, radii_m, release_margin_m, 4)
     shape = (len(segments_m), len(arrays.keys), n_parts)
@@ -100,13 +102,14 @@ def touching_frames(
 
 
 def segment_box_distance_m(start: Floats, end: Floats, low: Floats, high: Floats) -> Floats:
-    """Exact distance between segments and axis-aligned boxes, pair by pair: (K,3) x 4 -> (K,).
+    """Return the exact distances between K segments and K axis-aligned boxes: (K, 3) x 4 -> (K,).
 
     Along the segment p(t) = start + t (end - start) the squared distance is convex and piecewise
     quadratic: its pieces meet where p crosses a face plane. So half its derivative,
-    s(t) = (p - clip(p)) . (end - start), rises monotonically and linearly between these crossings:
-    the last one with s <= 0 and the first one with s >= 0 enclose the minimum, which a straight
-    line between them gives exactly.
+    s(t) = (p - clip(p)) . (end - start), increases monotonically and is linear between these
+    crossings: the last one with s <= 0 and the first one with s >= 0 enclose the minimum, which
+    linear
+    interpolation between them gives exactly.
     """
     along = end - start
     t = np.zeros((len(start), 8))
@@ -126,7 +129,8 @@ def segment_box_distance_m(start: Floats, end: Floats, low: Floats, high: Floats
     s_low, s_high = np.where(falling, slope, -np.inf).max(1), np.where(rising, slope, np.inf).min(1)
     enclosed = np.isfinite(s_low) & np.isfinite(s_high) & (s_high > s_low)
     share = np.divide(-s_low, s_high - s_low, out=np.zeros_like(s_low), where=enclosed)
-    # Where the distance only rises the minimum is at 0, where it only falls at 1: t_low is both.
+    # If the distance only increases, the minimum is at 0; if it only decreases, at 1: t_low is
+    # both.
     best = t_low + share * (t_high - t_low)
     nearest = start + best[:, None] * along
     nearest -= np.clip(nearest, low, high)
@@ -137,7 +141,7 @@ def segment_box_distance_m(start: Floats, end: Floats, low: Floats, high: Floats
 def _near_pairs(
     arrays: SurfaceArrays, segments_m: Floats, radii_m: Floats, margin_m: float
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], Floats] | None:
-    """Surface index, item index and distance of the pairs whose bounding boxes meet (or None)."""
+    """Return surface index, item index and distance of pairs whose bounding boxes meet, or None."""
     start, end = segments_m[:, 0], segments_m[:, 1]
     reach = (radii_m + margin_m)[:, None]
     low, high = np.minimum(start, end) - reach, np.maximum(start, end) + reach
@@ -158,7 +162,7 @@ def _near_pairs(
 
 
 def _check(segments_m: Floats, radii_m: Floats, margin_m: float, n_dim: int) -> int:
-    """Number of parts, or ValueError."""
+    """Return the number of parts; raise ValueError if the shapes do not fit."""
     if segments_m.ndim != n_dim or segments_m.shape[-2:] != (2, 3):
         expected = "(P, 2, 3)" if n_dim == 3 else "(N, P, 2, 3)"
         raise ValueError(f"Expected segments of shape {expected}, got {segments_m.shape}.")

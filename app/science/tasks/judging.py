@@ -1,4 +1,4 @@
-"""Is this touch the right one? The judgement inside the rules (see `rules` for what they are)."""
+"""Whether a touch advances the task or is a mistake; see `rules` for the rules applied here."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -12,20 +12,20 @@ Events = tuple[TaskEvent, ...]
 def event(
     state: TaskState, kind: EventKind, surface: str | None = None, part: str | None = None
 ) -> TaskEvent:
-    """An event at the state's latest time, on both clocks."""
+    """Return an event at the state's latest time, on both clocks."""
     active_s = state.clock.active_s(state.last_s) if state.started else 0.0
     return TaskEvent(kind, state.last_s, active_s, state.completed + 1, surface, part)
 
 
 def stop_clock(state: TaskState, time_s: float) -> TaskState:
-    """The state with its clock standing from `time_s` on."""
+    """Return the state with its clock stopped at `time_s`."""
     return replace(state, clock=state.clock.pause(time_s)) if state.active else state
 
 
 def judge(
     state: TaskState, held_before: frozenset[Contact], begins: Iterable[Contact], time_s: float
 ) -> tuple[TaskState, Events]:
-    """Judge the touches that begin now, surface by surface in the layout's order."""
+    """Judge the contacts that begin now, surface by surface in the layout's order."""
     events: list[TaskEvent] = []
     by_surface: dict[str, list[str]] = {}
     for contact in sorted(begins):
@@ -58,7 +58,7 @@ def _limb(part: str) -> str:
 
 
 def _judge_touch(state: TaskState, contact: Contact, time_s: float) -> tuple[TaskState, Events]:
-    """One new touch by a counting limb, of a panel or the target."""
+    """Judge one new touch of a panel or the target by a limb that counts."""
     layout = state.rules.layout
     panels = [layout.panel_key(box) for box in state.order]
     goal = panels[state.n_green] if state.n_green < len(panels) else layout.target_key
@@ -75,7 +75,11 @@ def _judge_touch(state: TaskState, contact: Contact, time_s: float) -> tuple[Tas
 
 
 def _complete(state: TaskState, contact: Contact, time_s: float) -> tuple[TaskState, Events]:
-    """The target was touched at its time: reset, turn round, walk back where there is a start."""
+    """Complete the task after the target was touched as the goal.
+
+    Reset the panels, reverse the order if configured, and begin the walk back if there is a start
+    square.
+    """
     layout = state.rules.layout
     events = [event(state, EventKind.TASK_COMPLETED, *contact)]
     after = replace(state, n_green=0, completed=state.completed + 1, goal_since_s=time_s)

@@ -1,8 +1,8 @@
-"""From box specifications to the surfaces of a task.
+"""Compute the surfaces of a task from its box specifications.
 
 Hand boxes open towards the participant (+z) and have their panel at the far end (-z); foot boxes
-open at the top and have it on the floor. So the two limbs differ only in which world axis is the
-depth and which walls stand around it, and one construction serves both.
+open at the top and have their panel on the floor. So the two limbs differ only in which world axis
+is the depth and which walls surround it, and the same code builds both.
 """
 
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class _Frame:
-    """Where a limb's walls stand: side -> (world axis, sign), and the axis of depth."""
+    """The walls of a limb's boxes, as side -> (world axis, sign), and their axis of depth."""
 
     walls: dict[Side, tuple[int, int]]
     depth: int
@@ -67,15 +67,19 @@ def build_layout(
 ) -> TaskLayout:
     """Build the surfaces of a task, in a fixed order: box by box (panel, sides), target, start.
 
-    Walls and panel lie outside the cavity and do not overlap each other. Walls reach over the edge
-    of the panel, so a panel is touched from inside its box. With `Side.FRONT_RIM` (hand only) the
-    last `wall_thickness_m` of each wall before the opening become rim bars: together one side.
+    Walls and panel lie outside the cavity and do not overlap each other. Walls extend over the edge
+    of
+    the panel, so a panel is touched from inside its box. With `Side.FRONT_RIM` (hand only) the last
+    `wall_thickness_m` of each wall before the opening become rim bars, which together form one
+    side.
 
     `sides`: None means all four walls and no rim. `start_square`: required for feet (the walk back
-    ends there), refused for hands. `counting_foot`: None lets either foot count.
+    ends
+    there), not allowed for hands. `counting_foot`: None lets either foot count.
 
     Raises LayoutError for sizes that are not positive, numbers that are not 1..n left to right,
-    sides the limb does not have, overlapping boxes or blocks, and a foot box below the floor.
+    sides
+    the limb does not have, overlapping boxes or blocks, and a foot box below the floor.
     """
     check_positive("wall_thickness_m", wall_thickness_m)
     check_positive("panel_thickness_m", panel_thickness_m)
@@ -97,7 +101,7 @@ def build_layout(
 
 
 def _check_sides(limb: Limb, sides: tuple[Side, ...]) -> None:
-    """Refuse unknown or doubled sides, and a rim without walls to sit on."""
+    """Raise LayoutError for unknown or duplicate sides, and for a rim without walls."""
     walls = tuple(_FRAMES[limb].walls)
     valid = (*walls, Side.FRONT_RIM) if limb is Limb.HAND else walls
     names = ", ".join(valid)
@@ -119,7 +123,7 @@ def _block(key: str, kind: SurfaceKind, spec: BlockSpec) -> Surface:
 def _box_surfaces(
     limb: Limb, box: BoxSpec, sides: tuple[Side, ...], wall_m: float, panel_m: float
 ) -> list[Surface]:
-    """Panel, walls and rim bars of one box."""
+    """Return panel, walls and rim bars of one box."""
     frame = _FRAMES[limb]
     low = [c - s / 2 for c, s in zip(box.center_m, box.inner_size_m, strict=True)]
     high = [c + s / 2 for c, s in zip(box.center_m, box.inner_size_m, strict=True)]
@@ -148,7 +152,7 @@ def _box_surfaces(
 def _wall(
     frame: _Frame, side: Side, walls: list[Side], low: list[float], high: list[float], wall_m: float
 ) -> tuple[list[float], list[float]]:
-    """Corners of a wall; left and right walls also fill the corners towards walls that exist."""
+    """Return the corners of a wall; left and right walls also cover the ends of the others."""
     axis, sign = frame.walls[side]
     wall_low, wall_high = list(low), list(high)
     wall_low[axis], wall_high[axis] = (

@@ -1,10 +1,10 @@
-"""The words of the box tasks: limbs, sides, kinds of surface, and which body parts count."""
+"""The terms of the box tasks: limbs, sides, kinds of surface, and which body parts count."""
 
 from enum import StrEnum
 
 
 class Limb(StrEnum):
-    """Which limb a task is done with; it is also the first word of every surface key."""
+    """The limb with which a task is done; it is also the first word of every surface key."""
 
     HAND = "hand"
     FOOT = "foot"
@@ -18,7 +18,7 @@ class Laterality(StrEnum):
 
 
 class SurfaceKind(StrEnum):
-    """What touching a surface means."""
+    """The role of a surface in the task."""
 
     PANEL = "panel"
     SIDE = "side"
@@ -27,10 +27,11 @@ class SurfaceKind(StrEnum):
 
 
 class Side(StrEnum):
-    """A wall of a box, seen by the participant (who faces -z).
+    """A wall of a box, as seen by the participant (who faces -z).
 
     Hand boxes have left, right, top, bottom and, where configured, a front rim: the edges around
-    the opening. Foot boxes have left, right, front (nearer to the participant, +z) and back (-z).
+    the
+    opening. Foot boxes have left, right, front (nearer to the participant, +z) and back (-z).
     """
 
     LEFT = "left"
@@ -43,7 +44,7 @@ class Side(StrEnum):
 
 
 class Direction(StrEnum):
-    """Where the first task starts: by the writing hand, or the same for everybody.
+    """Where the first order starts: depending on the writing hand, or the same for everybody.
 
     By hand means: right-handed people go from right to left, left-handed people from left to right
     (Karas 2020, appendix A.1).
@@ -59,13 +60,13 @@ _PHALANGES = ("Proximal", "Intermediate", "Distal")
 
 
 def hand_parts(hand: Laterality) -> frozenset[str]:
-    """The hand and its 15 finger bones, by their Unity HumanBodyBones names (16 names)."""
+    """Return the hand and its 15 finger bones by their Unity HumanBodyBones names (16 names)."""
     prefix = hand.value.capitalize()
     fingers = {f"{prefix}{finger}{phalanx}" for finger in _FINGERS for phalanx in _PHALANGES}
     return frozenset(fingers | {f"{prefix}Hand"})
 
 
 def foot_parts(foot: Laterality | None) -> frozenset[str]:
-    """Foot and toes of one foot; of both feet for None."""
+    """Return the names of foot and toes of one foot, or of both feet for None."""
     feet = (Laterality.LEFT, Laterality.RIGHT) if foot is None else (foot,)
     return frozenset(f"{f.value.capitalize()}{part}" for f in feet for part in ("Foot", "Toes"))

@@ -2,30 +2,31 @@
 
 **Order.** Panels are touched one after the other; the first order starts at the writing hand's
 side (or as configured). The target completes the task once every panel is green, and all panels
-turn grey again. Where configured (hands), order and displayed numbers then turn round, each time.
+turn grey again. Where configured (hands), order and displayed numbers are then reversed, each time.
 
-**Who counts.** Hand tasks: the writing hand and its fingers. Foot tasks: foot and toes, of either
-foot unless one is configured. Other parts on a panel or the target are logged as `wrong_part`.
+**Which parts count.** Hand tasks: the writing hand and its fingers. Foot tasks: foot and toes, of
+either foot unless one is configured. Other parts on a panel or the target are logged as
+`wrong_part`.
 
 **What a touch is.** A limb's touch of a panel or the target begins when its first counting part
 begins to touch and lasts until its last one lets go: a finger joining the hand is no second touch.
 
-**Only a new touch counts.** A touch is judged once, at the instant it begins, by the goal as it
-stood before that instant. So a hand resting on a panel that later becomes current must leave it and
-come back, and one instant never advances two goals. It is `out_of_order` on a panel that is neither
-current nor green, and `target_early` on the target before its time; green panels may be touched
-again freely.
+**Only a new touch counts.** A touch is judged once, at the instant it begins, by the goal just
+before that instant. So a hand resting on a panel that later becomes current must leave it and come
+back, and one instant never advances two goals. It is `out_of_order` on a panel that is neither
+current nor green, and `target_early` on the target before it is the goal; touching a green panel
+again has no effect.
 
 **Pauses.** While paused, walking back or frozen, contacts are remembered but do not count. What is
 already touched when the clock starts or resumes (also at that very instant) is no new touch, but
 it does make a side red again.
 
 **Walk back.** Completing a foot task stops the clock until a counting foot steps on the start
-square. A foot that was there already must step again; one that stepped there during an operator's
-pause is found standing there at the resume.
+square. A foot that was there already must step again; if one stepped there during an operator's
+pause and still stands there, the walk back ends when the phase resumes.
 
-**Sides.** A side is red while any part touches it, whichever and however many, and white otherwise;
-the rim bars of a box are one side. Only active time is red.
+**Sides.** A side is red while any body part touches it, and white otherwise; the rim bars of a box
+are one side. Sides are red in active time only.
 
 Sources: Karas 2020, sections 7.1.3 and 7.2 and appendix A.1; what it leaves open is decided here.
 """
@@ -46,10 +47,10 @@ from app.science.tasks.state import (
 
 
 def advance(state: TaskState, step: ContactChange | Command) -> tuple[TaskState, Events]:
-    """The state after one input, and what happened.
+    """Return the state after one input, and the events that the input caused.
 
-    Raises TaskRuleError for a command that does not fit the state, an unknown surface, a contact
-    that both begins and ends in one change, and time going back; the old state stays valid.
+    Raises TaskRuleError for a command that is not valid in the state, an unknown surface, a contact
+    that both begins and ends in one change, and a time that goes back; the old state stays valid.
     """
     if not (math.isfinite(step.time_s) and step.time_s >= state.last_s):
         raise TaskRuleError(
@@ -58,14 +59,14 @@ def advance(state: TaskState, step: ContactChange | Command) -> tuple[TaskState,
         )
     before = replace(state, last_s=step.time_s)
     if isinstance(step, Command):
-        after, events = _OBEY[step.kind](before, step.time_s)
+        after, events = _HANDLERS[step.kind](before, step.time_s)
     else:
         after, events = _change_contacts(before, step)
     return after, events + _side_events(state, after)
 
 
 def _side_events(before: TaskState, after: TaskState) -> Events:
-    """What turned white, then what turned red, each in the layout's order."""
+    """Return events for sides that turned white, then for those turned red, in layout order."""
     was, now = before.red_units(), after.red_units()
     if was.keys() == now.keys():
         return ()
@@ -108,7 +109,7 @@ def _freeze(state: TaskState, time_s: float) -> tuple[TaskState, Events]:
     return after, (event(after, EventKind.FROZEN),)
 
 
-_OBEY = {
+_HANDLERS = {
     CommandKind.START: _start,
     CommandKind.PAUSE: _pause,
     CommandKind.RESUME: _resume,
@@ -130,8 +131,9 @@ def _change_contacts(state: TaskState, change: ContactChange) -> tuple[TaskState
     after = replace(state, held=held, arrived=state.arrived & held)
     if state.walk_back_since_s is not None:
         return _step_on_start(after, begins, change.time_s)
-    # At the very instant the clock starts or resumes a contact counts as held, not as new: this is
-    # what lets the record be verified from intervals, which begin there too.
+    # At the very instant the clock starts or resumes, a contact counts as existing, not as new. So
+    # the
+    # record can be verified from its intervals, which begin at that instant too.
     if state.clock.running_since_s is None or change.time_s <= state.clock.running_since_s:
         return after, ()
     return judge(after, state.held, begins, change.time_s)
@@ -154,7 +156,7 @@ def _check_change(state: TaskState, change: ContactChange) -> None:
 def _step_on_start(
     state: TaskState, begins: list[Contact], time_s: float
 ) -> tuple[TaskState, Events]:
-    """During a walk back: remember counting feet that step on the start square."""
+    """Record which counting feet step on the start square during a walk back."""
     start, counting = state.rules.layout.start_key, state.rules.counting_parts
     since_s = state.walk_back_since_s
     steps = [

@@ -1,14 +1,14 @@
-"""A phase from frames and commands, and once more from its record.
+"""Run a phase from frames and commands, and replay it from its record.
 
-`TaskRun` holds contacts, rules, intervals and summary in one place. `rederive` plays a phase again
-from its record, to check that the stored completions are what happened.
+`TaskRun` keeps contacts, rules, intervals and summary in one place. `rederive` replays a phase from
+its record, to check that the stored completions are what happened.
 
 The record is the contact intervals and the commands. Walk backs are not recorded: they follow from
-the completions. Intervals exist only where contacts counted, which decides what comes first at
-one instant: if the clock could be running before it, the contacts counted, so they precede the
+the completions. Intervals exist only where contacts counted, which determines the order of inputs
+at one instant: if the clock could be running before it, the contacts counted, so they precede the
 commands; if the phase was not started or paused, the commands precede them.
 
-One thing no interval can tell: whether a contact that begins in a pause of length zero began before
+Intervals leave one case open: whether a contact that begins in a pause of length zero began before
 or after it. It is taken to have begun before.
 """
 
@@ -31,10 +31,11 @@ from app.science.tasks.tracker import ContactInterval, ContactTracker
 
 
 class TaskRun:
-    """Feeds one phase to the rules and keeps its record.
+    """Applies the rules to one phase, input by input, and keeps its record.
 
     `state`: the present TaskState; `events`, `intervals`, `commands`: everything so far. Inputs
-    must come in order of time; an input that is refused (TaskRuleError) changes nothing.
+    must
+    come in order of time; a rejected input (TaskRuleError) changes nothing.
     """
 
     def __init__(self, rules: TaskRules, parts: tuple[str, ...]) -> None:
@@ -46,7 +47,7 @@ class TaskRun:
         self._tracker = ContactTracker(surfaces, parts)
 
     def command(self, kind: CommandKind, time_s: float) -> tuple[TaskEvent, ...]:
-        """Start, pause, resume or freeze; what happened."""
+        """Apply a command (start, pause, resume or freeze) and return the resulting events."""
         command = Command(kind, time_s)
         events = self.apply(command)
         self.commands.append(command)
@@ -55,19 +56,22 @@ class TaskRun:
     def frame(
         self, time_s: float, touching: Bools, near: Bools | None = None
     ) -> tuple[TaskEvent, ...]:
-        """The touches of one frame, (S, P) as from `contacts.touching_and_near`; what happened."""
+        """Apply the contacts of one frame and return the resulting events.
+
+        `touching`, `near`: (S, P) as `contacts.touching_and_near` returns them.
+        """
         change = self._tracker.observe(time_s, touching, near)
         return self.apply(change) if change else ()
 
     def apply(self, step: ContactChange | Command) -> tuple[TaskEvent, ...]:
-        """One input of the rules; what happened."""
+        """Apply one input of the rules and return the resulting events."""
         self.state, events = advance(self.state, step)
         self.intervals += self._tracker.settle(self.state)
         self.events += events
         return events
 
     def summary(self) -> PhaseSummary:
-        """What the phase comes to so far, over the intervals that have closed."""
+        """Summarise the phase so far, from the intervals that have been closed."""
         return summarise(self.events, self.intervals)
 
 
@@ -81,10 +85,11 @@ def rederive(
     *,
     initial: TaskState | None = None,
 ) -> tuple[Completion, ...]:
-    """The completions that follow from stored intervals and commands (in the order given).
+    """Return the completions that follow from stored intervals and commands (in the order given).
 
-    `initial` is for a run that began where another had stopped; by default the rules' own. Raises
-    TaskRuleError where the record contradicts itself.
+    `initial` is the state from which to start, for a run that continues another; by default the
+    initial
+    state of the rules. Raises TaskRuleError if the record contradicts itself.
     """
     return completions(replay(rules, intervals, commands, initial=initial)[1])
 
@@ -96,19 +101,19 @@ def replay(
     *,
     initial: TaskState | None = None,
 ) -> tuple[TaskState, tuple[TaskEvent, ...]]:
-    """Final state and all events that follow from stored intervals and commands.
+    """Return the final state and all events that follow from stored intervals and commands.
 
-    Raises TaskRuleError where the record contradicts itself.
+    Raises TaskRuleError if the record contradicts itself.
     """
     contacts = _changes(intervals)
-    told: dict[float, list[_Step]] = defaultdict(list)
+    commands_at: dict[float, list[_Step]] = defaultdict(list)
     for command in commands:
-        told[command.time_s].append(command)
+        commands_at[command.time_s].append(command)
     state = initial or rules.initial()
     events: list[TaskEvent] = []
-    for time_s in sorted(contacts.keys() | told.keys()):
+    for time_s in sorted(contacts.keys() | commands_at.keys()):
         counted = state.started and not state.paused
-        first, second = contacts.get(time_s, []), told.get(time_s, [])
+        first, second = contacts.get(time_s, []), commands_at.get(time_s, [])
         for step in (first + second) if counted else (second + first):
             state, found = advance(state, step)
             events += found
@@ -116,7 +121,7 @@ def replay(
 
 
 def _changes(intervals: Iterable[ContactInterval]) -> dict[float, list[_Step]]:
-    """The contact changes at each instant; intervals that meet are one contact."""
+    """Return the contact changes at each instant; adjoining intervals are one contact."""
     begins: dict[float, set[Contact]] = defaultdict(set)
     ends: dict[float, set[Contact]] = defaultdict(set)
     instants: dict[float, set[Contact]] = defaultdict(set)
@@ -131,9 +136,9 @@ def _changes(intervals: Iterable[ContactInterval]) -> dict[float, list[_Step]]:
             instants[interval.end_s].add(contact)
     steps: dict[float, list[_Step]] = {}
     for time_s in begins.keys() | ends.keys():
-        new, gone = begins[time_s] - ends[time_s], ends[time_s] - begins[time_s]
-        brief = instants[time_s] - lasting[time_s]
-        steps[time_s] = [ContactChange(time_s, tuple(sorted(new)), tuple(sorted(gone)))]
-        if brief:
-            steps[time_s].append(ContactChange(time_s, (), tuple(sorted(brief))))
+        new, ended = begins[time_s] - ends[time_s], ends[time_s] - begins[time_s]
+        momentary = instants[time_s] - lasting[time_s]
+        steps[time_s] = [ContactChange(time_s, tuple(sorted(new)), tuple(sorted(ended)))]
+        if momentary:
+            steps[time_s].append(ContactChange(time_s, (), tuple(sorted(momentary))))
     return steps

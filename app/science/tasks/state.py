@@ -1,7 +1,8 @@
-"""What goes into the task rules, what comes out, and the state between.
+"""The inputs of the task rules, their outputs, and the state of a phase.
 
-In: `Command` (start, pause, resume, freeze) and `ContactChange` (contacts that begin and end at one
-instant). Out: `TaskEvent`. Both carry seconds of one monotonic clock. All values are frozen.
+Inputs: `Command` (start, pause, resume, freeze) and `ContactChange` (contacts that begin and end at
+one instant). Output: `TaskEvent`. All have times in seconds of one monotonic clock. All values are
+frozen.
 """
 
 from dataclasses import dataclass, field
@@ -15,7 +16,7 @@ from app.science.tasks.surfaces import TaskLayout
 
 
 class TaskRuleError(ValueError):
-    """An input the rules cannot accept in this state; the message says what they can."""
+    """An input that is not valid in this state; the message lists what is valid."""
 
 
 class Contact(NamedTuple):
@@ -26,7 +27,7 @@ class Contact(NamedTuple):
 
 
 class CommandKind(StrEnum):
-    """What whoever conducts the phase can say. Freeze is the end."""
+    """The commands that control a phase. Freeze ends it."""
 
     START = "start"
     PAUSE = "pause"
@@ -36,7 +37,7 @@ class CommandKind(StrEnum):
 
 @dataclass(frozen=True)
 class Command:
-    """A command and when it holds (seconds, monotonic)."""
+    """A command and the time at which it takes effect (seconds, monotonic)."""
 
     kind: CommandKind
     time_s: float
@@ -55,7 +56,7 @@ class ContactChange:
 
 
 class EventKind(StrEnum):
-    """What the rules found out. Only PANEL_GREEN and TASK_COMPLETED are progress."""
+    """The kinds of event in a phase. Only PANEL_GREEN and TASK_COMPLETED are progress."""
 
     STARTED = "started"
     PAUSED = "paused"
@@ -75,12 +76,13 @@ class EventKind(StrEnum):
 
 @dataclass(frozen=True)
 class TaskEvent:
-    """Something that happened.
+    """Something that happened in a phase, as the rules report it.
 
     `time_s` monotonic, `active_s` on the active clock. `task`: the running task, 1 for the first (a
-    completion carries the task it completes). `surface`, `part`: who touched what; for side_red and
-    side_white the surface is the side's unit ("hand/2/left", "hand/2/front_rim") and `part` is the
-    part that turned it red.
+    completion has the number of the task it completes). `surface`, `part`: the surface touched and
+    the
+    part touching it; for side_red and side_white the surface is the side's unit ("hand/2/left",
+    "hand/2/front_rim") and `part` is the part that turned it red.
     """
 
     kind: EventKind
@@ -93,9 +95,9 @@ class TaskEvent:
 
 @dataclass(frozen=True)
 class TaskRules:
-    """A layout as one participant plays it.
+    """A layout together with a participant's writing hand.
 
-    `writing_hand` decides the direction and, in hand tasks, which parts count.
+    `writing_hand` determines the direction and, in hand tasks, which parts count.
     """
 
     layout: TaskLayout
@@ -120,18 +122,21 @@ class TaskRules:
         return left_to_right if starts_left else left_to_right[::-1]
 
     def initial(self) -> "TaskState":
-        """The state before the start."""
+        """Return the state before the start."""
         return TaskState(self, self.first_order)
 
 
 @dataclass(frozen=True)
 class TaskState:
-    """Where a phase stands; a fold of its inputs by `rules.advance`.
+    """The state of a phase, computed from its inputs by `rules.advance`.
 
     `order`: box numbers in the current order; the first `n_green` of them are green. `completed`:
-    tasks completed. `goal_since_s`: when the current goal became current. `held`: contacts that
-    exist now, whether or not they count. `walk_back_since_s`: None unless walking back. `arrived`:
-    counting feet that have stepped on the start square during this walk back and stand there still.
+    tasks
+    completed. `goal_since_s`: when the current goal became current. `held`: contacts that exist
+    now,
+    whether or not they count. `walk_back_since_s`: None unless walking back. `arrived`: counting
+    feet
+    that have stepped on the start square during this walk back and are still on it.
     """
 
     rules: TaskRules
@@ -149,7 +154,7 @@ class TaskState:
 
     @property
     def started(self) -> bool:
-        """Whether the start command has come."""
+        """Whether the phase has received its start command."""
         return self.clock.last_s is not None
 
     @property
@@ -158,7 +163,7 @@ class TaskState:
         return self.clock.running_since_s is not None
 
     def red_units(self) -> dict[str, str]:
-        """Sides that are red now: unit -> the (alphabetically first) part touching it."""
+        """Return the sides that are red now: unit -> alphabetically first part touching it."""
         if not self.active:
             return {}
         red: dict[str, str] = {}

@@ -1,7 +1,7 @@
-"""What a phase comes to: completions, mistakes, and how long each side was red.
+"""The results of a phase: completed tasks, mistakes, and how long each side was red.
 
 A side is red while at least one part touches it, so its red time is the *union* of its parts'
-intervals. Times of single parts overlap and are never summed into it.
+intervals. The times of single parts overlap, so their sum is not the red time.
 """
 
 from collections.abc import Iterable
@@ -19,8 +19,9 @@ class Completion:
     """One completed task.
 
     `number`: 1 for the first. `completed_s`: monotonic clock; `completed_active_s`: active clock.
-    `duration_s`: active time since the completion before, or since the start. `order`: panel keys
-    as they were touched. The counts are the mistakes made during this task.
+    `duration_s`: active time since the previous completion, or since the start. `order`: panel keys
+    as
+    they were touched. The counts are the mistakes made during this task.
     """
 
     number: int
@@ -35,9 +36,10 @@ class Completion:
 
 @dataclass(frozen=True)
 class PhaseSummary:
-    """A whole phase; the counts of mistakes include the task left unfinished.
+    """The results of a whole phase; the counts of mistakes include the unfinished last task.
 
-    `side_contacts`: how often a side turned red, split by no pause. Times in active seconds.
+    `side_contacts`: how often a side turned red; a pause does not split a contact. Times in active
+    seconds.
     """
 
     completions: tuple[Completion, ...]
@@ -50,12 +52,12 @@ class PhaseSummary:
 
     @property
     def side_contact_s(self) -> float:
-        """Red time summed over the sides (two red sides at once count twice)."""
+        """Red time summed over the sides (two sides red simultaneously count twice)."""
         return sum(self.side_red_time_s.values())
 
 
 def red_spans(intervals: Iterable[ContactInterval]) -> dict[str, tuple[Span, ...]]:
-    """When each touched side was red: side -> disjoint spans in order, active clock, seconds."""
+    """Return when each touched side was red: side -> disjoint spans in order, in active seconds."""
     by_side: dict[str, list[Span]] = {}
     for interval in intervals:
         side = side_unit(interval.surface)
@@ -65,12 +67,15 @@ def red_spans(intervals: Iterable[ContactInterval]) -> dict[str, tuple[Span, ...
 
 
 def side_red_time_s(intervals: Iterable[ContactInterval]) -> dict[str, float]:
-    """Seconds each touched side was red: the union over its parts, active clock."""
+    """Return how many active seconds each touched side was red: the union over its parts."""
     return {side: _length(spans) for side, spans in red_spans(intervals).items()}
 
 
 def part_side_time_s(intervals: Iterable[ContactInterval]) -> dict[tuple[str, str], float]:
-    """Seconds each part touched each side, active clock: (side, part) -> s. These overlap."""
+    """Return how long each part touched each side: (side, part) -> seconds of the active clock.
+
+    The times of different parts overlap.
+    """
     by_part: dict[str, list[ContactInterval]] = {}
     for interval in intervals:
         by_part.setdefault(interval.part, []).append(interval)
@@ -82,7 +87,7 @@ def part_side_time_s(intervals: Iterable[ContactInterval]) -> dict[tuple[str, st
 
 
 def union(spans: Iterable[Span]) -> tuple[Span, ...]:
-    """Merge spans that overlap or meet; disjoint spans in order."""
+    """Merge spans that overlap or adjoin; return disjoint spans in order."""
     merged: list[Span] = []
     for begin, end in sorted(spans):
         if merged and begin <= merged[-1][1]:
@@ -93,7 +98,7 @@ def union(spans: Iterable[Span]) -> tuple[Span, ...]:
 
 
 def completions(events: Iterable[TaskEvent]) -> tuple[Completion, ...]:
-    """The completed tasks of a phase, in order."""
+    """Return the completed tasks of a phase, in order."""
     found: list[Completion] = []
     task = Completion(1, 0.0, 0.0, 0.0, ())
     for event in events:
@@ -112,7 +117,7 @@ def completions(events: Iterable[TaskEvent]) -> tuple[Completion, ...]:
 
 
 def summarise(events: Iterable[TaskEvent], intervals: Iterable[ContactInterval]) -> PhaseSummary:
-    """Everything a phase comes to, from its events and its closed intervals."""
+    """Summarise a phase from its events and its closed intervals."""
     events, intervals = tuple(events), tuple(intervals)
     kinds = [event.kind for event in events]
     return PhaseSummary(

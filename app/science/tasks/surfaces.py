@@ -1,16 +1,16 @@
-"""What the place of a task is made of: boxes, target and start square as axis-aligned surfaces.
+"""The objects of a task: boxes, target and start square as axis-aligned surfaces.
 
 A task is a row of boxes and one target. Each box has a *panel* to touch and *sides* to avoid:
 
-- hand boxes stand in front of the participant and open towards them (+z); the grey panel closes the
+- hand boxes are in front of the participant and open towards them (+z); the grey panel closes the
   far end (-z);
-- foot boxes stand on the floor and open at the top; the panel is the floor plate.
+- foot boxes are on the floor and open at the top; the panel is the floor plate.
 
 World frame: +x right, +y up, the participant faces -z, the origin lies on the floor at the centre
-of the start square; metres. Box numbers are places, 1..n from left to right. The number *displayed*
-at a box follows the current order and is the rules' business (`rules.displayed_numbers`).
+of the start square; metres. Boxes are numbered by their positions, 1..n from left to right. The
+number *displayed* at a box follows the current order (`views.displayed_numbers`).
 
-Sizes and places are ours: the thesis (Karas 2020, chapter 7) gives none.
+The sizes and positions were chosen for Reembody: the thesis (Karas 2020, chapter 7) gives none.
 """
 
 from dataclasses import dataclass
@@ -22,12 +22,12 @@ Vector3 = tuple[float, float, float]
 
 
 class LayoutError(ValueError):
-    """The configured boxes cannot make a task; the message says which value and what is valid."""
+    """The configured boxes are not a valid layout; the message names the value and the remedy."""
 
 
 @dataclass(frozen=True)
 class BoxSpec:
-    """One box: its place in the row and its cavity (the space inside the walls).
+    """One box: its position in the row and its cavity (the space inside the walls).
 
     `number`: 1..n from left (-x) to right. `center_m`: centre of the cavity, world frame.
     `inner_size_m`: (width x, height y, depth z) of the cavity.
@@ -52,7 +52,8 @@ class Surface:
 
     `key`: "hand/2/panel", "hand/2/left", "hand/2/front_rim/top", "hand/target", "foot/start".
     `center_m`, `half_size_m`: world frame, metres. `box`: number of its box, None for target and
-    start. `side`: set for kind SIDE only.
+    start.
+    `side`: set for kind SIDE only.
     """
 
     key: str
@@ -64,22 +65,23 @@ class Surface:
 
     @property
     def unit(self) -> str:
-        """What turns red and is timed as one: the key, but for rim bars "hand/2/front_rim"."""
+        """The unit that turns red and is timed: the key, or "hand/2/front_rim" for rim bars."""
         return side_unit(self.key) or self.key
 
 
 def side_unit(key: str) -> str | None:
-    """The side a surface key belongs to, with the rim bars of a box as one; None for no side."""
+    """Return the side to which a surface belongs, counting rim bars as one; None if none."""
     words = key.split("/")
     return "/".join(words[:3]) if len(words) > 2 and words[2] != "panel" else None
 
 
 @dataclass(frozen=True)
 class TaskLayout:
-    """A validated task place; the same for every participant of a study version.
+    """The validated surfaces of a task; the same for every participant of a study version.
 
-    `reverse_after_task`: whether the order turns round after each completion. `counting_foot`: the
-    foot that counts in a foot task, None for either. `direction`: where the first order starts.
+    `reverse_after_task`: whether the order is reversed after each completion. `counting_foot`: the
+    foot
+    that counts in a foot task, None for either. `direction`: where the first order starts.
     """
 
     limb: Limb
@@ -105,10 +107,10 @@ class TaskLayout:
 
     @property
     def start_key(self) -> str | None:
-        """Key of the start square; None where there is no walk back (hand tasks)."""
+        """Key of the start square; None if there is no walk back (hand tasks)."""
         key = f"{self.limb}/start"
         return key if key in self.by_key else None
 
     def panel_key(self, box: int) -> str:
-        """Key of a box's panel."""
+        """Return the key of a box's panel."""
         return f"{self.limb}/{box}/panel"

@@ -1,8 +1,9 @@
-"""From touches per frame to contact intervals, the unit that is stored.
+"""Turn the touches of each frame into contact intervals, the unit that is stored.
 
-One part on one surface gives an interval from when it begins to count until it no longer does. A
-pause closes every open interval; what is still touched when the clock resumes begins a new one at
-that instant. So intervals hold active time only, and their lengths add up on either clock.
+A part on a surface gives one interval, from when the contact begins to count until it no longer
+does. A pause closes every open interval; a contact that still exists when the clock resumes begins
+a new one at that instant. So intervals contain active time only, and their lengths are the same on
+either clock.
 """
 
 from dataclasses import dataclass
@@ -17,10 +18,11 @@ Bools = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class ContactInterval:
-    """A part counted as touching a surface from begin to end (seconds).
+    """An interval in which a part counted as touching a surface, in seconds.
 
     `begin_s`, `end_s`: monotonic clock. `begin_active_s`, `end_active_s`: active clock; the length
-    is the same on both. The touch that stops the clock has length zero.
+    is
+    the same on both. The touch that stops the clock has length zero.
     """
 
     surface: str
@@ -32,14 +34,14 @@ class ContactInterval:
 
 
 class ContactTracker:
-    """Follows contacts through a phase. Per frame:
+    """Tracks the contacts of a phase. Per frame:
 
         change = tracker.observe(time_s, touching, near)
         state, events = advance(state, change)
         intervals += tracker.settle(state)
 
-    After a command only `settle` is called. A frame takes hold with its `settle`, so one that the
-    rules refuse leaves no trace. A change without contacts (false) needs neither call.
+    After a command only `settle` is called. A frame takes effect with its `settle`, so one that the
+    rules reject leaves no trace. A change without contacts (false) needs neither call.
     """
 
     def __init__(self, surfaces: tuple[str, ...], parts: tuple[str, ...]) -> None:
@@ -50,11 +52,13 @@ class ContactTracker:
         self._was_active = False
 
     def observe(self, time_s: float, touching: Bools, near: Bools | None = None) -> ContactChange:
-        """What begins and ends with this frame.
+        """Return the contacts that begin and end with this frame.
 
         `touching`: (S, P), surfaces and parts in the order given at construction. `near`: (S, P),
-        where a contact that exists is held although it no longer touches (hysteresis); None holds
-        nothing. Raises ValueError where the shapes do not fit.
+        where an
+        existing contact continues although the part no longer touches (hysteresis); None for no
+        hysteresis.
+        Raises ValueError if the shapes do not fit.
         """
         for name, array in (("touching", touching), ("near", near)):
             if array is not None and array.shape != self._touching.shape:
@@ -69,18 +73,18 @@ class ContactTracker:
         return ContactChange(time_s, begins, ends)
 
     def settle(self, state: TaskState) -> tuple[ContactInterval, ...]:
-        """Open and close intervals so that they fit the state after an input; those that closed."""
+        """Open and close intervals to match the state after an input; return those that closed."""
         if self._next is not None:  # the rules have accepted the change
             self._touching, self._next = self._next, None
         time_s = state.last_s
         counts: frozenset[Contact] = state.held if state.active else frozenset()
-        # The touch that stopped the clock did count, so it is opened before everything closes.
+        # The touch that stopped the clock counted, so its interval is opened before all are closed.
         touched = state.held if self._was_active else counts
         for contact in touched - self._open.keys():
             self._open[contact] = time_s, state.clock.active_s(time_s)
         self._was_active = state.active
-        gone = sorted(self._open.keys() - counts)
-        return tuple(self._close(contact, state) for contact in gone)
+        closing = sorted(self._open.keys() - counts)
+        return tuple(self._close(contact, state) for contact in closing)
 
     def _close(self, contact: Contact, state: TaskState) -> ContactInterval:
         begin_s, begin_active_s = self._open.pop(contact)

@@ -1,4 +1,4 @@
-"""What makes a set of boxes a possible task place; every refusal names the value and the remedy."""
+"""Validate the boxes of a task; every error names the value and the remedy."""
 
 import math
 from itertools import combinations, pairwise
@@ -13,7 +13,7 @@ _TOUCHING_M = 1e-9
 
 
 def check_positive(name: str, value: float) -> None:
-    """Refuse a length that is not a positive, finite number of metres (LayoutError)."""
+    """Raise LayoutError unless the length is a positive, finite number of metres."""
     if not (math.isfinite(value) and value > 0):
         raise LayoutError(f"{name} is {value}. Give a positive length in metres.")
 
@@ -26,7 +26,7 @@ def check_layout(
     wall_m: float,
     panel_m: float,
 ) -> None:
-    """Refuse what could not be drawn or played (LayoutError); lengths in metres, world frame."""
+    """Raise LayoutError for a layout that cannot be displayed or used; metres, world frame."""
     _check_numbers(boxes)
     _check_start(limb, start_square)
     for box in boxes:
@@ -106,7 +106,7 @@ def _extent(name: str, block: BlockSpec) -> _Extent:
 
 
 def _outer(limb: Limb, box: BoxSpec, wall_m: float, panel_m: float) -> _Extent:
-    """The box with its walls and panel: never smaller than what is built."""
+    """Return the extent of a box with its walls and panel, at least as large as what is built."""
     _, low, high = _extent("", BlockSpec(box.center_m, box.inner_size_m))
     depth = 2 if limb is Limb.HAND else 1
     grown_low = [low[a] - (panel_m if a == depth else wall_m) for a in range(3)]

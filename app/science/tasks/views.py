@@ -1,4 +1,4 @@
-"""What to show of a state: the goal, the colours and the numbers."""
+"""What to display of a task's state: the goal, the colours and the numbers."""
 
 from enum import StrEnum
 
@@ -7,7 +7,7 @@ from app.science.tasks.state import TaskState
 
 
 class Colour(StrEnum):
-    """The four meanings a surface can show; palettes decide how they look."""
+    """The four colours that a surface can have; a palette determines how each looks."""
 
     GREY = "grey"
     GREEN = "green"
@@ -16,9 +16,11 @@ class Colour(StrEnum):
 
 
 def current_goal(state: TaskState) -> str | None:
-    """Key of the surface to touch next: a panel, the target, or the start square of a walk back.
+    """Return the key of the surface to touch next: a panel, the target, or the start square.
 
-    Before the start it is the first panel, during a pause what it will be; None once frozen.
+    The start square is the goal of a walk back. Before the start the goal is the first panel, and
+    in a
+    pause the goal of the moment when the phase resumes; None once frozen.
     """
     layout = state.rules.layout
     if state.frozen:
@@ -31,9 +33,11 @@ def current_goal(state: TaskState) -> str | None:
 
 
 def surface_state(state: TaskState) -> dict[str, Colour]:
-    """Colour of every surface: panels grey or green, sides white or red, target green, start white.
+    """Return the colour of every surface.
 
-    Sides are white while the clock stands: colours show what is being counted.
+    Panels are grey or green, sides white or red, the target green, the start square white. Sides
+    are
+    white while the clock is stopped: colours show what is being counted.
     """
     layout, red = state.rules.layout, state.red_units()
     green = {layout.panel_key(box) for box in state.order[: state.n_green]}
@@ -50,5 +54,5 @@ def surface_state(state: TaskState) -> dict[str, Colour]:
 
 
 def displayed_numbers(state: TaskState) -> dict[int, int]:
-    """The number shown at each box: its place in the current order, 1 for the first to touch."""
+    """Return the number shown at each box: its place in the current order, starting at 1."""
     return {box: place for place, box in enumerate(state.order, start=1)}

@@ -19,7 +19,12 @@ from app.science.joint_error.errors import (
     JointErrorSummary,
     joint_error_summary,
 )
-from app.science.joint_error.recorded import Asked, Recorded, RecordedErrors, recorded_errors
+from app.science.joint_error.recorded import (
+    Recorded,
+    RecordedErrors,
+    ReferenceMotion,
+    recorded_errors,
+)
 from app.science.rotations import FloatArray, from_rotation_vector, identity, multiply, normalise
 from app.science.skeleton.joints import JOINT_INDEX
 
@@ -60,7 +65,7 @@ def nodding(size_deg: float) -> FloatArray:
 def recorded(target: FloatArray, actual: FloatArray, reference: HingeReference | None) -> Recorded:
     """A run whose avatar is seen from BEGIN on, on a clock that did not begin at zero."""
     times_s = 500.0 + np.arange(FRAMES) / RATE_HZ
-    asked = Asked(target) if reference is None else reference.recording(times_s, target)
+    asked = ReferenceMotion(target) if reference is None else reference.recording(times_s, target)
     frames = np.arange(BEGIN, FRAMES)
     return Recorded(times_s, asked, frames, times_s[frames], actual[frames])
 

@@ -55,7 +55,7 @@ def _counted(run: Run) -> tuple[Indices, Indices]:
 def _recorded(run: Run, partners: Indices, frames: Indices) -> Recorded:
     return Recorded(
         run.target.times_s,
-        run.asked,
+        run.reference,
         partners,
         run.actual.times_s[frames],
         run.actual.rotations[frames],

@@ -37,7 +37,7 @@ def measure(phase: Phase, runs: Sequence[Run]) -> AchievedLatency:
     pairs = [
         StreamPair(
             run.target.times_s,
-            run.asked.rotations,
+            run.reference.rotations,
             run.actual.times_s,
             run.actual.rotations,
             run.actual.active,

@@ -25,7 +25,7 @@ from app.features.record.telemetry.frames import (
 from app.models import TelemetryChunk
 from app.platform.access import session_by_id
 from app.science.avatar.targets import HingeReference
-from app.science.joint_error import Asked
+from app.science.joint_error import ReferenceMotion
 from app.wire import StreamName
 
 log = logging.getLogger(__name__)
@@ -44,11 +44,11 @@ class Run:
     hinges: HingeReference | None = None
 
     @cached_property
-    def asked(self) -> Asked:
-        """What the avatar was asked for in each target frame."""
+    def reference(self) -> ReferenceMotion:
+        """The pose that the avatar should reach, in each target frame."""
         rotations = self.target.rotations
         if self.hinges is None:
-            return Asked(rotations)
+            return ReferenceMotion(rotations)
         return self.hinges.recording(self.target.times_s, rotations)
 
 

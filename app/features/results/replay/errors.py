@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from app.features.record.telemetry import Frames
 from app.features.results.replay.grid import Grid, Indices, Sampling
 from app.science.avatar.targets import HingeReference
-from app.science.joint_error import ERROR_JOINTS, Asked, joint_errors
+from app.science.joint_error import ERROR_JOINTS, ReferenceMotion, joint_errors
 from app.science.rotations import FloatArray
 
 
@@ -51,11 +51,13 @@ class RunErrors:
         partners = [self._asked[int(seqs[row])] for row in paired]
         times_s = np.array([time_s for time_s, _ in partners])
         rotations = np.stack([rotation for _, rotation in partners])
-        asked = Asked(rotations) if hinges is None else hinges.recording(times_s, rotations)
-        found = joint_errors(asked.rotations, np.concatenate(self._actual)[paired])
+        reference = (
+            ReferenceMotion(rotations) if hinges is None else hinges.recording(times_s, rotations)
+        )
+        found = joint_errors(reference.rotations, np.concatenate(self._actual)[paired])
         counts = found.valid
-        if asked.clipping is not None:
-            counts = counts & asked.clipping.hinged
+        if reference.clipping is not None:
+            counts = counts & reference.clipping.hinged
         errors_rad[at[paired]] = np.where(counts, found.values_rad[..., 0], np.nan)
 
     @property

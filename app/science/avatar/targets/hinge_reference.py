@@ -28,7 +28,7 @@ import numpy.typing as npt
 
 from app.science.avatar.body import AXES, PART_NAMES
 from app.science.avatar.targets.targets import Limits, TargetAngles, joint_rotations
-from app.science.joint_error import ERROR_JOINTS, Asked, Clipping
+from app.science.joint_error import ERROR_JOINTS, Clipping, ReferenceMotion
 from app.science.rotations import FloatArray, is_unit
 
 GAP_S = 0.25
@@ -60,7 +60,7 @@ class HingeReference:
         self._turns = there & turning[self._columns]
         self._hinged = np.asarray(there.any(axis=1))
 
-    def recording(self, times_s: FloatArray, rotations: FloatArray) -> Asked:
+    def recording(self, times_s: FloatArray, rotations: FloatArray) -> ReferenceMotion:
         """Return what was asked for in each frame of a recording.
 
         A rotation that is none makes unknown what follows from it, in its frame.
@@ -72,12 +72,14 @@ class HingeReference:
         """
         asked = np.empty(rotations.shape)
         if len(rotations) == 0:
-            return Asked(asked, self._clipping(np.zeros((0, *self._turns.shape), np.bool_)))
+            return ReferenceMotion(
+                asked, self._clipping(np.zeros((0, *self._turns.shape), np.bool_))
+            )
         found = self._angles.batch(_usable(rotations), anew=_gaps(times_s))
         for first in range(0, len(rotations), _AT_ONCE):
             at = slice(first, first + _AT_ONCE)
             asked[at] = joint_rotations(found.wanted_rad[at], rotations[at, 0])
-        return Asked(asked, self._clipping(found.clipped[:, self._columns]))
+        return ReferenceMotion(asked, self._clipping(found.clipped[:, self._columns]))
 
     def pose(self, rotations: FloatArray) -> FloatArray:
         """Return what is asked for in one pose (22, 4) of which no other is known.

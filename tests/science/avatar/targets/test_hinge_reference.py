@@ -15,7 +15,7 @@ from app.science.avatar.mjcf.gains import default_configuration
 from app.science.avatar.targets.hinge_reference import GAP_S, HingeReference
 from app.science.avatar.targets.targets import TargetAngles, joint_rotations
 from app.science.joint_error.errors import ERROR_JOINTS, joint_error_summary
-from app.science.joint_error.recorded import Asked, Recorded, recorded_errors
+from app.science.joint_error.recorded import Recorded, ReferenceMotion, recorded_errors
 from app.science.rotations import FloatArray, from_rotation_vector, geodesic_angle, identity
 from app.science.skeleton.joints import JOINT_COUNT, JOINT_INDEX, JOINT_NAMES
 from tests.science.avatar.captured import WALK, captured
@@ -29,7 +29,7 @@ def _times_s(frames: int) -> FloatArray:
     return np.arange(frames) / RATE_HZ
 
 
-def _clipped(asked: Asked) -> npt.NDArray[np.bool_]:
+def _clipped(asked: ReferenceMotion) -> npt.NDArray[np.bool_]:
     assert asked.clipping is not None
     return asked.clipping.clipped
 
@@ -153,14 +153,14 @@ def test_a_real_walk_is_followed_by_what_hinges_can_do(shared_data: Path) -> Non
     followed = follow(built, movement, delay_s=0.125)
     times_s, frames = _times_s(movement.frame_count), np.arange(45, movement.frame_count)
 
-    def mean_deg(asked: Asked) -> float:
+    def mean_deg(asked: ReferenceMotion) -> float:
         run = Recorded(times_s, asked, frames, times_s[frames], followed.rotations[frames])
         summary = recorded_errors([run], 0.125).command
         return float(np.degrees(np.nanmean(summary.mean_rad[:, 0])))
 
     reference = HingeReference(built.configuration.in_force, built.body.parts)
     assert mean_deg(reference.recording(times_s, movement.rotations)) < 1.5
-    assert mean_deg(Asked(movement.rotations)) > 5.0
+    assert mean_deg(ReferenceMotion(movement.rotations)) > 5.0
 
 
 def test_a_recording_without_frames_asks_for_nothing() -> None:
