@@ -21,7 +21,7 @@ from app.features.people.audit import (
     COMMAND_LINE,
     AuditCheck,
     TrailHead,
-    holds_head,
+    contains_head,
     record,
     record_copy,
     verify_trail,
@@ -185,4 +185,4 @@ class _Trail:
 
 
 def _check_trail(db: Session, heads: Sequence[TrailHead]) -> _Trail:
-    return _Trail(verify_trail(db), tuple((head, holds_head(db, head)) for head in heads))
+    return _Trail(verify_trail(db), tuple((head, contains_head(db, head)) for head in heads))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from fastapi.testclient import TestClient
 
-from app.features.people.accounts import create_account, give_studies, issue_token
+from app.features.people.accounts import create_account, issue_token, set_studies
 from tests.features.lab import STUDY, Json, Lab, ok
 
 ROLES = ("admin", "experimenter", "operator", "analyst")
@@ -25,7 +25,7 @@ def sign_in(lab: Lab, role: str, *, studies: list[str] | None = None, name: str 
     with lab.database.writing() as db:
         name = name or f"{role}-{len(ok(lab.operator.get('/api/accounts')))}"
         account = create_account(db, username=name, password="a long password", role=role, now=now)
-        give_studies(db, account, studies)
+        set_studies(db, account, studies)
         token = issue_token(db, account, purpose="script", now=now, hours=1.0).token
     client = lab.stranger()
     client.headers["authorization"] = f"Bearer {token}"

@@ -1,1 +1,1 @@
-"""Who works here: accounts and the audit trail."""
+"""The lab's staff: their accounts, and the audit trail of what they did."""

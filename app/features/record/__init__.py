@@ -1,1 +1,1 @@
-"""What happens while a study runs: the ledger, sessions, their devices, and all they store."""
+"""Everything a session needs while it runs: ledger, sessions, devices, and the data they store."""

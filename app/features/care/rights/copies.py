@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import NotFound
 from app.features.care.backups import ENDING
-from app.features.people.audit import LONGEST_PLACE, record, record_copy
+from app.features.people.audit import MAX_PLACE_LENGTH, record, record_copy
 from app.models import CopyMade, Participant, Study, StudySession
 from app.platform.folders import backups_of
 from app.platform.half_made import Notes, remove_left
@@ -84,7 +84,7 @@ def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[C
     known = set(db.scalars(select(CopyMade.place).where(CopyMade.kind == "backup")))
     found = []
     for path in _files(backups_of(settings)):
-        place = str(path)[-LONGEST_PLACE:]
+        place = str(path)[-MAX_PLACE_LENGTH:]
         if place not in known:
             size = path.stat().st_size
             found.append(
@@ -92,7 +92,7 @@ def register_found(db: Session, settings: Settings, now: datetime) -> Sequence[C
             )
     remove_left(settings)
     for one in Notes.of(settings).all():
-        place = str(one.to or one.path)[-LONGEST_PLACE:]
+        place = str(one.to or one.path)[-MAX_PLACE_LENGTH:]
         if one.kind == "backup" and place not in known:
             found.append(record_copy(db, kind="backup", place=place, by=FOUND_BY, now=now))
         elif one.kind == "export":

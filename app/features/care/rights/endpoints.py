@@ -20,7 +20,7 @@ from app.features.care.rights.schemas import (
 from app.features.care.rights.service import keep_tombstones
 from app.features.design.studies import study_by_key
 from app.features.movement.files import streamed
-from app.features.people.audit import in_browser_of, record, record_copy
+from app.features.people.audit import download_place, record, record_copy
 from app.features.record.erasure import expect_erasure, overwrite
 from app.features.record.questionnaires import StoredAnswers, stored_answers
 from app.features.results.exports import ExportDesk
@@ -108,7 +108,7 @@ def get_access(
         study_id=study.id,
         session_kind=participant.kind,
         participant_id=participant.id,
-        place=in_browser_of(caller.actor),
+        place=download_place(caller.actor),
         by=caller.actor,
         now=now,
     )

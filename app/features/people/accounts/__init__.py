@@ -1,7 +1,7 @@
-"""Accounts and logins: who works here, and the tokens by which they are known."""
+"""The lab's accounts, their passwords, and the login tokens that identify them."""
 
 from app.features.people.accounts.passwords import is_hash
-from app.features.people.accounts.people import give_studies
+from app.features.people.accounts.people import set_studies
 from app.features.people.accounts.refusals import RefusedSignIns
 from app.features.people.accounts.service import (
     create_account,
@@ -15,9 +15,9 @@ __all__ = [
     "RefusedSignIns",
     "create_account",
     "ensure_admin",
-    "give_studies",
     "is_hash",
     "is_username",
     "issue_token",
     "revoke_token",
+    "set_studies",
 ]

@@ -1,4 +1,4 @@
-"""Logging in and out."""
+"""HTTP endpoints for logging in and out, and for changing one's own password."""
 
 from fastapi import APIRouter, Request, Response
 from sqlalchemy.orm import Session
@@ -16,7 +16,7 @@ from app.features.people.accounts.schemas import (
 )
 from app.features.people.accounts.service import (
     account_named,
-    is_alive,
+    is_active,
     issue_token,
     require_password,
     revoke_token,
@@ -38,14 +38,17 @@ from app.platform.tokens import delete_cookie, hash_token, read_cookie, set_cook
 
 router = APIRouter(tags=["accounts"])
 REFUSED_SIGN_IN_COST = 5.0
-"""Of what an address may ask for without a login: sixty typing errors in a row use it up."""
+"""What a refused sign-in takes from an address's budget for requests without a login.
+
+Sixty typing errors in a row use the budget up.
+"""
 
 
 @router.post("/login", dependencies=[FREES_SPACE])
 def post_login(
     credentials: Credentials, request: Request, response: Response, context: Context
 ) -> SignedInView:
-    """Open a login. The token travels in a cookie that no script can read."""
+    """Log in. The login token is set as a cookie that scripts cannot read."""
     address = request.client.host if request.client else ""
     network, name = network_of(address), credentials.username
     try:
@@ -53,7 +56,7 @@ def post_login(
         context.limits.names.attempt(f"{network} {name}")
         with context.database.reading() as db:
             account = account_named(db, name)
-        # Takes a while on purpose, so nobody else's reading or writing waits for it.
+        # Verifying is slow on purpose, so it runs outside any transaction.
         account = require_password(account, credentials.password)
     except (NotSignedIn, TooManyAttempts, Busy) as error:
         if isinstance(error, Busy):
@@ -64,18 +67,18 @@ def post_login(
         context.part(RefusedSignIns).note(network, name, checked=checked)
         raise
     with context.database.writing() as db:
-        opened = open_login(db, context, request, response, account)
+        caller = open_login(db, context, request, response, account)
         now = context.clock.utc_now()
-        record(db, actor=opened.actor, action="login.opened", details={"address": address}, now=now)
+        record(db, actor=caller.actor, action="login.opened", details={"address": address}, now=now)
     context.limits.names.succeed(f"{network} {name}")
     context.limits.sign_ins.take_back(network)
-    return SignedInView(account=_view(opened))
+    return SignedInView(account=_view(caller))
 
 
 def open_login(
     db: Session, context: AppContext, request: Request, response: Response, account: Account
 ) -> Caller:
-    """A new token for a browser, in the place of the one it had."""
+    """Issue a login token for a browser, and revoke the one it had before."""
     now, hours = context.clock.utc_now(), context.settings.login_hours
     old = read_cookie(request, LOGIN_COOKIE)
     if old:
@@ -87,23 +90,23 @@ def open_login(
 
 @router.post("/logout", status_code=204)
 def post_logout(request: Request, response: Response, context: Context) -> None:
-    """End this login; pages that are open with it are shut out at once."""
+    """Log out; open pages that use this login lose access immediately."""
     delete_cookie(request, response, LOGIN_COOKIE)
     tokens = [bearer_token(request), read_cookie(request, LOGIN_COOKIE)]
     with context.database.reading() as db:
-        alive = [token for token in tokens if token and is_alive(db, token)]
-    # Nobody without a login gets a turn at writing.
-    if not alive:
+        active = [token for token in tokens if token and is_active(db, token)]
+    # A request without a valid login never opens a write transaction.
+    if not active:
         return
     with context.database.writing() as db:
-        for token in alive:
+        for token in active:
             revoke_token(db, token, context.clock.utc_now())
         after_commit(db, context.hub.publish_access)
 
 
 @router.get("/me")
 def get_me(request: Request, context: Context) -> WhoView:
-    """Who is signed in; null where nobody is."""
+    """Return the account that is signed in, or null if none is."""
     try:
         return WhoView(account=_view(known_caller(request, context)))
     except NotSignedIn:
@@ -112,24 +115,24 @@ def get_me(request: Request, context: Context) -> WhoView:
 
 @router.put("/me/password", status_code=204)
 def put_password(change: NewPassword, request: Request, context: Context, caller: SignedIn) -> None:
-    """Change one's own password; logins elsewhere end."""
+    """Change the caller's own password, and end all of their other logins."""
     attempts = f"password:{caller.account_id}"
     context.limits.names.attempt(attempts)
     require_good(change.new, caller.username)
     with context.database.reading() as db:
-        known = account_by_id(db, caller.account_id)
+        account = account_by_id(db, caller.account_id)
     try:
-        require_password(known, change.current)
+        require_password(account, change.current)
     except NotSignedIn as error:
         raise NotAllowed(
-            "the current password is not right", remedy="Type the password you log in with."
+            "the current password is incorrect", remedy="Type the password you log in with."
         ) from error
     hashed, now = hash_password(change.new), context.clock.utc_now()
     token = bearer_token(request) or read_cookie(request, LOGIN_COOKIE) or ""
     with context.database.writing() as db:
         account = account_by_id(db, caller.account_id)
         account.password_hash = hashed
-        end_logins(db, account, now, but=hash_token(token))
+        end_logins(db, account, now, keep=hash_token(token))
         record(db, actor=caller.actor, action="account.password", now=now)
         after_commit(db, context.hub.publish_access)
     context.limits.names.succeed(attempts)

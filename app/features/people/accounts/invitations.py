@@ -1,7 +1,7 @@
-"""Invitations: a link that makes one account, once, with the role that the admin chose.
+"""Invitations: single-use links, each of which creates one account with a role set by the admin.
 
-The token stands behind the # of the link, which browsers never send, so it is in no log; the
-person chooses name and password themselves, so no admin ever knows a password.
+The token follows the # of the link, which browsers never send to a server, so it appears in no
+log. The invited person chooses the user name and password, so no admin ever knows the password.
 """
 
 import secrets
@@ -13,7 +13,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from app.errors import Gone, NotFound
-from app.features.people.accounts.people import give_studies, study_ids
+from app.features.people.accounts.people import set_studies, study_ids
 from app.features.people.accounts.service import add_account
 from app.models import Account, Invitation, Study
 from app.platform.tokens import hash_token
@@ -21,7 +21,7 @@ from app.platform.tokens import hash_token
 
 @dataclass(frozen=True)
 class Invited:
-    """A fresh invitation: the token leaves here once, in clear."""
+    """A new invitation with its token, which is available in plain text only here."""
 
     invitation: Invitation
     token: str
@@ -37,7 +37,7 @@ def invite(
     now: datetime,
     hours: float,
 ) -> Invited:
-    """Make an invitation for `role`, to these studies (keys) or to all (None)."""
+    """Create an invitation for `role`, with access to these studies (keys) or to all (None)."""
     token = secrets.token_urlsafe(32)
     row = Invitation(
         token_hash=hash_token(token),
@@ -55,12 +55,12 @@ def invite(
 
 
 def invitations(db: Session) -> Sequence[Invitation]:
-    """All of them, the newest first."""
+    """Return all invitations, newest first."""
     return db.scalars(select(Invitation).order_by(Invitation.created_at.desc())).all()
 
 
 def status_of(row: Invitation, now: datetime) -> str:
-    """open, used, revoked or expired."""
+    """Return an invitation's status: open, used, revoked or expired."""
     if row.used_at is not None:
         return "used"
     if row.revoked_at is not None:
@@ -69,7 +69,10 @@ def status_of(row: Invitation, now: datetime) -> str:
 
 
 def open_invitation(db: Session, token: str, now: datetime) -> Invitation:
-    """The invitation with that token, locked; raises NotFound, or Gone where it is not open."""
+    """Lock and return the open invitation that has this token.
+
+    Raises NotFound for an unknown token, and Gone if the invitation is no longer open.
+    """
     row = db.scalar(
         select(Invitation).where(Invitation.token_hash == hash_token(token)).with_for_update()
     )
@@ -89,23 +92,23 @@ def open_invitation(db: Session, token: str, now: datetime) -> Invitation:
 
 
 def accept(db: Session, *, token: str, username: str, hashed: str, now: datetime) -> Account:
-    """Make the account that the invitation promises; its role is not the guest's to choose.
+    """Create the account that an invitation grants, with the invitation's role and studies.
 
-    `hashed`: the password, which was found good and hashed before this transaction.
+    `hashed`: the hash of the password, which was validated and hashed before this transaction.
     """
     row = open_invitation(db, token, now)
     account = add_account(db, username=username, hashed=hashed, role=row.role, now=now)
     if not row.all_studies:
-        # A study may be gone by now; nobody is invited to what is not there.
+        # A study may have been deleted since the invitation was made; skip it.
         keys = db.scalars(select(Study.key).where(Study.id.in_(row.studies))).all()
-        give_studies(db, account, keys)
+        set_studies(db, account, keys)
     row.used_at, row.account_id = now, account.id
     db.flush()
     return account
 
 
 def revoke_invitation(db: Session, invitation_id: str, now: datetime) -> Invitation:
-    """Take an invitation back; one that was used stays used."""
+    """Revoke an invitation; one that was already used is left unchanged."""
     row = db.get(Invitation, invitation_id)
     if row is None:
         raise NotFound("there is no such invitation", value=invitation_id)

@@ -1,11 +1,12 @@
-"""Passwords: hashed with argon2id, long rather than complicated, never the obvious.
+"""Hash passwords with argon2id, and reject those that are easy to guess.
 
-Length and a refusal of what others know are what NIST SP 800-63B asks of passwords; it advises
-against rules about digits and signs. What others know is estimated by zxcvbn, which comes with the
-commonest passwords, names and words, and knows how people vary them.
+As NIST SP 800-63B recommends, passwords must be long and must not be commonly used; there are no
+rules about digits and symbols. How easily a password can be guessed is estimated by zxcvbn, which
+knows the most common passwords, names and words, and the ways in which people vary them.
 
-A hash takes a tenth of a second of every core and 64 MiB, and anybody may ask for one by trying to
-log in. So one is made at a time, a few wait, and whoever comes then is turned away at once.
+A hash takes a tenth of a second of every core and 64 MiB of memory, and anybody can trigger one by
+trying to log in. So only one is computed at a time, a few callers wait, and further callers are
+turned away immediately.
 """
 
 import os
@@ -35,79 +36,85 @@ from app.errors import Busy, InvalidInput
 MIN_LENGTH = 12
 MAX_LENGTH = 200
 MIN_DIFFERENT = 5
-FEWEST_GUESSES = 1e10
-"""zxcvbn's own mark for "very unguessable": with the database and a tenth of a second for each
-guess, thirty years."""
+MIN_GUESSES = 1e10
+"""The threshold above which zxcvbn calls a password "very unguessable".
+
+For somebody who has the database and needs a tenth of a second per guess, it means thirty years.
+"""
 _ESTIMATED_LENGTH = 32
-"""Its time grows steeply with the length: of 32 characters chosen to be slow, a few tenths of a
-second; of 72, five seconds. A good beginning is enough."""
+"""Only so many characters of a password are estimated.
+
+zxcvbn's time grows steeply with the length: the slowest passwords of 32 characters take a few
+tenths of a second, those of 72 five seconds.
+"""
 NICENESS = 10
-MOST_TIMES_OURS = 4
-"""How much dearer a stored hash may be: releases of the library have had other costs."""
+MAX_COST_RATIO = 4
+"""How many times our costs a stored hash may have: other releases of argon2 had other costs."""
 Result = TypeVar("Result")
 _HASHER = PasswordHasher()
 
 
 @dataclass
-class Desk:
-    """Does one piece of work at a time and lets `waiting` wait; raises Busy for everybody else.
+class PasswordQueue:
+    """Run one job at a time on a low-priority thread, with at most `waiting` callers in the queue.
 
-    It yields to whatever else wants a processor: sessions that run come before those who knock.
+    Raises Busy for every further caller. Running sessions take precedence over log-in attempts, so
+    the thread gives way to anything else that needs a processor.
     """
 
     waiting: int
-    _here: int = 0
+    _callers: int = 0
     _lock: threading.Lock = field(default_factory=threading.Lock)
     _worker: ThreadPoolExecutor = field(
         default_factory=lambda: ThreadPoolExecutor(1, "passwords", _yield_to_others)
     )
 
-    def do(self, work: Callable[[], Result]) -> Result:
-        """The result of `work`, when its turn has come."""
+    def run(self, work: Callable[[], Result]) -> Result:
+        """Wait for a turn, run `work` and return its result; raises Busy if the queue is full."""
         with self._lock:
-            if self._here > self.waiting:
+            if self._callers > self.waiting:
                 raise Busy(
                     "too many passwords are being checked at this moment",
-                    remedy="Wait 2 s and try again; the password was not looked at.",
+                    remedy="Wait 2 s and try again; the password was not checked.",
                     retry_after_s=2.0,
                 )
-            self._here += 1
+            self._callers += 1
         try:
             return self._worker.submit(work).result()
         finally:
             with self._lock:
-                self._here -= 1
+                self._callers -= 1
 
 
 def _yield_to_others() -> None:
-    # Only Linux knows priorities of threads; those that argon2 begins have that of this one.
+    # Only Linux has priorities per thread; the threads that argon2 starts inherit this one's.
     if sys.platform == "linux":
         with suppress(OSError):
             os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICENESS)
 
 
-DESK = Desk(waiting=8)
+QUEUE = PasswordQueue(waiting=8)
 
 
 def hash_password(password: str) -> str:
-    """The argon2id hash with its salt and costs; raises InvalidInput, Busy."""
+    """Return the argon2id hash of a password, with salt and costs; raises InvalidInput, Busy."""
     _require_length(password)
-    return DESK.do(lambda: _HASHER.hash(password))
+    return QUEUE.run(lambda: _HASHER.hash(password))
 
 
 def is_password(stored: str | None, password: str) -> bool:
-    """Whether `password` belongs to the stored hash; takes as long where there is none.
+    """Return whether `password` matches the stored hash; takes as long if there is no hash.
 
     Raises InvalidInput, Busy.
     """
     _require_length(password)
-    return DESK.do(lambda: _verified(stored or _nobody(), password)) and stored is not None
+    return QUEUE.run(lambda: _verified(stored or _dummy_hash(), password)) and stored is not None
 
 
 def is_hash(stored: str) -> bool:
-    """Whether a stored hash is one that a log-in can be checked against, at a cost like ours.
+    """Return whether a stored hash is a valid argon2id hash that costs about as much as ours.
 
-    A made-up one could ask for more memory or time than the machine has.
+    A forged hash could demand more memory or time than the machine has.
     """
     try:
         costs = extract_parameters(stored)
@@ -115,9 +122,9 @@ def is_hash(stored: str) -> bool:
         return False
     return (
         costs.type is Type.ID
-        and 0 < costs.memory_cost <= MOST_TIMES_OURS * DEFAULT_MEMORY_COST
-        and 0 < costs.time_cost <= MOST_TIMES_OURS * DEFAULT_TIME_COST
-        and 0 < costs.parallelism <= MOST_TIMES_OURS * DEFAULT_PARALLELISM
+        and 0 < costs.memory_cost <= MAX_COST_RATIO * DEFAULT_MEMORY_COST
+        and 0 < costs.time_cost <= MAX_COST_RATIO * DEFAULT_TIME_COST
+        and 0 < costs.parallelism <= MAX_COST_RATIO * DEFAULT_PARALLELISM
         and costs.hash_len >= 16
         and costs.salt_len >= 8
     )
@@ -131,7 +138,7 @@ def _verified(stored: str, password: str) -> bool:
 
 
 @lru_cache(maxsize=1)
-def _nobody() -> str:
+def _dummy_hash() -> str:
     return _HASHER.hash(secrets.token_urlsafe(16))
 
 
@@ -145,7 +152,7 @@ def _require_length(password: str) -> None:
 
 
 def require_good(password: str, username: str) -> None:
-    """Raise InvalidInput, without repeating the password, where it would be guessed soon."""
+    """Raise InvalidInput if the password is easy to guess, without repeating it."""
     problem = None
     if len(password) < MIN_LENGTH:
         problem = f"it has {len(password)} characters"
@@ -155,7 +162,7 @@ def require_good(password: str, username: str) -> None:
         problem = "it is mostly the user name"
     elif "reembody" in password.casefold() and len(password) < MIN_LENGTH + len("reembody"):
         problem = "it is mostly the name of this program"
-    elif _guesses(password, username) < FEWEST_GUESSES:
+    elif _guesses(password, username) < MIN_GUESSES:
         problem = "it is made of common passwords, words, dates or patterns"
     if problem:
         raise InvalidInput(

@@ -1,4 +1,4 @@
-"""The lab's people: what each may do, and taking it back."""
+"""Query and change the lab's accounts: roles, access to studies, and logins."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from app.models import Account, LoginToken, Study, StudyMember
 
 @dataclass(frozen=True)
 class Person:
-    """An account with its studies (keys; empty where all are theirs) and logins alive."""
+    """An account with its studies (keys; empty if it may see all of them) and its active logins."""
 
     account: Account
     studies: tuple[str, ...]
@@ -22,22 +22,22 @@ class Person:
 
 
 def people(db: Session, now: datetime) -> list[Person]:
-    """Everybody, also those whose account is closed, by name."""
+    """Return all accounts by user name, including closed ones."""
     accounts = db.scalars(select(Account).order_by(Account.username)).all()
     return [person_of(db, account, now) for account in accounts]
 
 
 def person_of(db: Session, account: Account, now: datetime) -> Person:
-    """One account with what belongs to it."""
+    """Return an account together with its studies and logins."""
     studies = db.scalars(
         select(Study.key)
         .join(StudyMember, StudyMember.study_id == Study.id)
         .where(StudyMember.account_id == account.id)
         .order_by(Study.key)
     )
-    alive = (LoginToken.revoked_at.is_(None)) & (LoginToken.expires_at > now)
+    active = (LoginToken.revoked_at.is_(None)) & (LoginToken.expires_at > now)
     logins, last = db.execute(
-        select(func.count().filter(alive), func.max(LoginToken.created_at)).where(
+        select(func.count().filter(active), func.max(LoginToken.created_at)).where(
             LoginToken.account_id == account.id
         )
     ).one()
@@ -45,22 +45,22 @@ def person_of(db: Session, account: Account, now: datetime) -> Person:
 
 
 def account_by_id(db: Session, account_id: str) -> Account:
-    """The account; raises NotFound."""
+    """Return the account with this id; raises NotFound."""
     account = db.get(Account, account_id)
     if account is None:
         raise NotFound("there is no such account", value=account_id)
     return account
 
 
-def give_role(db: Session, account: Account, role: str) -> None:
-    """Change what somebody may do; raises Conflict where no admin would be left."""
+def set_role(db: Session, account: Account, role: str) -> None:
+    """Change the role of an account; raises Conflict if no admin would be left."""
     if account.role == "admin" and role != "admin":
         _require_another_admin(db, account)
     account.role = role
 
 
-def give_studies(db: Session, account: Account, keys: Sequence[str] | None) -> None:
-    """Let somebody see these studies only, or all of them (None); raises InvalidInput."""
+def set_studies(db: Session, account: Account, keys: Sequence[str] | None) -> None:
+    """Set which studies an account may see, or let it see all (None); raises InvalidInput."""
     account.all_studies = keys is None
     db.execute(delete(StudyMember).where(StudyMember.account_id == account.id))
     for study_id in study_ids(db, keys or ()):
@@ -69,7 +69,7 @@ def give_studies(db: Session, account: Account, keys: Sequence[str] | None) -> N
 
 
 def study_ids(db: Session, keys: Sequence[str]) -> list[str]:
-    """The ids of studies by key; raises InvalidInput for those that do not exist."""
+    """Return the ids of studies given by key; raises InvalidInput for unknown keys."""
     rows = db.execute(select(Study.key, Study.id).where(Study.key.in_(keys)))
     found = {row.key: row.id for row in rows}
     unknown = sorted(set(keys) - set(found))
@@ -83,7 +83,7 @@ def study_ids(db: Session, keys: Sequence[str]) -> list[str]:
 
 
 def close_account(db: Session, account: Account, now: datetime) -> None:
-    """Shut somebody out: the account stays in the record, and its logins end."""
+    """Disable an account and end its logins; the account itself is retained for the record."""
     if account.disabled_at is not None:
         return
     if account.role == "admin":
@@ -93,24 +93,27 @@ def close_account(db: Session, account: Account, now: datetime) -> None:
 
 
 def reopen_account(account: Account) -> None:
-    """Let somebody in again, who must log in anew."""
+    """Re-enable a closed account, whose owner must log in again."""
     account.disabled_at = None
 
 
-def end_logins(db: Session, account: Account, now: datetime, *, but: str | None = None) -> int:
-    """End every login of an account, but the one with the token hash `but`; how many ended."""
-    wanted = (
+def end_logins(db: Session, account: Account, now: datetime, *, keep: str | None = None) -> int:
+    """End the logins of an account, and return how many were active.
+
+    The login whose token has the hash `keep` is left open.
+    """
+    matching = (
         LoginToken.account_id == account.id,
         LoginToken.revoked_at.is_(None),
-        LoginToken.token_hash != (but or ""),
+        LoginToken.token_hash != (keep or ""),
     )
-    alive = db.scalar(select(func.count()).where(*wanted, LoginToken.expires_at > now)) or 0
-    db.execute(update(LoginToken).where(*wanted).values(revoked_at=now))
-    return alive
+    active = db.scalar(select(func.count()).where(*matching, LoginToken.expires_at > now)) or 0
+    db.execute(update(LoginToken).where(*matching).values(revoked_at=now))
+    return active
 
 
 def _require_another_admin(db: Session, account: Account) -> None:
-    # Two admins who take each other's role at once must not both succeed.
+    # If two admins revoke each other's role simultaneously, only one of them may succeed.
     others = db.scalars(
         select(Account.id)
         .where(Account.role == "admin", Account.disabled_at.is_(None))

@@ -1,4 +1,4 @@
-"""The lab's people and invitations over HTTP."""
+"""HTTP endpoints for managing accounts and invitations."""
 
 from datetime import datetime
 
@@ -21,11 +21,11 @@ from app.features.people.accounts.people import (
     account_by_id,
     close_account,
     end_logins,
-    give_role,
-    give_studies,
     people,
     person_of,
     reopen_account,
+    set_role,
+    set_studies,
 )
 from app.features.people.accounts.schemas import (
     Acceptance,
@@ -50,7 +50,7 @@ router = APIRouter(tags=["accounts"])
 
 @router.get("/accounts")
 def get_accounts(db: Reading, context: Context, _: SignedIn) -> list[PersonView]:
-    """Everybody who has or had an account."""
+    """Return all accounts, including closed ones."""
     return [_person(person) for person in people(db, context.clock.utc_now())]
 
 
@@ -58,13 +58,13 @@ def get_accounts(db: Reading, context: Context, _: SignedIn) -> list[PersonView]
 def patch_account(
     account_id: str, change: PersonChange, db: Writing, context: Context, caller: SignedIn
 ) -> PersonView:
-    """Change role or studies, or close and reopen an account; logins of a closed one end."""
+    """Change the role or studies of an account, close it (which ends its logins), or reopen it."""
     account, now = account_by_id(db, account_id), context.clock.utc_now()
     given = change.model_fields_set
     if change.role is not None:
-        give_role(db, account, change.role)
+        set_role(db, account, change.role)
     if "studies" in given:
-        give_studies(db, account, change.studies)
+        set_studies(db, account, change.studies)
     if change.closed is True:
         close_account(db, account, now)
     elif change.closed is False:
@@ -88,7 +88,7 @@ def patch_account(
 
 @router.delete("/accounts/{account_id}/logins", status_code=204)
 def delete_logins(account_id: str, db: Writing, context: Context, caller: SignedIn) -> None:
-    """End every login of somebody, such as one on a lost laptop."""
+    """End every login of an account, for example after a laptop was lost."""
     account, now = account_by_id(db, account_id), context.clock.utc_now()
     ended = end_logins(db, account, now)
     subject, details = f"account:{account.username}", {"ended": ended}
@@ -100,25 +100,25 @@ def delete_logins(account_id: str, db: Writing, context: Context, caller: Signed
 
 @router.get("/invitations")
 def get_invitations(db: Reading, context: Context, _: SignedIn) -> list[InvitationView]:
-    """Every invitation, also those used up, the newest first."""
+    """Return all invitations, including used ones, newest first."""
     now = context.clock.utc_now()
     return [InvitationView.model_validate(_invitation(db, row, now)) for row in invitations(db)]
 
 
 @router.post("/invitations", status_code=201)
 def post_invitation(
-    wish: NewInvitation, request: Request, db: Writing, context: Context, caller: SignedIn
+    body: NewInvitation, request: Request, db: Writing, context: Context, caller: SignedIn
 ) -> InvitedView:
-    """Make a link that lets one person make an account with this role."""
+    """Create a link with which one person can create an account with the given role."""
     now = context.clock.utc_now()
     made = invite(
         db,
-        role=wish.role,
-        note=wish.note,
-        studies=wish.studies,
+        role=body.role,
+        note=body.note,
+        studies=body.studies,
         by=caller.actor,
         now=now,
-        hours=wish.hours,
+        hours=body.hours,
     )
     base = context.network.reach.for_devices(str(request.base_url))
     here = str(request.base_url).rstrip("/")
@@ -126,7 +126,7 @@ def post_invitation(
         "url": f"{base or here}/#/join/{made.token}",
         "only_here": base is None,
     }
-    details = {"role": wish.role, "studies": wish.studies}
+    details = {"role": body.role, "studies": body.studies}
     subject = f"invitation:{made.invitation.id}"
     record(
         db, actor=caller.actor, action="invitation.made", subject=subject, details=details, now=now
@@ -136,7 +136,7 @@ def post_invitation(
 
 @router.delete("/invitations/{invitation_id}", status_code=204)
 def delete_invitation(invitation_id: str, db: Writing, context: Context, caller: SignedIn) -> None:
-    """Take an invitation back."""
+    """Revoke an invitation."""
     now = context.clock.utc_now()
     revoke_invitation(db, invitation_id, now)
     subject = f"invitation:{invitation_id}"
@@ -144,11 +144,11 @@ def delete_invitation(invitation_id: str, db: Writing, context: Context, caller:
 
 
 @router.post("/invitations/look")
-def post_look(asked: InvitationToken, request: Request, context: Context) -> InvitationLook:
-    """What an invitation is for."""
+def post_look(body: InvitationToken, request: Request, context: Context) -> InvitationLook:
+    """Return the role, note and expiry of an invitation, given its token."""
     context.limits.codes.attempt(_guest(request))
     with context.database.reading() as db:
-        row = open_invitation(db, asked.token, context.clock.utc_now())
+        row = open_invitation(db, body.token, context.clock.utc_now())
     return InvitationLook.model_validate(
         {"role": row.role, "note": row.note, "expires_at": row.expires_at}
     )
@@ -158,7 +158,7 @@ def post_look(asked: InvitationToken, request: Request, context: Context) -> Inv
 def post_accept(
     acceptance: Acceptance, request: Request, response: Response, context: Context
 ) -> SignedInView:
-    """Make the account and log in."""
+    """Accept an invitation: create the account and log in."""
     context.limits.codes.attempt(_guest(request))
     now = context.clock.utc_now()
     with context.database.reading() as db:

@@ -1,9 +1,9 @@
-"""Refused sign-ins on the audit trail: a row for an address and window, however many there were.
+"""Record refused sign-ins on the audit trail, at most one entry per address and time window.
 
-The first one from an address is put on record at once. What follows within the window is counted
-and appended as one row when the window ends, and so on while it goes on; so a flood costs the trail
-a row a minute, and nothing that was written is ever changed. The names that were typed are not
-kept, they may be passwords; how many there were is.
+The first refusal from an address is recorded immediately. Subsequent ones within the window are
+counted and appended as one entry when the window ends, and so on while they continue. So a flood of
+attempts costs one entry a minute, and no existing entry is ever changed. The user names that were
+typed are not stored, because they may be passwords; the number of different names is.
 """
 
 import logging
@@ -23,15 +23,15 @@ from app.platform.context import AppContext, Part
 
 log = logging.getLogger(__name__)
 WINDOW_S = 60.0
-MOST_ADDRESSES = 256
-MOST_NAMES = 1000
-ELSEWHERE = "other addresses"
-"""Where the refusals of more addresses than are kept apart are counted together."""
+MAX_ADDRESSES = 256
+MAX_NAMES = 1000
+OTHER_ADDRESSES = "other addresses"
+"""Counts the refusals of further addresses once `MAX_ADDRESSES` have a window of their own."""
 
 
 @dataclass
 class _Window:
-    """What an address was refused since its last row. `names` are hashes, forgotten with it."""
+    """The refusals of one address since its last entry. `names` are hashes, never stored."""
 
     until_s: float
     wrong: int = 0
@@ -39,18 +39,18 @@ class _Window:
     names: set[int] = field(default_factory=set)
 
     def details(self, address: str) -> dict[str, Any]:
-        """What goes on record."""
-        told: dict[str, Any] = {"address": address, "count": self.wrong + self.unchecked}
+        """Return the details of this window's audit entry."""
+        details: dict[str, Any] = {"address": address, "count": self.wrong + self.unchecked}
         if self.unchecked:
-            told["unchecked"] = self.unchecked
+            details["unchecked"] = self.unchecked
         if len(self.names) > 1:
-            told["names"] = len(self.names)
-        return told
+            details["names"] = len(self.names)
+        return details
 
 
 @dataclass(eq=False)
 class RefusedSignIns(Part):
-    """Counts refusals and puts them on record; safe from any thread."""
+    """Count refused sign-ins and write them to the audit trail; thread-safe."""
 
     database: Database
     clock: Clock
@@ -63,17 +63,17 @@ class RefusedSignIns(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The refusals of a server."""
+        """Create the instance of a server from its context."""
         return cls(context.database, context.clock)
 
     def start(self) -> None:
-        """Begin to close windows when they end."""
+        """Start the thread that closes windows when they end."""
         self._ending = False
         self._thread = threading.Thread(target=self._run, name="refused-sign-ins", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
-        """Put on record what was counted so far."""
+        """Stop the thread, and record everything that was counted so far."""
         with self._changed:
             self._ending = True
             self._changed.notify_all()
@@ -82,11 +82,11 @@ class RefusedSignIns(Part):
         self.close_windows(float("inf"))
 
     def note(self, address: str, name: str, *, checked: bool) -> None:
-        """One more refusal; not `checked`: there were too many to look at the password."""
+        """Count a refused sign-in; `checked` is False if its password was not even checked."""
         with self._changed:
             window = self._open.get(address)
-            if window is None and len(self._open) >= MOST_ADDRESSES:
-                address = ELSEWHERE
+            if window is None and len(self._open) >= MAX_ADDRESSES:
+                address = OTHER_ADDRESSES
                 window = self._open.get(address)
             if first := window is None:
                 window = _Window(self.monotonic_s() + self.window_s)
@@ -95,30 +95,30 @@ class RefusedSignIns(Part):
             else:
                 window.wrong += checked
                 window.unchecked += not checked
-                if len(window.names) < MOST_NAMES:
+                if len(window.names) < MAX_NAMES:
                     window.names.add(hash(name))
         if first:
             self._append([{"address": address}])
 
     def close_windows(self, now_s: float) -> None:
-        """Append a row for every window that has ended by `now_s` and held any refusal."""
-        told = []
+        """Append an audit entry for every window that ended by `now_s` and contains refusals."""
+        entries = []
         with self._changed:
             for address, window in list(self._open.items()):
                 if window.until_s > now_s:
                     continue
                 if window.wrong + window.unchecked:
-                    told.append(window.details(address))
-                    # It may go on: what follows is counted, not put on record at once.
+                    entries.append(window.details(address))
+                    # More may follow: count it in a new window instead of recording it immediately.
                     self._open[address] = _Window(now_s + self.window_s)
                 else:
                     del self._open[address]
-        if told:
-            self._append(told)
+        if entries:
+            self._append(entries)
 
-    def _append(self, told: list[dict[str, Any]]) -> None:
+    def _append(self, entries: list[dict[str, Any]]) -> None:
         with self.database.writing() as db:
-            for details in told:
+            for details in entries:
                 record(
                     db,
                     actor="nobody",
@@ -139,4 +139,4 @@ class RefusedSignIns(Part):
             try:
                 self.close_windows(self.monotonic_s())
             except (DBAPIError, ReembodyError) as error:
-                log.error("refused sign-ins could not be put on record: %s", error)
+                log.error("refused sign-ins could not be recorded on the audit trail: %s", error)

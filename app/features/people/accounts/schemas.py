@@ -1,4 +1,4 @@
-"""People of the lab over HTTP."""
+"""Request and response models of the account and invitation endpoints."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal
@@ -10,7 +10,7 @@ from app.features.people.accounts.passwords import MAX_LENGTH
 Role = Literal["admin", "experimenter", "operator", "analyst"]
 StudyKeys = Annotated[list[Annotated[str, Field(max_length=80)]], Field(max_length=500)]
 SECRET: dict[str, Any] = {"writeOnly": True}
-"""Marks a field that no answer repeats, not even one about what is wrong (`app.api.errors`)."""
+"""Marks a field that no response repeats, not even a validation error (`app.api.errors`)."""
 Token = Annotated[str, Field(min_length=20, max_length=100, json_schema_extra=SECRET)]
 Password = Annotated[str, Field(min_length=1, max_length=MAX_LENGTH, json_schema_extra=SECRET)]
 
@@ -25,7 +25,7 @@ class Credentials(BaseModel):
 
 
 class AccountView(BaseModel):
-    """Who is signed in."""
+    """The account that is signed in."""
 
     id: str
     username: str
@@ -33,19 +33,19 @@ class AccountView(BaseModel):
 
 
 class SignedInView(BaseModel):
-    """The answer to a login."""
+    """The response to a successful login."""
 
     account: AccountView
 
 
 class WhoView(BaseModel):
-    """Who is signed in; null where nobody is, which is no error."""
+    """The account that is signed in; null (and not an error) if none is."""
 
     account: AccountView | None
 
 
 class NewPassword(BaseModel):
-    """A change of one's own password; every other login ends."""
+    """A request to change one's own password; every other login ends."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -54,7 +54,7 @@ class NewPassword(BaseModel):
 
 
 class PersonView(BaseModel):
-    """An account as the admin sees it. `studies` is null where all are theirs."""
+    """An account as an admin sees it. `studies` is null if the account may see all studies."""
 
     id: str
     username: str
@@ -67,7 +67,7 @@ class PersonView(BaseModel):
 
 
 class PersonChange(BaseModel):
-    """What to change of an account; what is left out stays. `studies` null gives all of them."""
+    """Changes to an account; omitted fields stay as they are. `studies` null means all studies."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -77,7 +77,7 @@ class PersonChange(BaseModel):
 
 
 class NewInvitation(BaseModel):
-    """Whom to invite: `studies` null invites to all; `note` says who it is for."""
+    """A request for an invitation. `studies` null means all studies; `note` says who it is for."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -88,7 +88,7 @@ class NewInvitation(BaseModel):
 
 
 class InvitationView(BaseModel):
-    """An invitation; its link is told only once, when it is made."""
+    """An invitation without its link, which is returned only once, on creation."""
 
     id: str
     role: Role
@@ -102,9 +102,9 @@ class InvitationView(BaseModel):
 
 
 class InvitedView(InvitationView):
-    """A fresh invitation with its link; whoever has the link can use it.
+    """A new invitation with its link; anyone who has the link can use it.
 
-    `only_here`: no other computer can reach the server, so the link works on this one alone.
+    `only_here`: no other computer can reach the server, so the link works only on this one.
     """
 
     url: str
@@ -112,7 +112,7 @@ class InvitedView(InvitationView):
 
 
 class InvitationToken(BaseModel):
-    """The part of an invitation's link behind the #."""
+    """The token of an invitation: the part of its link after the #."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -120,7 +120,7 @@ class InvitationToken(BaseModel):
 
 
 class InvitationLook(BaseModel):
-    """What an invitation is for, before it is accepted."""
+    """What an invitation grants, as shown before it is accepted."""
 
     role: Role
     note: str
@@ -128,7 +128,7 @@ class InvitationLook(BaseModel):
 
 
 class Acceptance(InvitationToken):
-    """An invitation accepted under a name and password of one's own choice."""
+    """A request to accept an invitation, with the user name and password the person chose."""
 
     username: str = Field(min_length=1, max_length=80)
     password: Password

@@ -1,4 +1,4 @@
-"""Logging in, and knowing who asks.
+"""Create accounts, verify passwords, and issue and revoke login tokens.
 
 Passwords are argon2id hashes. A login is a random token (app.platform.tokens).
 """
@@ -21,7 +21,7 @@ _USERNAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 @dataclass(frozen=True)
 class Login:
-    """A fresh login: the token leaves here once, in clear."""
+    """A new login with its token, which is available in plain text only here."""
 
     account: Account
     token: str
@@ -31,12 +31,15 @@ class Login:
 def create_account(
     db: Session, *, username: str, password: str, role: str, now: datetime
 ) -> Account:
-    """Add an account that sees all studies; InvalidInput if the name is taken or unusable."""
+    """Create an account that sees all studies; raises InvalidInput for a taken or invalid name."""
     return add_account(db, username=username, hashed=hash_password(password), role=role, now=now)
 
 
 def add_account(db: Session, *, username: str, hashed: str, role: str, now: datetime) -> Account:
-    """The same with a password that was hashed before: hashing takes too long for a transaction."""
+    """Create an account from a password hash; raises InvalidInput for a taken or invalid name.
+
+    Hashing a password takes too long to be done inside a transaction, so it is done beforehand.
+    """
     if not is_username(username):
         raise InvalidInput(
             f"{username!r} cannot be a user name",
@@ -44,7 +47,7 @@ def add_account(db: Session, *, username: str, hashed: str, role: str, now: date
             valid="1 to 80 letters, digits, dots, - and _, beginning with a letter or digit",
             remedy="Choose another.",
         )
-    # Two names that differ in capitals only would be mistaken for each other.
+    # Two names that differ only in upper and lower case would be mistaken for each other.
     if db.scalar(select(Account).where(func.lower(Account.username) == username.lower())):
         raise InvalidInput(
             f"the user name {username!r} is taken", value=username, remedy="Choose another."
@@ -62,12 +65,15 @@ def add_account(db: Session, *, username: str, hashed: str, role: str, now: date
 
 
 def is_username(name: str) -> bool:
-    """Whether an account may have this name."""
+    """Return whether `name` is a valid user name."""
     return _USERNAME.fullmatch(name) is not None
 
 
 def ensure_admin(db: Session, *, password: str | None, now: datetime) -> str | None:
-    """Make the first account where there is none; the random password to print, if one was made."""
+    """Create the account `admin` if there are no accounts at all.
+
+    Returns the random password, to be printed, if one was generated.
+    """
     if db.scalar(select(Account).limit(1)):
         return None
     chosen = password or secrets.token_urlsafe(12)
@@ -76,16 +82,17 @@ def ensure_admin(db: Session, *, password: str | None, now: datetime) -> str | N
 
 
 def account_named(db: Session, username: str) -> Account | None:
-    """The account that can be logged in to by this name."""
+    """Return the account with this user name, unless it is closed."""
     return db.scalar(
         select(Account).where(Account.username == username, Account.disabled_at.is_(None))
     )
 
 
 def require_password(account: Account | None, password: str) -> Account:
-    """The account, if the password is its own; the same NotSignedIn whatever was wrong.
+    """Return the account if the password is correct; otherwise raise NotSignedIn.
 
-    Takes a while on purpose, so it is not to be called inside a transaction. Raises Busy.
+    The error does not reveal whether the name or the password was wrong. Verifying is slow on
+    purpose, so do not call this inside a transaction. Raises Busy.
     """
     if not is_password(account.password_hash if account else None, password) or account is None:
         raise NotSignedIn(
@@ -98,7 +105,7 @@ def require_password(account: Account | None, password: str) -> Account:
 def issue_token(
     db: Session, account: Account, *, purpose: str, now: datetime, hours: float
 ) -> Login:
-    """A new token for an account; `purpose` is browser or script."""
+    """Issue a login token for an account; `purpose` is browser or script."""
     token = secrets.token_urlsafe(32)
     expires_at = now + timedelta(hours=hours)
     db.add(
@@ -115,13 +122,13 @@ def issue_token(
 
 
 def revoke_token(db: Session, token: str, now: datetime) -> None:
-    """End a login; unknown tokens are ignored."""
+    """End the login that has this token; unknown tokens are ignored."""
     row = db.get(LoginToken, hash_token(token))
     if row is not None and row.revoked_at is None:
         row.revoked_at = now
 
 
-def is_alive(db: Session, token: str) -> bool:
-    """Whether this is a login that was not ended yet."""
+def is_active(db: Session, token: str) -> bool:
+    """Return whether this token belongs to a login that has not been revoked."""
     row = db.get(LoginToken, hash_token(token))
     return row is not None and row.revoked_at is None

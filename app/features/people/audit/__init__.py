@@ -1,35 +1,35 @@
-"""What people of the lab did, on a chain that shows every later change.
+"""The audit trail of the lab: hash-chained, so that any later change is detectable.
 
-`record` appends an act to the trail, `record_copy` notes data that leave the database: both within
-the caller's transaction.
+`record` appends an entry to the trail, and `record_copy` records that data leave the database. Both
+run within the caller's transaction.
 """
 
 from app.features.people.audit.copies import (
     COMMAND_LINE,
-    LONGEST_PLACE,
-    in_browser_of,
+    MAX_PLACE_LENGTH,
+    count_sessions,
+    download_place,
     record_copy,
-    sessions_in,
 )
 from app.features.people.audit.service import (
     AuditCheck,
     TrailHead,
+    contains_head,
     head_of,
-    holds_head,
     record,
     verify_trail,
 )
 
 __all__ = [
     "COMMAND_LINE",
-    "LONGEST_PLACE",
+    "MAX_PLACE_LENGTH",
     "AuditCheck",
     "TrailHead",
+    "contains_head",
+    "count_sessions",
+    "download_place",
     "head_of",
-    "holds_head",
-    "in_browser_of",
     "record",
     "record_copy",
-    "sessions_in",
     "verify_trail",
 ]

@@ -1,4 +1,4 @@
-"""Copies of data that leave the database are put on record: an erasure cannot reach them."""
+"""Record copies of data that leave the database, because an erasure cannot reach them."""
 
 from datetime import datetime
 
@@ -7,9 +7,9 @@ from sqlalchemy.orm import Session
 
 from app.models import CopyMade, Study, StudySession
 
-LONGEST_PLACE = 400
+MAX_PLACE_LENGTH = 400
 COMMAND_LINE = "command line"
-"""Who makes a copy with a command: nobody is signed in there."""
+"""The actor recorded for copies made by a command, where no account is signed in."""
 
 
 def record_copy(
@@ -25,16 +25,16 @@ def record_copy(
     sessions: int | None = None,
     size_bytes: int | None = None,
 ) -> CopyMade:
-    """Put on record that a copy is made: `kind` is export, access or backup.
+    """Record that a copy is made; `kind` is export, access or backup.
 
-    `session_kind`: of an export; people, simulated, test, expert or all.
+    `session_kind` applies to exports: people, simulated, test, expert or all.
     """
     row = CopyMade(
         kind=kind,
         study_id=study_id,
         session_kind=session_kind,
         participant_id=participant_id,
-        place=place[-LONGEST_PLACE:],
+        place=place[-MAX_PLACE_LENGTH:],
         sessions=sessions,
         bytes=size_bytes,
         by=by,
@@ -45,12 +45,12 @@ def record_copy(
     return row
 
 
-def sessions_in(db: Session, study: Study, kind: str) -> int:
-    """How many sessions an export of this kind holds."""
+def count_sessions(db: Session, study: Study, kind: str) -> int:
+    """Return how many sessions an export of this kind of session contains."""
     query = select(func.count()).select_from(StudySession).where(StudySession.study_id == study.id)
     return db.scalar(query if kind == "all" else query.where(StudySession.kind == kind)) or 0
 
 
-def in_browser_of(actor: str) -> str:
-    """The place of a copy that somebody downloaded: nobody knows where they put it."""
+def download_place(actor: str) -> str:
+    """Return the place to record for a downloaded copy: who downloaded it, as no more is known."""
     return f"downloaded by {actor.removeprefix('account:')}"

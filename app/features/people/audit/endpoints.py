@@ -1,4 +1,4 @@
-"""The audit trail over HTTP, and as a page sees it."""
+"""HTTP endpoints that show and verify the audit trail."""
 
 import json
 from datetime import datetime
@@ -15,7 +15,10 @@ Name = Annotated[str | None, Query(max_length=100)]
 
 
 class AuditView(BaseModel):
-    """One act. `actor` is `account:NAME`, a device, or `nobody` before a login."""
+    """An entry of the audit trail.
+
+    `actor` is `account:NAME`, a device, or `nobody` for a request without a login.
+    """
 
     seq: int
     at: datetime
@@ -27,16 +30,20 @@ class AuditView(BaseModel):
 
 
 class AuditPage(BaseModel):
-    """Entries, newest first; `next_before` asks for the page behind, and is null at the end."""
+    """Entries of the audit trail, newest first.
+
+    `next_before` is the value of `before` that requests the next page, and null on the last page.
+    """
 
     entries: list[AuditView]
     next_before: int | None
 
 
 class AuditCheckView(BaseModel):
-    """Whether every entry is as it was written; `broken_at` is the first that is not.
+    """The result of verifying the audit trail; `broken_at` is the first entry that was altered.
 
-    `head` is the newest entry as SEQ:HASH: kept elsewhere, it shows later that the end is missing.
+    `head` is the newest entry as SEQ:HASH. If it is also stored elsewhere, it can reveal later that
+    entries were removed from the end.
     """
 
     ok: bool
@@ -54,7 +61,7 @@ def get_audit(
     actor: Name = None,
     action: Name = None,
 ) -> AuditPage:
-    """What was done, newest first; an `action` that ends with a dot takes all that begin so."""
+    """Return entries, newest first; an `action` that ends with a dot matches as a prefix."""
     rows = entries_before(db, before=before, limit=limit + 1, actor=actor, action=action)
     shown = rows[:limit]
     return AuditPage(
@@ -76,7 +83,7 @@ def get_audit(
 
 @router.get("/audit/check")
 def get_audit_check(db: Reading, _: SignedIn) -> AuditCheckView:
-    """Recompute the whole chain."""
+    """Verify the audit trail by recomputing the whole hash chain."""
     check = verify_trail(db)
     return AuditCheckView(
         ok=check.ok, entries=check.entries, head=str(check.head), broken_at=check.broken_at

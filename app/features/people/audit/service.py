@@ -1,12 +1,12 @@
-"""The audit trail: who did what to which object, appended and hash-chained, never switched off.
+"""The audit trail: who did what to which object; append-only, hash-chained, and always enabled.
 
-A session has a log of its own; this one holds what happens around sessions: logins, accounts,
-studies, copies of data, erasures. It holds nothing of participants, not even their codes: what is
-chained cannot be erased.
+A session has its own event log; the audit trail records what happens around sessions: logins,
+accounts, studies, copies of data, erasures. It contains nothing about participants, not even their
+codes, because a chained entry cannot be erased.
 
-A chain alone cannot show that its end was cut off, since what is left of it still fits. So every
-backup and export carries the head of the trail, its newest entry, outside the database: a trail
-that no longer holds such a head was cut or written anew (`holds_head`).
+A chain alone cannot reveal that entries were removed from its end, since the rest is still
+consistent. So every backup and export carries the head of the trail (its newest entry) outside the
+database: a trail that no longer contains such a head was truncated or rewritten (`contains_head`).
 """
 
 import re
@@ -25,16 +25,16 @@ from app.protocol import canonical_json, sha256_of
 
 FIRST_HASH = "0" * 64
 SHORTEST_PREFIX = 16
-"""Hex digits of a hash that are enough to tell heads apart, for those who type it from paper."""
+"""The fewest hex digits of a head's hash to accept, for heads that are typed from paper."""
 _HEAD = 1
 _WRITTEN = re.compile(rf"([0-9]{{1,15}}):([0-9a-f]{{{SHORTEST_PREFIX},64}})", re.ASCII)
 
 
 @dataclass(frozen=True)
 class TrailHead:
-    """The newest entry of the trail at some moment; `seq` 0 is the trail before its first entry.
+    """The newest entry of the audit trail at some moment; `seq` 0 stands for an empty trail.
 
-    `hash` may be the first part of one, where somebody copied it from paper.
+    `hash` may be only the first part of the hash, if somebody copied it from paper.
     """
 
     seq: int
@@ -45,7 +45,7 @@ class TrailHead:
 
     @classmethod
     def parse(cls, text: str) -> "TrailHead":
-        """A head as `str` writes it; raises InvalidInput."""
+        """Parse a head in the format SEQ:HASH that `str` produces; raises InvalidInput."""
         found = _WRITTEN.fullmatch(text.strip().lower())
         if found is None:
             raise InvalidInput(
@@ -61,7 +61,7 @@ class TrailHead:
 
 @dataclass(frozen=True)
 class AuditCheck:
-    """Whether the trail verifies; `broken_at` is the first seq that does not."""
+    """The result of verifying the trail; `broken_at` is the first `seq` that fails."""
 
     ok: bool
     entries: int
@@ -78,10 +78,10 @@ def record(
     details: Mapping[str, Any] | None = None,
     now: datetime,
 ) -> AuditEntry:
-    """Append one act to the trail, in the caller's transaction: both happen or neither.
+    """Append an entry to the audit trail within the caller's transaction.
 
-    Writers queue on the head of the chain until their transaction ends. Call it last, so that no
-    two transactions ever wait for each other.
+    Writers queue for the lock on the chain's head until their transactions end. Call this last in a
+    transaction, so that two transactions can never deadlock.
     """
     head = _locked_head(db)
     entry = AuditEntry(
@@ -108,9 +108,9 @@ def entries_before(
     actor: str | None = None,
     action: str | None = None,
 ) -> Sequence[AuditEntry]:
-    """The newest entries with a seq below `before`, newest first; filters match exactly.
+    """Return the newest entries with a `seq` below `before`, newest first; filters match exactly.
 
-    An `action` that ends with a dot takes everything that begins so, as in "login.".
+    An `action` that ends with a dot, such as "login.", matches every action with that prefix.
     """
     query = select(AuditEntry).order_by(AuditEntry.seq.desc()).limit(limit)
     if before is not None:
@@ -125,7 +125,7 @@ def entries_before(
 
 
 def verify_trail(db: Session) -> AuditCheck:
-    """Recompute every hash of the trail, and compare its end with the head."""
+    """Recompute every hash of the trail, and compare its last entry with the stored head."""
     found = head_of(db)
     previous, count = FIRST_HASH, 0
     for entry in db.scalars(select(AuditEntry).order_by(AuditEntry.seq)).yield_per(1000):
@@ -142,16 +142,16 @@ def verify_trail(db: Session) -> AuditCheck:
 
 
 def head_of(db: Session) -> TrailHead:
-    """The head of the trail, as the transaction sees it."""
+    """Return the head of the trail as the current transaction sees it."""
     head = db.get(AuditHead, _HEAD)
     return TrailHead(0, FIRST_HASH) if head is None else TrailHead(head.seq, head.hash)
 
 
-def holds_head(db: Session, head: TrailHead) -> bool:
-    """Whether the entry that a head names is in the trail, with the hash it had then.
+def contains_head(db: Session, head: TrailHead) -> bool:
+    """Return whether the trail contains the entry that `head` names, with the same hash.
 
-    Together with a trail that verifies this proves that everything up to that entry is there as it
-    was written. False after a backup from before that moment was restored, too.
+    Together with a trail that verifies, this proves that everything up to that entry is unchanged.
+    It is also False after an older backup, made before that entry, was restored.
     """
     if head.seq == 0:
         return FIRST_HASH.startswith(head.hash)

@@ -1,6 +1,13 @@
-"""What the operator has to know now: raised, cleared, and kept."""
+"""Alarms: problems that the operator must know about now, raised, cleared and stored."""
 
-from app.features.record.alarms.alarm import STANDING, Alarm, Change, Condition, Moment, WatchLimits
+from app.features.record.alarms.alarm import (
+    PERSISTENT,
+    Alarm,
+    Change,
+    Condition,
+    Moment,
+    WatchLimits,
+)
 from app.features.record.alarms.kinds import ALARMS, alarm_texts
 from app.features.record.alarms.service import (
     AlarmView,
@@ -14,7 +21,7 @@ from app.features.record.alarms.watch import QualityWatch
 
 __all__ = [
     "ALARMS",
-    "STANDING",
+    "PERSISTENT",
     "Alarm",
     "AlarmView",
     "Change",

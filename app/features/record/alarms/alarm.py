@@ -1,4 +1,4 @@
-"""An alarm, and the book that opens and closes them without flicker."""
+"""Alarms and their conditions, the set of open alarms, and the limits of the headset watch."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -11,14 +11,14 @@ from app.science.stream_quality import USUAL, QualityLimits
 State = Literal["raised", "cleared"]
 
 SEVERITIES: dict[str, Severity] = {one.key: one.severity for one in ALARMS}
-STANDING = tuple(one.key for one in ALARMS if one.of_person)
-"""Alarms about the participant: they hold until a person or a form says otherwise, whatever becomes
-of the server and the headset in between."""
+PERSISTENT = tuple(one.key for one in ALARMS if one.of_person)
+"""Alarms about the participant: they stay open until a person or a form clears them, even if the
+server or the headset restarts."""
 
 
 @dataclass(frozen=True)
 class Moment:
-    """Now, on the server: `monotonic_s` for durations, `utc` for the record."""
+    """The current time on the server: `monotonic_s` for durations, `utc` for the record."""
 
     monotonic_s: float
     utc: datetime
@@ -26,10 +26,10 @@ class Moment:
 
 @dataclass(frozen=True)
 class Condition:
-    """Something is wrong at this moment. `stream` None: not with one stream alone.
+    """Something that is wrong at this moment; `stream` is None unless it concerns a single stream.
 
-    `value` with its `unit` says how much; `client_t_s` when it was, on the client's clock; `joints`
-    which joints are meant.
+    `value` with its `unit` quantifies it; `client_t_s` is when it happened, on the client's clock;
+    `joints` are the joints concerned.
     """
 
     code: str
@@ -42,18 +42,18 @@ class Condition:
 
     @property
     def severity(self) -> Severity:
-        """How urgent it is."""
+        """Return how urgent the condition is."""
         return SEVERITIES[self.code]
 
     @property
     def key(self) -> tuple[str, str | None]:
-        """An alarm is open once for each code and stream."""
+        """Return what identifies its alarm: at most one is open for each code and stream."""
         return self.code, self.stream
 
 
 @dataclass(frozen=True)
 class Change:
-    """An alarm was raised or cleared; `condition` as it was at that moment."""
+    """The raising or clearing of an alarm, with its condition at that moment."""
 
     state: State
     condition: Condition
@@ -62,7 +62,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Alarm:
-    """An alarm that is open: its newest condition, and since when."""
+    """An open alarm: its latest condition, since when it is open, and when it was last reported."""
 
     condition: Condition
     since: datetime
@@ -70,11 +70,11 @@ class Alarm:
 
 
 @dataclass
-class AlarmBook:
+class OpenAlarms:
     """The open alarms of one headset.
 
-    An alarm is raised by the first condition and cleared once there was none for `clear_after_s`:
-    so that what comes and goes does not make the page flicker.
+    An alarm is raised by the first report of its condition, and cleared once the condition has not
+    been reported for `clear_after_s`. So an intermittent problem does not make the page flicker.
     """
 
     clear_after_s: float
@@ -82,27 +82,29 @@ class AlarmBook:
 
     @property
     def open(self) -> tuple[Alarm, ...]:
-        """What is wrong now, the oldest first."""
+        """Return the open alarms, oldest first."""
         return tuple(self._open.values())
 
     def report(self, condition: Condition, now: Moment) -> Iterator[Change]:
-        """Take note of a condition; gives the change if it raises an alarm."""
-        known = self._open.get(condition.key)
-        if known is None:
+        """Record a condition; yield a change if it raises an alarm."""
+        existing = self._open.get(condition.key)
+        if existing is None:
             self._open[condition.key] = Alarm(condition, now.utc, now.monotonic_s)
             yield Change("raised", condition, now.utc)
         else:
-            self._open[condition.key] = replace(known, condition=condition, seen_s=now.monotonic_s)
+            self._open[condition.key] = replace(
+                existing, condition=condition, seen_s=now.monotonic_s
+            )
 
-    def settle(self, now: Moment) -> Iterator[Change]:
-        """Clear what has not been reported for a while."""
+    def clear_expired(self, now: Moment) -> Iterator[Change]:
+        """Clear the alarms whose conditions have not been reported for `clear_after_s`."""
         for alarm in self.open:
             if now.monotonic_s - alarm.seen_s >= self.clear_after_s:
                 del self._open[alarm.condition.key]
                 yield Change("cleared", alarm.condition, now.utc)
 
     def close(self, message: str, now: Moment) -> Iterator[Change]:
-        """Clear everything, and say why."""
+        """Clear all open alarms, with `message` as the reason."""
         for alarm in self.open:
             del self._open[alarm.condition.key]
             yield Change("cleared", replace(alarm.condition, message=message), now.utc)
@@ -110,14 +112,15 @@ class AlarmBook:
 
 @dataclass(frozen=True)
 class WatchLimits:
-    """What the watch of a headset tolerates. Seconds are real ones unless they say `client`.
+    """What the watch of a headset tolerates. Durations are in real seconds unless named `client`.
 
-    `silent_s`: no frame while frames are wanted. `clock_unknown_s`: no usable reading of the
-    clocks. `clock_uncertain_s`: half of the smallest round trip within `clock_window_s`.
-    `backlog_s`: movement that is not on disk yet. `low_rate_share` of the usual frame rate, over
-    `low_rate_client_s`: 72 of 90 Hz is a rate that displays have, so a little less than that.
-    `gap_client_s`: shorter gaps are counted, and raise nothing. `clear_after_s`: an alarm is
-    cleared after so long without its cause. `look_every_s`: how often the watch looks up.
+    `silent_s`: time without a frame while frames are expected. `clock_unknown_s`: time without a
+    usable clock probe. `clock_uncertain_s`: half of the smallest round trip within
+    `clock_window_s`. `backlog_s`: movement that is not on disk yet. `low_rate_share`: the lowest
+    tolerated share of the usual frame rate, over `low_rate_client_s`; it is slightly less than 72
+    of 90 Hz, because displays do have that rate. `gap_client_s`: shorter gaps are counted but raise
+    no alarm. `clear_after_s`: how long after its cause ceases an alarm is cleared. `check_every_s`:
+    the interval between checks.
     """
 
     silent_s: float = 3.0
@@ -129,15 +132,16 @@ class WatchLimits:
     low_rate_client_s: float = 3.0
     gap_client_s: float = 0.25
     clear_after_s: float = 3.0
-    look_every_s: float = 0.5
+    check_every_s: float = 0.5
     quality: QualityLimits = USUAL
 
     def at_scale(self, time_scale: float) -> "WatchLimits":
-        """For a simulated session in which `time_scale` seconds of the client pass in a real one.
+        """Return the limits for a session that runs `time_scale` times as fast as real time.
 
-        A client that runs faster than life waits for the server and shares its machine: it owes
-        nobody a steady stream, so it may be silent ten times as long. With one that runs slower,
-        what is judged by the second of its clock comes more rarely.
+        A simulated client that runs faster than real time waits for the server and shares its
+        machine, so it need not send a steady stream: it may be silent ten times as long. With a
+        client that runs slower, whatever is judged once per client second is judged less often, so
+        alarms clear later.
         """
         if time_scale > 1.0:
             return replace(self, silent_s=10.0 * self.silent_s)

@@ -1,4 +1,7 @@
-"""How well the headset's clock is known, live; the mapping itself is made at analysis."""
+"""Monitor how accurately the headset's clock is known during a session.
+
+The mapping between the clocks is computed later, in the analysis.
+"""
 
 from collections import deque
 from collections.abc import Iterator
@@ -12,7 +15,7 @@ NANO = 1e-9
 
 @dataclass
 class ClockWatch:
-    """Round trips of the last minute. `time_scale` seconds of the client pass in a real one."""
+    """Round-trip times of the last minute. `time_scale` client seconds pass per real second."""
 
     limits: WatchLimits
     time_scale: float
@@ -20,14 +23,14 @@ class ClockWatch:
     _trips: deque[tuple[float, float]] = field(default_factory=deque)
 
     def probed(self, reading: Probed, now_s: float) -> None:
-        """Take one exchange; one that was not answered, or cannot be, says nothing."""
+        """Record a clock probe; one that is unanswered or has a negative round trip is ignored."""
         trip_s = self._round_trip_s(reading)
         if trip_s is not None and trip_s >= 0.0:
             self.usable_s = now_s
             self._trips.append((now_s, trip_s))
 
     def _round_trip_s(self, reading: Probed) -> float | None:
-        """Time on the way there and back, in real seconds."""
+        """Return a probe's network time there and back, in real seconds; None if unanswered."""
         received_s = reading.client_received_s
         if received_s is None or reading.server_received_ns is None:
             return None
@@ -37,13 +40,16 @@ class ClockWatch:
         return (received_s - reading.client_sent_s) / self.time_scale - held_s
 
     def uncertainty_s(self, now_s: float) -> float | None:
-        """Half of the smallest round trip: the offset cannot be off by more. None if unknown."""
+        """Return the greatest possible error of the clock offset, or None if it is unknown.
+
+        This is half of the smallest round trip.
+        """
         while self._trips and now_s - self._trips[0][0] > self.limits.clock_window_s:
             self._trips.popleft()
         return 0.5 * min(trip_s for _, trip_s in self._trips) if self._trips else None
 
-    def look(self, now_s: float) -> Iterator[Condition]:
-        """What is wrong with the clock now."""
+    def check(self, now_s: float) -> Iterator[Condition]:
+        """Yield a condition if the headset's clock is unknown or known too inaccurately."""
         waited_s = now_s - self.usable_s
         uncertainty_s = self.uncertainty_s(now_s)
         if waited_s > self.limits.clock_unknown_s:

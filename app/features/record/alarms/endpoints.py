@@ -1,4 +1,4 @@
-"""Alarms over HTTP: what went wrong in a session, and when."""
+"""HTTP endpoint for the alarms of a session."""
 
 from fastapi import APIRouter
 
@@ -11,5 +11,5 @@ router = APIRouter(tags=["sessions"])
 
 @router.get("/sessions/{session_id}/alarms")
 def get_alarms(session_id: str, db: Reading, _: SignedIn) -> list[AlarmView]:
-    """Every alarm that a session had, the newest first."""
+    """Return all alarms of a session, newest first."""
     return alarm_history(db, session_by_id(db, session_id))

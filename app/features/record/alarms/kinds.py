@@ -1,7 +1,8 @@
-"""The registry of the alarms: how urgent each is, what it is called, and what to do about it.
+"""The registry of alarms: the severity, title and remedy of each.
 
-Whoever adds an alarm gives it an entry in `ALARMS` and raises it where it is noticed, mostly in one
-of the `*_watch.py` beside this file; the cockpit's words in both languages follow from the entry.
+To add an alarm, add an entry to `ALARMS` and raise the alarm where it is detected, usually in one
+of the `*_watch.py` modules in this folder. The cockpit's texts in both languages are generated from
+the entry.
 """
 
 from dataclasses import dataclass
@@ -18,13 +19,13 @@ class AlarmKind:
 
     Attributes:
         key: stored with every alarm, so it is never renamed.
-        severity: critical where data are being lost, a phase stands, or somebody is unwell, calls
-            or does not want to take part.
+        severity: critical if data are being lost, a phase is halted, or the participant is unwell,
+            calls the operator or does not want to take part.
         title: what is wrong, in a few words.
-        remedy: what the operator does about it.
-        remedy_while_paused: the same while the phase is paused because of it.
-        of_person: about the participant. It holds until a person or a form says otherwise, whatever
-            becomes of the server and the headset in between.
+        remedy: what the operator should do about it.
+        remedy_while_paused: the same, for when the alarm has paused the phase.
+        of_person: whether the alarm is about the participant. Such an alarm stays open until a
+            person or a form clears it, even if the server or the headset restarts.
     """
 
     key: str
@@ -35,8 +36,9 @@ class AlarmKind:
     of_person: bool = False
 
 
-# What a headset said is `impossible` where only its connection could see it; a phase that has ended
-# is `doubtful` where its record holds what cannot be true. `low_disk` is raised by the pages.
+# `impossible` is raised when only the connection can tell that a headset's message cannot be true;
+# `doubtful` when the record of a phase that has ended contains something that cannot be true.
+# `low_disk` is raised by the pages.
 ALARMS: tuple[AlarmKind, ...] = (
     AlarmKind(
         key="silent",
@@ -278,7 +280,7 @@ ALARMS: tuple[AlarmKind, ...] = (
 
 
 def alarm_texts() -> dict[str, Words]:
-    """The words of every alarm, by their keys in the tables of the pages."""
+    """Return the texts of all alarms by their keys in the pages' text tables."""
     texts = {}
     for one in ALARMS:
         texts[f"alarm.{one.key}"] = one.title

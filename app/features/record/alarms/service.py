@@ -1,4 +1,4 @@
-"""Alarms on the record: rows are only ever added, one when raised and one when cleared."""
+"""Store and query alarms. Rows are only appended: one when raised, one when cleared."""
 
 import math
 from collections.abc import Collection, Iterable
@@ -17,11 +17,10 @@ TICK = timedelta(microseconds=1)
 
 
 class AlarmView(BaseModel):
-    """One alarm from its raising to its clearing; `cleared_at` is null while it is open.
+    """An alarm of a session; `cleared_at` is null while it is open.
 
-    `value` with its `unit` says how much when it was raised, `client_t_s` when it was on the
-    headset's clock. `outcome` says why it was cleared, where there is more to say than that its
-    cause was gone.
+    `value` with its `unit` quantifies it at the time it was raised, and `client_t_s` is that time
+    on the headset's clock. `outcome` says why it was cleared, unless its cause simply ceased.
     """
 
     id: str
@@ -45,7 +44,7 @@ _NEWEST_FIRST = (
 
 
 def store_change(db: Session, session_id: str, change: Change) -> bool:
-    """Add the row of a change; False where nothing changes: raised already, or not open.
+    """Store the raising or clearing of an alarm; return False if it changes nothing.
 
     Two sockets of one session may raise the same alarm, and a session that ends clears them all.
     """
@@ -57,7 +56,7 @@ def store_change(db: Session, session_id: str, change: Change) -> bool:
     ).first()
     if (newest is not None and newest.state == "raised") == (change.state == "raised"):
         return False
-    # The wall clock may have been set back; the order of an alarm's rows may not.
+    # The wall clock may have been set back, but an alarm's rows must stay in order.
     at = change.at if newest is None else max(change.at, newest.at + TICK)
     _add(db, session_id, condition, change.state, at)
     return True
@@ -71,7 +70,10 @@ def clear_all(
     *,
     keep: Collection[str] = (),
 ) -> int:
-    """Clear the open alarms of these sessions, but for those codes, and say why; how many."""
+    """Clear the open alarms of these sessions except the codes in `keep`; return how many.
+
+    `message` is stored as the reason.
+    """
     count = 0
     for session_id in session_ids:
         for row in open_rows(db, session_id):
@@ -84,7 +86,7 @@ def clear_all(
 
 
 def sessions_with_open_alarms(db: Session) -> list[str]:
-    """The sessions in which an alarm was raised and not cleared."""
+    """Return the ids of the sessions that have an open alarm."""
     balance = func.sum(case((AlarmRow.state == "raised", 1), else_=-1))
     query = (
         select(AlarmRow.session_id)
@@ -95,7 +97,7 @@ def sessions_with_open_alarms(db: Session) -> list[str]:
 
 
 def open_rows(db: Session, session_id: str) -> list[AlarmRow]:
-    """What was raised and not cleared, the oldest first."""
+    """Return the rows of a session's open alarms, oldest first."""
     newest: dict[tuple[str, str | None], AlarmRow] = {}
     for row in db.scalars(_NEWEST_FIRST, {"session_id": session_id}):
         newest.setdefault((row.code, row.stream), row)
@@ -103,12 +105,12 @@ def open_rows(db: Session, session_id: str) -> list[AlarmRow]:
 
 
 def open_alarms(db: Session, session_id: str) -> list[AlarmView]:
-    """What is wrong with a session now, for a page that is drawn anew."""
+    """Return the open alarms of a session, for a page that loads or refreshes."""
     return [_view(row, None) for row in open_rows(db, session_id)]
 
 
 def alarm_history(db: Session, session: StudySession) -> list[AlarmView]:
-    """Every alarm that a session had, the newest first."""
+    """Return all alarms of a session, newest first."""
     cleared: dict[tuple[str, str | None], AlarmRow] = {}
     views = []
     for row in db.scalars(_rows(session.id)):

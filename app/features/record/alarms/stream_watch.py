@@ -1,4 +1,4 @@
-"""The quality of one stream of one run of the client, live: a second of frames at a time."""
+"""Monitor the quality of one stream of one epoch, about a second of frames at a time."""
 
 from collections import deque
 from collections.abc import Iterator, Sequence
@@ -20,7 +20,7 @@ JOINTS_NAMED = 4
 
 @dataclass
 class StreamTally:
-    """Faults since the phase began."""
+    """Counts of a stream's faults since the phase began."""
 
     phase_id: int = 0
     gaps: int = 0
@@ -30,10 +30,10 @@ class StreamTally:
 
 @dataclass
 class StreamWatch:
-    """Judges frames as they come; asks nothing of the database.
+    """Examine the frames of a stream as they arrive, without using the database.
 
-    The usual frame rate is learnt: the highest that lasted for a few seconds. Everything is
-    measured on the client's clock, so a client that runs faster than life looks like any other.
+    The usual frame rate is learned: the highest one that lasted for a few seconds. All times are on
+    the client's clock, so a client that runs faster than real time is treated like any other.
     """
 
     stream: StreamName
@@ -49,11 +49,11 @@ class StreamWatch:
     _pace: deque[tuple[int, float]] = field(default_factory=deque)
 
     def take(self, batch: Batch) -> Iterator[Condition]:
-        """Add a batch; gives what is found to be wrong once there is enough to judge."""
+        """Add a batch; once there are enough frames to examine, yield the conditions found."""
         header = batch.header
         skip = self.next_seq - header.seq_first
         if skip < 0 or skip >= header.frame_count:
-            return  # it will be sent again, or was seen before
+            return  # a batch before it is missing and will be resent, or this one is a duplicate
         if header.phase_id != self.tally.phase_id:
             yield from self._judge()
             self._begin_phase(header.phase_id)
@@ -68,17 +68,17 @@ class StreamWatch:
     def _begin_phase(self, phase_id: int) -> None:
         self.tally = StreamTally(phase_id)
         if self.stream is StreamName.ACTUAL:
-            # The delay is set anew, so the avatar may stand elsewhere.
+            # The delay changes between phases, so the avatar may be elsewhere.
             self._memory = self._memory.without_pose()
 
     @property
     def frame_rate_hz(self) -> float | None:
-        """Frames per second of the client's clock over the last seconds, long gaps left out."""
+        """Return the recent frames per second of the client's clock, not counting long gaps."""
         spans_s = sum(span_s for _, span_s in self._pace)
         return sum(frames for frames, _ in self._pace) / spans_s if spans_s > 0.0 else None
 
     def _judge(self) -> Iterator[Condition]:
-        """Judge what has gathered."""
+        """Examine the frames collected so far, and yield the conditions found."""
         if not self._frames:
             return
         times_s = np.concatenate(self._times)
@@ -208,7 +208,10 @@ class StreamWatch:
 
 
 def _middle(ordered: Sequence[float] | NDArray[np.float64]) -> float:
-    """The upper median, which is one of the values, and quicker than NumPy's for so few."""
+    """Return the upper median, which is always one of the values.
+
+    For so few values this is faster than NumPy's median.
+    """
     return float(ordered[len(ordered) // 2])
 
 

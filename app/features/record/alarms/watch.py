@@ -1,4 +1,4 @@
-"""The watch of one headset: hears everything it says, and says what is wrong."""
+"""Monitor one headset: collect everything it sends, and raise and clear alarms."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -6,10 +6,10 @@ from typing import Any
 
 from app.features.record.alarms.alarm import (
     Alarm,
-    AlarmBook,
     Change,
     Condition,
     Moment,
+    OpenAlarms,
     WatchLimits,
 )
 from app.features.record.alarms.backlog_watch import BacklogWatch
@@ -20,8 +20,8 @@ from app.wire import Batch, HeadsetState, Probed, Produced, StreamName, Welcome
 
 
 @dataclass(frozen=True)
-class Look:
-    """What a look up gave: changes of alarms, and whether a running phase is without frames."""
+class CheckResult:
+    """The result of a periodic check: alarm changes, and whether a running phase lacks frames."""
 
     changes: tuple[Change, ...]
     phase_is_lost: bool
@@ -29,10 +29,10 @@ class Look:
 
 @dataclass
 class QualityWatch:
-    """Everything that is watched of one open socket. Knows no database and no event loop.
+    """All watches over one open headset socket. Uses neither the database nor the event loop.
 
-    Make it with `QualityWatch.of(welcome, ...)`, tell it what the headset sends and what becomes of
-    it, and call `look` about every `limits.look_every_s`.
+    Create it with `QualityWatch.of(welcome, ...)`, pass it what the headset sends and what is
+    stored of that, and call `check` about every `limits.check_every_s`.
     """
 
     limits: WatchLimits
@@ -40,14 +40,14 @@ class QualityWatch:
     clock: ClockWatch
     silence: SilenceWatch
     backlog: BacklogWatch
-    book: AlarmBook
+    alarms: OpenAlarms
     _streams: dict[tuple[StreamName, int], StreamWatch] = field(default_factory=dict)
     _stored: dict[tuple[str, int], int] = field(default_factory=dict)
     _newest: dict[StreamName, StreamWatch] = field(default_factory=dict)
 
     @classmethod
     def of(cls, welcome: Welcome, limits: WatchLimits, now: Moment) -> "QualityWatch":
-        """The watch of a headset that has just been welcomed."""
+        """Create the watch of a headset that has just been welcomed."""
         limits = limits.at_scale(welcome.time_scale)
         watch = cls(
             limits=limits,
@@ -55,38 +55,38 @@ class QualityWatch:
             clock=ClockWatch(limits, welcome.time_scale, now.monotonic_s),
             silence=SilenceWatch(limits, now.monotonic_s),
             backlog=BacklogWatch(limits),
-            book=AlarmBook(limits.clear_after_s),
+            alarms=OpenAlarms(limits.clear_after_s),
             _stored={(str(p.stream), p.epoch): p.next_seq for p in welcome.positions},
         )
         watch.backlog.stored(welcome.positions)
-        watch.follow(welcome.state, now)
+        watch.update_state(welcome.state, now)
         return watch
 
     @property
     def recording(self) -> bool:
-        """Whether frames are wanted."""
+        """Return whether frames are expected."""
         return self.silence.recording
 
     @property
     def open(self) -> tuple[Alarm, ...]:
-        """What is wrong now."""
-        return self.book.open
+        """Return the open alarms, oldest first."""
+        return self.alarms.open
 
-    def follow(self, state: HeadsetState, now: Moment) -> None:
-        """The session has changed."""
+    def update_state(self, state: HeadsetState, now: Moment) -> None:
+        """Apply a new state of the session."""
         phase = state.phase
         running = phase is not None and phase.status == "running"
-        self.silence.follow(now.monotonic_s, recording=state.recording, running=running)
+        self.silence.set_expected(now.monotonic_s, recording=state.recording, running=running)
 
     def batch(self, batch: Batch, now: Moment) -> tuple[Change, ...]:
-        """Frames have come."""
+        """Examine a batch of frames that has arrived, and return the changes of alarms."""
         header = batch.header
-        self.silence.heard(now.monotonic_s)
-        self.backlog.handed_over(now.monotonic_s)
-        watch = self._of(header.stream, header.epoch)
+        self.silence.frame_arrived(now.monotonic_s)
+        self.backlog.submitted(now.monotonic_s)
+        watch = self._stream_watch(header.stream, header.epoch)
         return self._report(watch.take(batch), now)
 
-    def _of(self, stream: StreamName, epoch: int) -> StreamWatch:
+    def _stream_watch(self, stream: StreamName, epoch: int) -> StreamWatch:
         watch = self._streams.get((stream, epoch))
         if watch is None:
             next_seq = self._stored.get((str(stream), epoch), 0)
@@ -95,40 +95,40 @@ class QualityWatch:
         return watch
 
     def probed(self, reading: Probed, now: Moment) -> None:
-        """An exchange of clock readings has come."""
+        """Record a clock probe that has arrived."""
         self.clock.probed(reading, now.monotonic_s)
 
     def produced(self, message: Produced) -> None:
-        """The client says how far it has come."""
+        """Record the client's report of how many frames it has produced."""
         target = self._newest.get(StreamName.TARGET)
         if target is not None and target.usual_s is not None:
             self.backlog.frames_per_s = self.time_scale / target.usual_s
         self.backlog.produced(message)
 
-    def look(self, now: Moment, *, reading: bool = True) -> Look:
-        """What has changed without a word from the headset.
+    def check(self, now: Moment, *, reading: bool = True) -> CheckResult:
+        """Run the checks that do not depend on a message from the headset.
 
-        `reading` False: the server itself has stopped reading, so silence says nothing.
+        `reading` is False while the server has stopped reading, so that silence means nothing.
         """
-        self.silence.look_up(now.monotonic_s, reading=reading)
-        self.clock.usable_s = max(self.clock.usable_s, self.silence.unheard_until_s)
+        self.silence.note_check(now.monotonic_s, reading=reading)
+        self.clock.usable_s = max(self.clock.usable_s, self.silence.unread_until_s)
         found: list[Condition] = [
-            *self.silence.look(now.monotonic_s),
-            *self.clock.look(now.monotonic_s),
-            *self.backlog.look(now.monotonic_s),
+            *self.silence.check(now.monotonic_s),
+            *self.clock.check(now.monotonic_s),
+            *self.backlog.check(now.monotonic_s),
         ]
-        changes = (*self._report(found, now), *self.book.settle(now))
-        return Look(changes, self.silence.phase_is_lost(now.monotonic_s))
+        changes = (*self._report(found, now), *self.alarms.clear_expired(now))
+        return CheckResult(changes, self.silence.phase_is_lost(now.monotonic_s))
 
     def _report(self, conditions: Iterable[Condition], now: Moment) -> tuple[Change, ...]:
         def changes() -> Iterator[Change]:
             for condition in conditions:
-                yield from self.book.report(condition, now)
+                yield from self.alarms.report(condition, now)
 
         return tuple(changes())
 
     def signal(self, now: Moment) -> dict[str, Any]:
-        """The figures of the console's signal card; null where unknown."""
+        """Return the figures of the console's signal card; unknown ones are null."""
         target = self._newest.get(StreamName.TARGET)
         rate_hz = None if target is None else target.frame_rate_hz
         if self.silence.is_quiet(now.monotonic_s):
@@ -145,5 +145,5 @@ class QualityWatch:
             "clock_uncertainty_ms": None
             if uncertainty_s is None
             else round(1e3 * uncertainty_s, 1),
-            "behind_s": round(self.backlog.behind_s(now.monotonic_s), 1),
+            "behind_s": round(self.backlog.lag_s(now.monotonic_s), 1),
         }

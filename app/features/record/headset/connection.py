@@ -232,7 +232,7 @@ class HeadsetConnection:
                 await asyncio.to_thread(self._require_pairing)
             if "session" in news:
                 state = await asyncio.to_thread(self._state)
-                self.monitor.follow(state)
+                self.monitor.update_state(state)
                 await self._send(state)
 
     def _state(self) -> HeadsetState:

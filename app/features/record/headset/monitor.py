@@ -80,34 +80,34 @@ class HeadsetMonitor:
         """Something is on disk; other messages are `waiting`, or none."""
         self.live.flagged(outcome.frames_flagged)
         self.watch.backlog.stored(outcome.positions.values())
-        self.watch.backlog.answered(self._now().monotonic_s, waiting=waiting)
+        self.watch.backlog.acknowledged(self._now().monotonic_s, waiting=waiting)
 
-    def follow(self, state: HeadsetState) -> None:
+    def update_state(self, state: HeadsetState) -> None:
         """The session has changed."""
-        self.watch.follow(state, self._now())
+        self.watch.update_state(state, self._now())
 
     async def run(self, is_reading: Callable[[], bool]) -> None:
         """Look up now and then, also when nothing comes, until cancelled."""
         while True:
-            await asyncio.sleep(self.watch.limits.look_every_s)
-            self._look(reading=is_reading())
+            await asyncio.sleep(self.watch.limits.check_every_s)
+            self._check(reading=is_reading())
 
-    def _look(self, *, reading: bool) -> None:
+    def _check(self, *, reading: bool) -> None:
         now = self._now()
-        self.watch.silence.heard(self.context.hub.frames_heard_s(self.session_id))
-        look = self.watch.look(now, reading=reading)
-        self._store(look.changes)
-        if look.phase_is_lost:
+        self.watch.silence.frame_arrived(self.context.hub.frames_heard_s(self.session_id))
+        result = self.watch.check(now, reading=reading)
+        self._store(result.changes)
+        if result.phase_is_lost:
             self.submit(LossContent("headset_silent"))
         self.context.hub.note_signal(self.session_id, self.watch.signal(now))
         due = now.monotonic_s - self._told_s >= NEWS_EVERY_S
-        if (look.changes or due) and self._has_listeners():
+        if (result.changes or due) and self._has_listeners():
             self._tell({}, now)
 
     def leave(self, *, connected: bool) -> None:
         """The socket has closed; the session has another one that is `connected`, or none."""
         now = self._now()
-        self._store(self.watch.book.close("the headset's connection has closed", now))
+        self._store(self.watch.alarms.close("the headset's connection has closed", now))
         gone: list[Alarm] = []
         if self.watch.recording and not connected:
             lost = Condition("disconnected", "The headset's connection has broken off")

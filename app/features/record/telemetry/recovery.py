@@ -4,7 +4,7 @@ from sqlalchemy import select
 
 from app.database import kept_row
 from app.features.design.studies import protocol_of
-from app.features.record.alarms import STANDING, clear_all, sessions_with_open_alarms
+from app.features.record.alarms import PERSISTENT, clear_all, sessions_with_open_alarms
 from app.features.record.sessions import HeadsetLost, apply_command, state_of
 from app.features.record.telemetry.positions import certain_active_s
 from app.models import StudySession, StudyVersion
@@ -43,4 +43,4 @@ def _clear_alarms(context: AppContext) -> None:
     now = context.clock.utc_now()
     with context.database.writing() as db:
         sessions = sessions_with_open_alarms(db)
-        clear_all(db, sessions, "the server had stopped in between", now, keep=STANDING)
+        clear_all(db, sessions, "the server had stopped in between", now, keep=PERSISTENT)

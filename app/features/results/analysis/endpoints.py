@@ -6,7 +6,7 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query, Response
 
 from app.features.design.studies import study_by_key
-from app.features.people.audit import in_browser_of, record, record_copy, sessions_in
+from app.features.people.audit import count_sessions, download_place, record, record_copy
 from app.features.results.analysis.drawing import Drawings, Drawn
 from app.features.results.analysis.schemas import (
     ColumnView,
@@ -61,10 +61,10 @@ def get_figure_rows(
             kind="export",
             study_id=study.id,
             session_kind=asked.kind,
-            place=f"{in_browser_of(caller.actor)}: rows of the figure {figure}",
+            place=f"{download_place(caller.actor)}: rows of the figure {figure}",
             by=caller.actor,
             now=now,
-            sessions=sessions_in(writing, study, asked.kind),
+            sessions=count_sessions(writing, study, asked.kind),
             size_bytes=len(body),
         )
         record(

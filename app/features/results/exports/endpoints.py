@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from app.errors import NotFound, NotNow
 from app.features.design.studies import study_by_key
 from app.features.movement.files import streamed
-from app.features.people.audit import in_browser_of, record, record_copy, sessions_in
+from app.features.people.audit import count_sessions, download_place, record, record_copy
 from app.features.results.analysis import Kind
 from app.features.results.exports.desk import ExportDesk
 from app.features.results.exports.jobs import Job
@@ -44,7 +44,7 @@ def get_export(
     _put_on_record(
         *(db, caller.actor, study, kind, now, {"kind": kind}),
         revealed=_revealed(db, study, kind),
-        sessions=sessions_in(db, study, kind),
+        sessions=count_sessions(db, study, kind),
     )
     pieces = study_archive(context.database, study.key, kind, now=now)
     name = archive_name(study.key, kind, now.date())
@@ -171,7 +171,7 @@ def _put_on_record(
         kind="export",
         study_id=study.id,
         session_kind=kind,
-        place=in_browser_of(actor),
+        place=download_place(actor),
         by=actor,
         now=now,
         sessions=sessions,

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from app.errors import ReembodyError
 from app.features.design.studies import study_by_key
-from app.features.people.audit import in_browser_of, record, record_copy
+from app.features.people.audit import download_place, record, record_copy
 from app.features.record.erasure import expect_erasure, forget_erasure, overwrite
 from app.features.results.imports.previewing import check, look
 from app.features.results.imports.schemas import (
@@ -96,7 +96,7 @@ def get_import_table(
         kind="export",
         study_id=study.id,
         session_kind="people",
-        place=f"{in_browser_of(caller.actor)}: imported answers {row.id}",
+        place=f"{download_place(caller.actor)}: imported answers {row.id}",
         by=caller.actor,
         now=now,
         sessions=0,

@@ -11,7 +11,7 @@ from app.errors import Busy, InvalidInput
 from app.features.people.accounts import passwords
 from app.features.people.accounts.passwords import (
     MAX_LENGTH,
-    Desk,
+    PasswordQueue,
     hash_password,
     is_hash,
     is_password,
@@ -76,43 +76,43 @@ def test_too_long_a_password_is_not_hashed() -> None:
 
 def test_passwords_are_looked_at_one_at_a_time() -> None:
     """One is worked on, some wait, and everybody else is told at once to come again."""
-    desk, begun, go_on = Desk(waiting=2), threading.Event(), threading.Event()
+    queue, started, go_on = PasswordQueue(waiting=2), threading.Event(), threading.Event()
     running = [0]
     most = [0]
 
     def work() -> bool:
         running[0] += 1
         most[0] = max(most[0], running[0])
-        begun.set()
+        started.set()
         go_on.wait(30)
         running[0] -= 1
         return True
 
     with ThreadPoolExecutor(3) as pool:
-        done = [pool.submit(desk.do, work) for _ in range(3)]
-        assert begun.wait(30)
-        while desk._here < 3:
+        done = [pool.submit(queue.run, work) for _ in range(3)]
+        assert started.wait(30)
+        while queue._callers < 3:
             time.sleep(0.001)
         with pytest.raises(Busy) as refused:
-            desk.do(work)
+            queue.run(work)
         go_on.set()
         assert all(one.result(30) for one in done)
     assert refused.value.status == 503
     assert refused.value.retry_after_s
     assert most[0] == 1
-    assert desk.do(lambda: "free again") == "free again"
+    assert queue.run(lambda: "free again") == "free again"
 
 
 def test_what_fails_leaves_its_place() -> None:
     """An error does not hold a turn for ever."""
-    desk = Desk(waiting=0)
+    queue = PasswordQueue(waiting=0)
 
     def fail() -> None:
         raise ValueError("as it may")
 
     for _ in range(3):
         with pytest.raises(ValueError, match="as it may"):
-            desk.do(fail)
+            queue.run(fail)
 
 
 def test_what_is_a_hash_does_not_hang_on_what_hashes_cost_here(

@@ -1,6 +1,6 @@
 """Alarms open once, and close when their cause has been gone for a while."""
 
-from app.features.record.alarms.alarm import SEVERITIES, AlarmBook, Condition
+from app.features.record.alarms.alarm import SEVERITIES, Condition, OpenAlarms
 from tests.features.record.alarms.watched import at
 
 GAP = Condition("gap", "a gap", "target", 0.5, "s")
@@ -8,7 +8,7 @@ GAP = Condition("gap", "a gap", "target", 0.5, "s")
 
 def test_an_alarm_is_raised_once_however_often_it_is_reported() -> None:
     """And keeps the newest condition, with the time of the first."""
-    book = AlarmBook(3.0)
+    book = OpenAlarms(3.0)
     first = list(book.report(GAP, at(0.0)))
     again = list(book.report(Condition("gap", "a longer gap", "target", 2.0, "s"), at(1.0)))
     (alarm,) = book.open
@@ -18,39 +18,39 @@ def test_an_alarm_is_raised_once_however_often_it_is_reported() -> None:
 
 def test_an_alarm_is_cleared_when_nothing_was_reported_for_a_while() -> None:
     """Three seconds after the last report, not after the first."""
-    book = AlarmBook(3.0)
+    book = OpenAlarms(3.0)
     list(book.report(GAP, at(0.0)))
     list(book.report(GAP, at(2.0)))
-    assert list(book.settle(at(4.9))) == []
-    (cleared,) = book.settle(at(5.0))
+    assert list(book.clear_expired(at(4.9))) == []
+    (cleared,) = book.clear_expired(at(5.0))
     assert (cleared.state, cleared.condition, cleared.at) == ("cleared", GAP, at(5.0).utc)
     assert book.open == ()
 
 
 def test_what_comes_and_goes_raises_one_alarm() -> None:
     """No flicker: a condition every two seconds is one alarm."""
-    book = AlarmBook(3.0)
+    book = OpenAlarms(3.0)
     changes = []
     for second in range(0, 20, 2):
-        changes += [*book.report(GAP, at(second)), *book.settle(at(second + 1.9))]
+        changes += [*book.report(GAP, at(second)), *book.clear_expired(at(second + 1.9))]
     assert [change.state for change in changes] == ["raised"]
 
 
 def test_each_stream_has_alarms_of_its_own() -> None:
     """A gap in one says nothing of the other."""
-    book = AlarmBook(3.0)
+    book = OpenAlarms(3.0)
     list(book.report(GAP, at(0.0)))
     list(book.report(Condition("gap", "a gap", "actual"), at(2.0)))
-    assert [change.condition.stream for change in book.settle(at(3.0))] == ["target"]
+    assert [change.condition.stream for change in book.clear_expired(at(3.0))] == ["target"]
 
 
 def test_closing_clears_everything_and_says_why() -> None:
     """As when the socket closes."""
-    book = AlarmBook(3.0)
+    book = OpenAlarms(3.0)
     list(book.report(GAP, at(0.0)))
     (cleared,) = book.close("it is over", at(1.0))
     assert (cleared.state, cleared.condition.message) == ("cleared", "it is over")
-    assert list(book.settle(at(9.0))) == []
+    assert list(book.clear_expired(at(9.0))) == []
 
 
 def test_every_alarm_has_a_severity() -> None:

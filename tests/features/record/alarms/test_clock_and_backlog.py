@@ -30,7 +30,7 @@ def unanswered(sent_s: float) -> Probed:
 def quiet(time_scale: float = 1.0) -> Watched:
     """A watch while nothing is recorded."""
     watched = Watched(time_scale)
-    watched.watch.follow(state(recording=False), at(0.0))
+    watched.watch.update_state(state(recording=False), at(0.0))
     return watched
 
 
@@ -58,7 +58,7 @@ def test_more_than_ten_milliseconds_are_told(trip_s: float, codes: list[str]) ->
     """As little as it matters inside one clock, it matters between two."""
     watched = quiet()
     watched.watch.probed(reading(0.0, trip_s), at(0.0))
-    watched.look(0.5)
+    watched.check(0.5)
     assert [code for code, _ in watched.told] == codes
 
 
@@ -68,8 +68,8 @@ def test_a_clock_without_a_usable_reading_is_unknown(useless: Probed) -> None:
     watched = quiet()
     for second in range(15):
         watched.watch.probed(useless, at(float(second)))
-        watched.look(second + 0.5)
-        watched.look(second + 1.0)
+        watched.check(second + 0.5)
+        watched.check(second + 1.0)
     assert watched.told == []
     watched.wait(15.0, 0.5)
     assert watched.told == [("clock_unknown", "raised")]
@@ -95,15 +95,15 @@ def test_a_backlog_is_what_was_made_and_is_not_stored(time_scale: float) -> None
     """In real seconds: a client twenty times as fast makes twenty times as many frames in one."""
     watched = quiet(time_scale)
     watched.play(TREMBLING.part(slice(0, 900)))
-    watched.watch.backlog.answered(at(0.0).monotonic_s, waiting=False)
+    watched.watch.backlog.acknowledged(at(0.0).monotonic_s, waiting=False)
     frames = int(900 * time_scale)
     watched.watch.produced(produced(frames + 900))
     watched.watch.backlog.stored(stored(900))
     assert watched.watch.signal(at(10.0))["behind_s"] == pytest.approx(10.0, abs=0.1)
-    watched.look(10.5)
+    watched.check(10.5)
     assert ("backlog", "raised") not in watched.told
     watched.watch.produced(produced(2 * frames + 900))
-    watched.look(11.0)
+    watched.check(11.0)
     assert ("backlog", "raised") in watched.told
     watched.watch.backlog.stored(stored(2 * frames + 900))
     assert watched.watch.signal(at(11.0))["behind_s"] == 0.0
@@ -121,10 +121,10 @@ def test_a_backlog_of_an_earlier_run_counts_too() -> None:
 def test_a_disk_that_does_not_answer_is_a_backlog() -> None:
     """Though the server stops reading, so that nobody tells how much there is."""
     watched = quiet()
-    watched.watch.backlog.handed_over(at(0.0).monotonic_s)
+    watched.watch.backlog.submitted(at(0.0).monotonic_s)
     for second in range(1, 12):
-        watched.watch.backlog.handed_over(at(float(second)).monotonic_s)
-        watched.look(float(second), reading=False)
+        watched.watch.backlog.submitted(at(float(second)).monotonic_s)
+        watched.check(float(second), reading=False)
     assert ("backlog", "raised") in watched.told
-    watched.watch.backlog.answered(at(11.0).monotonic_s, waiting=False)
+    watched.watch.backlog.acknowledged(at(11.0).monotonic_s, waiting=False)
     assert watched.watch.signal(at(11.0))["behind_s"] == 0.0

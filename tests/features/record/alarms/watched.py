@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from app.features.record.alarms.alarm import Change, Moment, WatchLimits
-from app.features.record.alarms.watch import Look, QualityWatch
+from app.features.record.alarms.watch import CheckResult, QualityWatch
 from app.wire import Batch, StreamName, decode_batch, encode_batch
 from app.wire.messages import HeadsetState, PhaseOrder, Welcome
 from tests.science.stream_quality.recordings import Recording, generated, jitter
@@ -109,7 +109,7 @@ class Watched:
     time_scale: float = 1.0
     limits: WatchLimits = field(default_factory=WatchLimits)
     changes: list[Change] = field(default_factory=list)
-    looks: list[tuple[float, Look]] = field(default_factory=list)
+    checks: list[tuple[float, CheckResult]] = field(default_factory=list)
     watch: QualityWatch = field(init=False)
 
     def __post_init__(self) -> None:
@@ -122,30 +122,30 @@ class Watched:
 
     def play(self, recording: Recording, *, begin_s: float = 0.0) -> float:
         """Send both streams as they would come, looking up in between; when it was over."""
-        now_s, looked_s = begin_s, begin_s
+        now_s, checked_s = begin_s, begin_s
         for first in range(0, len(recording) - PER_BATCH + 1, PER_BATCH):
             now_s = begin_s + float(np.nan_to_num(first / 90.0)) / self.time_scale
             for stream in StreamName:
                 sent = batch(recording, first, stream=stream)
                 self.changes += self.watch.batch(sent, at(now_s))
-                self.watch.backlog.answered(at(now_s).monotonic_s, waiting=False)
-            while now_s - looked_s >= self.watch.limits.look_every_s:
-                looked_s += self.watch.limits.look_every_s
-                self.look(looked_s)
+                self.watch.backlog.acknowledged(at(now_s).monotonic_s, waiting=False)
+            while now_s - checked_s >= self.watch.limits.check_every_s:
+                checked_s += self.watch.limits.check_every_s
+                self.check(checked_s)
         return now_s
 
-    def look(self, now_s: float, *, reading: bool = True) -> Look:
+    def check(self, now_s: float, *, reading: bool = True) -> CheckResult:
         """Look up once."""
-        look = self.watch.look(at(now_s), reading=reading)
-        self.changes += look.changes
-        self.looks.append((now_s, look))
-        return look
+        result = self.watch.check(at(now_s), reading=reading)
+        self.changes += result.changes
+        self.checks.append((now_s, result))
+        return result
 
     def wait(self, begin_s: float, for_s: float) -> float:
         """Look up for a while without a word from the headset; when it was over."""
-        step_s = self.watch.limits.look_every_s
+        step_s = self.watch.limits.check_every_s
         for turn in range(1, round(for_s / step_s) + 1):
-            self.look(begin_s + turn * step_s)
+            self.check(begin_s + turn * step_s)
         return begin_s + for_s
 
 
