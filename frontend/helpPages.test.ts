@@ -5,8 +5,8 @@ import { HELPS } from "./src/console/help/address.ts";
 
 const nowhere = () => "elsewhere" as const;
 
-describe("the map of the docs", () => {
-  it("gives parts, pages and sentences; pages for developers are left out", () => {
+describe("the table of contents in the docs", () => {
+  it("lists parts, pages and their sentences, without the pages for developers", () => {
     const map = [
       "# Documentation",
       "## Start",
@@ -43,8 +43,8 @@ describe("the map of the docs", () => {
   });
 });
 
-describe("a page", () => {
-  it("is a tree of elements, whatever signs its words have", () => {
+describe("a help page", () => {
+  it("is parsed into a tree of elements, with special characters kept as text", () => {
     const { body, headings } = madeOf("# A & B\n\n## C `d`\n\nOne **two** `a < b`.", nowhere);
     expect(headings).toEqual([{ id: "c-d", level: 2, title: "C d" }]);
     expect(body).toEqual([
@@ -54,7 +54,7 @@ describe("a page", () => {
     ]);
   });
 
-  it("follows links to pages of the help and drops the others, not their words", () => {
+  it("keeps links to other help pages and drops other links, but not their words", () => {
     const follow = (target: string) =>
       target === "a.md" ? { to: "/help/a" } : ("elsewhere" as const);
     expect(madeOf("[here](a.md) and [there](b.py)", follow).body).toEqual([
@@ -62,7 +62,7 @@ describe("a page", () => {
     ]);
   });
 
-  it("has tables whose cells may hold a stroke, and pictures by number", () => {
+  it("supports tables whose cells contain a vertical bar, and refers to pictures by number", () => {
     const follow = () => ({ picture: "/x.png" });
     const { body, pictures } = madeOf("| a |\n|---|\n| `b\\|c` |\n\n![d](x.png)", follow);
     expect(pictures).toEqual(["/x.png"]);
@@ -70,19 +70,19 @@ describe("a page", () => {
     expect(JSON.stringify(body)).toContain('["img",{"src":"picture:0","alt":"d"}]');
   });
 
-  it("numbers headings with the same words, as GitHub does", () => {
+  it("numbers headings that have the same text, as GitHub does", () => {
     const { headings } = madeOf("## A\n\n## A\n", nowhere);
     expect(headings.map(({ id }) => id)).toEqual(["a", "a-1"]);
     expect(slugOf("9. What cannot be true?")).toBe("9-what-cannot-be-true");
   });
 
-  it("ends the build where nothing can show it", () => {
+  it("fails the build when it contains Markdown that cannot be shown", () => {
     expect(() => madeOf("> quoted", nowhere)).toThrow("blockquote");
   });
 });
 
-describe("every page of the docs", () => {
-  it("can be made, and the console's own links lead to some of them", () => {
+describe("all pages of the docs", () => {
+  it("can be converted, and every link from the console leads to one of them", () => {
     const docs = docsOf(resolve(import.meta.dirname, ".."));
     const contents = docs.contents();
     const keys = [...contents.matchAll(/"virtual:help\/([\w-]+)"/g)].map(([, key]) => key);

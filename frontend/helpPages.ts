@@ -1,11 +1,12 @@
 /**
- * Makes the console's help pages from the Markdown files in `docs/`.
+ * Make the console's help pages from the Markdown files in `docs/`.
  *
- * `docs/README.md` is the table of contents: its parts and sentences are those of the help, without
- * the pages in NOT_SHOWN. The module `virtual:help` has titles and headings, for the list and the
- * search; each page's body is a module of its own, fetched when it is opened. Bodies are trees of
- * elements and not HTML, so the console draws them without trusting a string. Markdown that has no
- * such tree ends the build.
+ * `docs/README.md` is the table of contents: the help takes its parts and sentences from there,
+ * without the pages in NOT_SHOWN. The module `virtual:help` contains titles and headings, for the
+ * list and the search; the body of each page is a module of its own, fetched when the page is
+ * opened.
+ * Bodies are trees of elements rather than HTML, so the console can draw them without trusting a
+ * string. Markdown that cannot be converted to such a tree fails the build.
  */
 import { existsSync, readFileSync } from "node:fs";
 import { basename, dirname, resolve } from "node:path";
@@ -30,7 +31,7 @@ const MAP = "docs/README.md";
 
 interface Listed {
   readonly key: string;
-  /** As the map calls it, which is shorter than the page's own title. */
+  /** The title in the table of contents, which is shorter than the page's own. */
   readonly title: string;
   readonly file: string;
   readonly about: string;
@@ -44,7 +45,7 @@ interface ListedPart {
 interface Made {
   readonly headings: readonly HelpHeading[];
   readonly body: readonly HelpNode[];
-  /** Pictures, by the names that stand for their addresses in the body. */
+  /** The pictures of the page; its body refers to them by their index in this list. */
   readonly pictures: readonly string[];
 }
 
@@ -68,15 +69,15 @@ export function helpPages(repository: string): Plugin {
 }
 
 interface Docs {
-  /** The file of a page, or undefined where there is none with this key. */
+  /** The file of a page, or undefined if no page has this key. */
   readonly fileOf: (key: string) => string | undefined;
   /** The source of `virtual:help`. */
   readonly contents: () => string;
-  /** The source of `virtual:help/KEY`; undefined where there is no such page. */
+  /** The source of `virtual:help/KEY`, or undefined if no page has this key. */
   readonly body: (key: string) => string | undefined;
 }
 
-/** The modules made of the docs in a repository, read anew at each call. */
+/** Convert the docs of a repository to modules; the files are read again at each call. */
 export function docsOf(repository: string): Docs {
   const read = (file: string) => readFileSync(resolve(repository, file), "utf8");
   const parts = () => listedIn(read(MAP));
@@ -94,7 +95,7 @@ export function docsOf(repository: string): Docs {
   };
 }
 
-/** The parts of the map with the pages that the console shows. */
+/** The parts of the table of contents, with the pages that the console shows. */
 export function listedIn(map: string): readonly ListedPart[] {
   const parts: { title: string; pages: Listed[] }[] = [];
   for (const line of map.split("\n")) {
@@ -109,7 +110,7 @@ export function listedIn(map: string): readonly ListedPart[] {
   return parts;
 }
 
-/** `backups` for docs/backups.md; a README has the name of its folder. */
+/** The key of a page: `backups` for docs/backups.md; a README gets the name of its folder. */
 const keyOf = (file: string): string =>
   basename(file) === "README.md"
     ? basename(dirname(file)).replaceAll("_", "-")
@@ -118,13 +119,13 @@ const keyOf = (file: string): string =>
 const keysOf = (parts: readonly ListedPart[]): ReadonlyMap<string, string> =>
   new Map(parts.flatMap(({ pages }) => pages.map(({ file, key }) => [file, key] as const)));
 
-/** The path in the repository of what `target` means in `file`. */
+/** Resolve a link `target` found in `file` to a path in the repository. */
 const inRepository = (file: string, target: string): string =>
   resolve("/", dirname(file), target).slice(1);
 
 type Followed = Readonly<Record<string, string>> | "elsewhere";
 
-/** Where a link or picture leads: a page of the help, the web, a file to be shown; or elsewhere. */
+/** Where a link or picture leads: to a help page, the web, a file to be shown, or elsewhere. */
 function followed(
   repository: string,
   keys: ReadonlyMap<string, string>,
@@ -160,7 +161,7 @@ function bodyModule({ body, pictures }: Made): string {
   return [...imports, `export const body = ${tree};`].join("\n");
 }
 
-/** The page of a Markdown text; `follow` says where its links lead. */
+/** Convert a Markdown text to a page; `follow` resolves its links. */
 export function madeOf(text: string, follow: (target: string) => Followed): Made {
   const headings: HelpHeading[] = [];
   const pictures: string[] = [];
@@ -255,7 +256,7 @@ export function madeOf(text: string, follow: (target: string) => Followed): Made
   return { headings, body, pictures };
 }
 
-/** GitHub's anchor of a heading. */
+/** The anchor that GitHub gives to a heading. */
 export const slugOf = (heading: string): string =>
   heading
     .toLowerCase()
@@ -267,7 +268,7 @@ const textOf = (nodes: readonly HelpNode[]): string =>
     .map((node) => (typeof node === "string" ? node : textOf(node.slice(2) as HelpNode[])))
     .join("");
 
-/** A sentence without the signs of Markdown. */
+/** A sentence without its Markdown markup. */
 const plain = (text: string): string =>
   text.replaceAll(/\[([^\]]*)\]\([^)]*\)/g, "$1").replaceAll(/[`*]/g, "");
 

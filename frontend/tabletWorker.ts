@@ -1,9 +1,10 @@
 /**
- * Tells the tablet's service worker which build it belongs to.
+ * Add the build's version and list of files to the tablet's service worker.
  *
- * The worker is an entry of its own with a fixed name. What belongs to the tablet's page is known
- * only when everything is written: its list, with the hash of all of it, is then put in front of the
- * worker, so that another build is another worker to the browser.
+ * The worker is an entry of its own with a fixed name. The files of the tablet's page are known
+ * only
+ * after everything is written: their list, with a hash of all of them, is then prepended to the
+ * worker, so that the browser sees each build as a different worker.
  */
 import { createHash } from "node:crypto";
 import { readFileSync, writeFileSync } from "node:fs";
@@ -45,7 +46,7 @@ export function tabletWorker(): Plugin {
   };
 }
 
-/** Everything that a page needs or may come to need, its own script first. */
+/** All files that a page loads, directly or lazily, with its own script first. */
 function filesOf(manifest: Manifest, page: string): readonly string[] {
   const files = new Set<string>();
   const seen = new Set<string>();

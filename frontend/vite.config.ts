@@ -7,13 +7,13 @@ import { helpPages } from "./helpPages.ts";
 import { tabletWorker, WORKER } from "./tabletWorker.ts";
 
 const source = resolve(import.meta.dirname, "src");
-/** The help pages are made of Markdown and pictures outside of `frontend`. */
+/** The help pages are made from Markdown and pictures outside of `frontend`. */
 const repository = resolve(import.meta.dirname, "..");
 
-/** Every folder of `src` that holds an index.html is a page of its own: console, tablet, ... */
+/** Every folder of `src` with an index.html is a page of its own: console, tablet, ... */
 const pages = readdirSync(source).filter((name) => existsSync(resolve(source, name, "index.html")));
 
-/** The server answers `/` with the console and `/tablet` with the tablet; so does the dev server. */
+/** Serve the console at `/` and the tablet at `/tablet`, as the server does. */
 function servePagesLikeTheServer(): Plugin {
   return {
     name: "serve-pages-like-the-server",
@@ -28,12 +28,12 @@ function servePagesLikeTheServer(): Plugin {
   };
 }
 
-/** The server that `./run` starts; another one with REEMBODY_URL=http://HOST:PORT npm run dev. */
+/** The server that `./run` starts; use another with REEMBODY_URL=http://HOST:PORT npm run dev. */
 const SERVER = new URL(process.env.REEMBODY_URL ?? "http://127.0.0.1:8321");
 
 /**
- * The server takes changes and sockets from its own pages only (app/api/guards.py). To pages of
- * the dev server it must look as if they were its own; to pages of anybody else it must not.
+ * The server accepts changes and sockets from its own pages only (app/api/guards.py). Requests from
+ * pages of the dev server must look like its own; requests from any other page must not.
  */
 const proxyToServer: ProxyOptions = {
   target: SERVER.origin,
@@ -71,7 +71,7 @@ export default defineConfig({
         [WORKER]: resolve(source, "tablet/offline/worker.ts"),
       },
       output: {
-        // A service worker is known by its address.
+        // The browser identifies a service worker by its URL, so its name must not change.
         entryFileNames: ({ name }) => (name === WORKER ? "[name].js" : "assets/[name]-[hash].js"),
       },
     },

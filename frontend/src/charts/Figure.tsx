@@ -1,4 +1,4 @@
-/** A Plotly figure of the server. The library is large, so it is fetched when the first is shown. */
+/** A Plotly figure from the server. The library is large, so it is loaded with the first figure. */
 import { Center, Loader, Text, useComputedColorScheme } from "@mantine/core";
 import { type JSX, type RefObject, useEffect, useRef, useState } from "react";
 import { dressed, heightOf, type Palette } from "./layout";
@@ -7,11 +7,11 @@ interface FigureProps {
   /** The figure as Plotly's JSON: `{data, layout}`. */
   readonly figure: unknown;
   readonly label: string;
-  /** Written across the plot; null leaves it clean. */
+  /** Text written across the plot; null for none. */
   readonly watermark: string | null;
   readonly loading: string;
   readonly failed: string;
-  /** Drawn once somebody comes near it: for pages of many figures. */
+  /** Draw the figure only when it is scrolled near the window: for pages with many figures. */
   readonly whenNear?: boolean;
 }
 
@@ -34,7 +34,7 @@ export function Figure({
   useEffect(() => {
     const element = root.current;
     if (element === null || !near) return;
-    // Read again whenever the appearance changes: the colours are the page's own.
+    // The colours come from the page, so they are read again whenever the colour scheme changes.
     const palette = paletteOf(element, scheme);
     return draw(element, figure, palette, watermark, setState);
   }, [figure, scheme, watermark, near]);
@@ -54,7 +54,7 @@ export function Figure({
   );
 }
 
-/** Whether an element was ever near the window; at once where nobody asks for it. */
+/** Whether an element has come near the window; always true unless `lazy`. */
 function useNear(root: RefObject<HTMLElement | null>, asked: boolean): boolean {
   const [near, setNear] = useState(!asked);
   useEffect(() => {
@@ -108,7 +108,7 @@ function draw(
 const CONFIG = {
   displaylogo: false,
   responsive: false,
-  // Pictures are saved by buttons of ours, with caption and mark.
+  // Pictures are saved with our own buttons, which add the caption and the watermark.
   modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "toImage"],
 } as const;
 

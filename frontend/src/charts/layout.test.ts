@@ -3,8 +3,8 @@ import { dressed, heightOf, type Palette } from "./layout";
 
 const palette: Palette = { ink: "#111", soft: "#555", line: "#ccc", sim: "#53a", font: "serif" };
 
-describe("the dress of a figure", () => {
-  it("keeps what the server says and puts the page's colours on every axis", () => {
+describe("the styling of a figure", () => {
+  it("keeps the server's layout and applies the page's colours to every axis", () => {
     const layout = dressed(
       { xaxis: { title: { text: "Added latency (ms)" } }, yaxis2: { range: [0, 1] }, template: {} },
       palette,
@@ -19,12 +19,12 @@ describe("the dress of a figure", () => {
     expect(layout.annotations).toEqual([]);
   });
 
-  it("writes across a figure of simulated data, beside its own annotations", () => {
+  it("adds a watermark to a figure of simulated data and keeps its annotations", () => {
     const { annotations } = dressed({ annotations: [{ text: "n = 6" }] }, palette, "SIMULATED");
     expect(annotations).toMatchObject([{ text: "n = 6" }, { text: "SIMULATED" }]);
   });
 
-  it("takes the height from the server where it asks for one", () => {
+  it("uses the height that the server requests", () => {
     expect(heightOf({ data: [], layout: { height: 660 } })).toBe(660);
     expect(heightOf({ data: [] })).toBeGreaterThan(300);
     expect(dressed({ height: 660 }, palette, null)).not.toHaveProperty("height");

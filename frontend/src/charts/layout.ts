@@ -1,4 +1,6 @@
-/** How a figure of the server looks on this page: its content unchanged, its dress ours. */
+/**
+ * How a figure from the server looks on this page: its content is unchanged, its colours are ours.
+ */
 export interface Palette {
   readonly ink: string;
   readonly soft: string;
@@ -7,7 +9,7 @@ export interface Palette {
   readonly font: string;
 }
 
-/** Okabe and Ito's colours, told apart with any kind of colour vision; petrol leads. */
+/** Okabe and Ito's colours, distinguishable with any kind of colour vision; petrol comes first. */
 export const COLORWAY = ["#0e8a97", "#d55e00", "#8067c9", "#c78500", "#3f8f4f", "#b0527f"] as const;
 
 /** Below the plot and its axes: the edge of the figure is the only place that is always free. */
@@ -15,7 +17,7 @@ const LEGEND = { orientation: "h", x: 0, y: 0, yref: "container", yanchor: "bott
 
 const USUAL_HEIGHT_PX = 380;
 
-/** The height the server asks for, because a figure of many parts needs more of it. */
+/** The height that the server requests for a figure of many parts, or the usual one. */
 export function heightOf(figure: unknown): number {
   const layout = isObject(figure) && isObject(figure.layout) ? figure.layout : {};
   return typeof layout.height === "number" ? layout.height : USUAL_HEIGHT_PX;
@@ -26,7 +28,7 @@ type Layout = Readonly<Record<string, unknown>>;
 const isObject = (value: unknown): value is Layout =>
   typeof value === "object" && value !== null && !Array.isArray(value);
 
-/** The server's layout with the page's colours, every axis included, and the mark of a simulation. */
+/** The server's layout in the page's colours, on every axis, with the watermark if there is one. */
 export function dressed(layout: Layout, palette: Palette, watermark: string | null): Layout {
   const { template: _template, title: _title, height: _height, ...kept } = layout;
   return {
@@ -74,7 +76,7 @@ function axes(layout: Layout, palette: Palette): Layout {
 const annotationsOf = (layout: Layout): readonly unknown[] =>
   Array.isArray(layout.annotations) ? layout.annotations : [];
 
-/** Written across the plot, so that a copied picture still says what its data are. */
+/** A watermark across the plot, so that a copied picture still shows what its data are. */
 function mark(text: string, palette: Palette): Layout {
   return {
     text,

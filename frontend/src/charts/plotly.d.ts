@@ -1,4 +1,4 @@
-/** The part of Plotly that is used here. */
+/** Types for the part of Plotly that is used here. */
 declare module "plotly.js-cartesian-dist-min" {
   interface Picture {
     readonly data: readonly unknown[];

@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
 import { printed, wrapped } from "./print";
 
-describe("a figure as a picture", () => {
-  it("is black on white, says what it shows, and says that it is simulated", () => {
+describe("a figure saved as a picture", () => {
+  it("is black on white, with its title and caption and the mark of simulated data", () => {
     const figure = { data: [], layout: { height: 600, margin: { l: 60, r: 20, t: 36, b: 84 } } };
     const words = { title: "Agency <1>", caption: "n = 6 participants.", watermark: "SIMULATED" };
     const { layout, height } = printed(figure, words, false);

@@ -1,4 +1,6 @@
-/** A figure as a picture for a paper: black on white, with its title, and its caption below. */
+/**
+ * A figure as a picture for a paper: black on white, with its title above and its caption below.
+ */
 import { dressed, heightOf, type Palette } from "./layout";
 
 interface PictureWords {
@@ -28,7 +30,7 @@ const CAPTION_FONT_PX = 12;
 const MARGIN_PX = 24;
 const LEGEND_PX = 36;
 const LEGEND_GAP_PX = 8;
-/** Characters of a caption's line for each pixel of width, in the font of captions. */
+/** Characters per pixel of width in a line of the caption, in the caption's font. */
 const CHARACTERS_PER_PX = 1 / 6.2;
 
 export function printed(figure: unknown, words: PictureWords, wide: boolean): Printed {
@@ -84,7 +86,7 @@ export function printed(figure: unknown, words: PictureWords, wide: boolean): Pr
   };
 }
 
-/** Words in lines of at most so many characters; a longer word has a line of its own. */
+/** Break a text into lines of at most `most` characters; a longer word gets a line of its own. */
 export function wrapped(text: string, most: number): readonly string[] {
   const lines: string[] = [];
   for (const word of text.split(/\s+/).filter((one) => one !== "")) {
@@ -96,13 +98,13 @@ export function wrapped(text: string, most: number): readonly string[] {
   return lines;
 }
 
-/** Plotly reads a little HTML in texts. */
+/** Escape the HTML that Plotly interprets in texts. */
 const escaped = (text: string): string =>
   text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 
 const PNG_SCALE = 2;
 
-/** Saves a figure as a picture. */
+/** Save a figure as a picture. */
 export async function savePicture(
   figure: unknown,
   words: PictureWords,

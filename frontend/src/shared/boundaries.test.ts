@@ -5,7 +5,7 @@ import { describe, expect, it } from "vitest";
 const SOURCE = resolve(import.meta.dirname, "..");
 const ALIASES: Readonly<Record<string, string>> = { "@shared": "shared", "@charts": "charts" };
 
-/** What each part of the frontend may import besides itself and packages. */
+/** What each part of the frontend may import in addition to itself and packages. */
 const MAY_IMPORT: Readonly<Record<string, readonly string[]>> = {
   shared: [],
   charts: ["shared"],
@@ -20,7 +20,7 @@ const files = readdirSync(SOURCE, { recursive: true, encoding: "utf8" })
 
 const partOf = (file: string): string => relative(SOURCE, file).split(sep)[0] ?? "";
 
-/** The place an import leads to, without the file's ending; null for packages. */
+/** The path an import leads to, without the file extension; null for packages. */
 function target(file: string, specifier: string): string | null {
   const [head = "", ...rest] = specifier.split("/");
   const alias = ALIASES[head];
@@ -28,7 +28,7 @@ function target(file: string, specifier: string): string | null {
   return specifier.startsWith(".") ? resolve(dirname(file), specifier) : null;
 }
 
-/** Every import of a text, those of types and the lazy ones too: what is imported, and whence. */
+/** The specifiers of all imports in a source text, including type-only and dynamic ones. */
 const importsOf = (text: string): readonly string[] =>
   [...text.matchAll(/\b(?:from|import)\s*\(?\s*"([^"]+)"/g)].map(([, specifier = ""]) => specifier);
 
@@ -63,7 +63,7 @@ const graphOf = (names: readonly string[]): Graph =>
     }),
   );
 
-/** The first circle met from each file, as the way around it; empty where imports run one way. */
+/** The first import cycle reached from each file, as the path around it; empty if there is none. */
 function circles(graph: Graph): readonly string[] {
   const done = new Set<string>();
   const found: string[] = [];
@@ -80,26 +80,26 @@ function circles(graph: Graph): readonly string[] {
 }
 
 describe("imports", () => {
-  it("run one way: shared < charts < console, tablet, vr; the pages know nothing of each other", () => {
+  it("run one way: shared < charts < console, tablet, vr; the pages do not import each other", () => {
     expect(files.length).toBeGreaterThan(50);
     expect(files.flatMap(violations)).toEqual([]);
   });
 
-  it("would be caught if they did not", () => {
+  it("that break this rule are detected", () => {
     const page = target(join(SOURCE, "tablet/Tablet.tsx"), "../console/Shell");
     expect(page).toBe(join(SOURCE, "console/Shell"));
     const shared = target(join(SOURCE, "console/pages/A.tsx"), "@shared/units");
     expect(partOf(shared ?? "")).toBe("shared");
   });
 
-  it("never run in a circle, imports of types and lazy ones counted", () => {
+  it("never form a cycle, including type-only and dynamic imports", () => {
     const graph = graphOf(files);
     const arrows = [...graph.values()].reduce((sum, to) => sum + to.length, 0);
     expect(arrows).toBeGreaterThan(files.length);
     expect(circles(graph).map((way) => way.replaceAll(SOURCE + sep, ""))).toEqual([]);
   });
 
-  it("are seen to run in a circle where they do", () => {
+  it("that form a cycle are detected", () => {
     const text = 'import type { A } from "./b";\nconst lazy = () => import("./c");';
     expect(importsOf(text)).toEqual(["./b", "./c"]);
     const graph = new Map([

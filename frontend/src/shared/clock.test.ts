@@ -21,11 +21,11 @@ describe("the clock of a phase", () => {
     expect(activeAt(report, at(2500))).toBeCloseTo(21.5);
   });
 
-  it("stands still while the phase does not run", () => {
+  it("stands still while the phase is paused", () => {
     expect(activeAt({ ...report, running: false }, at(60_000))).toBe(20);
   });
 
-  it("holds and says so when nothing more is heard", () => {
+  it("holds, and says so, when no more reports arrive", () => {
     const late = at(1000 + HOLD_AFTER + 60_000);
     expect(activeAt(report, late)).toBeCloseTo(20 + HOLD_AFTER / 1000);
     expect(isHolding(report, late)).toBe(true);
@@ -36,11 +36,11 @@ describe("the clock of a phase", () => {
     expect(activeAt({ ...report, active: seconds(59.5) }, at(3000))).toBe(60);
   });
 
-  it("has no end where the phase has none", () => {
+  it("has no end if the phase has none", () => {
     expect(activeAt({ ...report, active: seconds(100), duration: null }, at(2000))).toBe(101);
   });
 
-  it("runs faster in a simulated session that says so", () => {
+  it("runs faster in a simulated session with a time scale", () => {
     expect(activeAt({ ...report, timeScale: 20 }, at(2000))).toBe(40);
   });
 });

@@ -1,16 +1,18 @@
-/** How quantities are written for people: always with their unit, in the language of the page. */
+/** How quantities are displayed: always with their unit, in the language of the page. */
 import type { Milliseconds, Seconds } from "./units";
 
-/** English dates and times are written day first and in 24 hours, as logs of a laboratory are. */
+/** English dates and times have the day first and 24 hours, as is usual in laboratory logs. */
 const locale = (language: string): string => (language === "en" ? "en-GB" : language);
 
-/** `0:07`, `1:00`, `12:30`: minutes and whole seconds, cut off and not rounded, as clocks do. */
+/**
+ * `0:07`, `1:00`, `12:30`: minutes and whole seconds, truncated rather than rounded, as clocks do.
+ */
 export function clockFace(time: Seconds): string {
   const whole = Math.max(0, Math.floor(time + 1e-6));
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
 }
 
-/** `45 s`, `2 min`, `1 h 5 min`: a length of time in words short enough for a table. */
+/** `45 s`, `2 min`, `1 h 5 min`: a duration in words short enough for a table. */
 export function duration(time: Seconds): string {
   const whole = Math.round(time);
   if (whole < 60) return `${whole} s`;
@@ -24,11 +26,14 @@ export function duration(time: Seconds): string {
 /** `125 ms`. */
 export const latency = (value: Milliseconds): string => `${value} ms`;
 
-/** `125.0 ms`: a latency that was measured, not ordered. */
+/** `125.0 ms`: a measured latency, as opposed to the set one. */
 export const latencyMeasured = (value: Milliseconds, language: string): string =>
   `${tenths(value, language)} ms`;
 
-/** `125.0 ± 0.1 ms`: a measured value and half of its interval, which is never rounded down. */
+/**
+ * `125.0 ± 0.1 ms`: a measured value and half the width of its interval, which is never rounded
+ * down.
+ */
 export function latencyWithin(
   value: Milliseconds,
   halfWidth: Milliseconds,
@@ -38,7 +43,7 @@ export function latencyWithin(
   return `${tenths(value, language)} ± ${tenths(about, language)} ms`;
 }
 
-/** `+20.0 ms`, `−20.0 ms`: how far one is from the other. */
+/** `+20.0 ms`, `−20.0 ms`: a signed difference of two latencies. */
 export function latencyDifference(value: Milliseconds, language: string): string {
   return `${tenths(value, language, "exceptZero")} ms`;
 }
@@ -59,7 +64,7 @@ export function number(value: number, language: string, digits = 2): string {
   return new Intl.NumberFormat(locale(language), { maximumFractionDigits: digits }).format(value);
 }
 
-/** `8.00`, `−0.25`: the same decimals for every value, so that they can be compared. */
+/** `8.00`, `−0.25`: the same number of decimals for every value, so that they can be compared. */
 export function decimals(value: number, language: string, count: number): string {
   const digits = { minimumFractionDigits: count, maximumFractionDigits: count };
   return new Intl.NumberFormat(locale(language), digits).format(value).replace("-", "−");
@@ -73,7 +78,7 @@ export function dateTime(iso: string, language: string): string {
   }).format(new Date(iso));
 }
 
-/** The day alone. */
+/** The date without the time of day. */
 export function day(iso: string, language: string): string {
   return new Intl.DateTimeFormat(locale(language), { dateStyle: "medium" }).format(new Date(iso));
 }
@@ -83,7 +88,7 @@ export function timeOfDay(iso: string, language: string): string {
   return new Intl.DateTimeFormat(locale(language), { timeStyle: "medium" }).format(new Date(iso));
 }
 
-/** `10 s ago` as a relative time; `now` is given so that the text can be tested. */
+/** `10 s ago`: a relative time; `now` is a parameter so that the text can be tested. */
 export function ago(iso: string, now: Date, language: string): string {
   const passed = Math.round((now.getTime() - new Date(iso).getTime()) / 1000);
   const relative = new Intl.RelativeTimeFormat(locale(language), {
@@ -96,10 +101,10 @@ export function ago(iso: string, now: Date, language: string): string {
   return relative.format(-Math.round(passed / 86_400), "day");
 }
 
-/** Sizes for people: decimal units, as disks and browsers count. */
+/** Decimal units of file sizes, as disks and browsers use them. */
 const UNITS = ["B", "kB", "MB", "GB", "TB"] as const;
 
-/** `532 B`, `4.2 kB`, `82 MB`, `1.25 GB`: three digits that count, never more. */
+/** `532 B`, `4.2 kB`, `82 MB`, `1.25 GB`: at most three significant digits. */
 export function bytes(size: number, language: string): string {
   let at = 0;
   let rest = Math.max(0, size);

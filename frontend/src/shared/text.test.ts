@@ -9,7 +9,7 @@ describe("texts", () => {
     expect(inLanguage(null, "de")).toBe("");
   });
 
-  it("split into paragraphs, points and headings", () => {
+  it("are split into paragraphs, points and headings", () => {
     expect(paragraphs("# Rights\nYou may stop.\n\nPlease:\n- ask\n- rest\n  a little")).toEqual([
       { kind: "heading", text: "Rights" },
       { kind: "prose", text: "You may stop." },
@@ -18,7 +18,7 @@ describe("texts", () => {
     ]);
   });
 
-  it("show a picture where its name stands alone", () => {
+  it("show a picture if its name is alone on a line", () => {
     expect(paragraphs("Like this:\n\n![t_pose]\n\nSay ![t_pose] aloud.")).toEqual([
       { kind: "prose", text: "Like this:" },
       { kind: "picture", name: "t_pose" },

@@ -1,7 +1,7 @@
-/** Text that exists in several languages, as studies and instruments write it. */
+/** A text in several languages, as studies and instruments contain it. */
 export type Text = Readonly<Record<string, string>>;
 
-/** The text in `language`, else in English, else in whatever language there is. */
+/** The text in `language`, otherwise in English, otherwise in any language it has. */
 export function inLanguage(text: Text | string | null | undefined, language: string): string {
   if (text === null || text === undefined) return "";
   if (typeof text === "string") return text;
@@ -9,8 +9,8 @@ export function inLanguage(text: Text | string | null | undefined, language: str
 }
 
 /**
- * Paragraphs of a longer text: blank lines separate them, lines starting with `- ` are points, and
- * `![t_pose]` alone is a picture by its name.
+ * The parts of a longer text: blank lines separate paragraphs, lines starting with `- ` are points,
+ * and `![t_pose]` alone is a picture by its name.
  */
 export type Paragraph =
   | { readonly kind: "prose"; readonly text: string }
@@ -22,7 +22,7 @@ const POINT = /^\s*[-*]\s+/;
 const HEADING = /^#+\s+/;
 const PICTURE = /^!\[([a-z_]+)\]$/;
 
-/** Split a text into paragraphs, points and headings; nothing in it is ever read as HTML. */
+/** Split a text into paragraphs, points and headings; nothing in it is ever interpreted as HTML. */
 export function paragraphs(text: string): readonly Paragraph[] {
   return text
     .split(/\n\s*\n/)
@@ -48,7 +48,7 @@ function paragraph(part: string): readonly Paragraph[] {
   return before === "" ? [points] : [{ kind: "prose", text: before }, points];
 }
 
-/** A line that does not start a point continues the one before it. */
+/** Join a line that does not start a point with the line before it. */
 function joinPoints(lines: readonly string[]): readonly string[] {
   const points: string[] = [];
   for (const line of lines) {

@@ -1,8 +1,9 @@
 /**
- * Units as types: a number that carries its unit cannot be handed to a function that expects another.
+ * Units as types: a number that carries its unit cannot be passed to a function that expects
+ * another.
  *
  * Values arrive from the server with the unit in their name (`active_s`, `latency_ms`); they are
- * branded once, at the edge, by the constructors below.
+ * branded once, on arrival, by the constructors below.
  */
 declare const unit: unique symbol;
 type Quantity<Unit extends string> = number & { readonly [unit]: Unit };

@@ -1,6 +1,6 @@
 /**
  * A random UUID (version 4) that also works where `crypto.randomUUID` does not exist: on a page
- * served over plain http inside a laboratory network.
+ * served over plain HTTP in a laboratory network.
  */
 export function uuid(): string {
   if (typeof crypto.randomUUID === "function") return crypto.randomUUID();

@@ -1,4 +1,4 @@
-/** Requests about what came out of a study, and what had been declared of it beforehand. */
+/** Requests for a study's results and its preregistration. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { DataKind } from "./types";
@@ -13,7 +13,7 @@ export type Glance = Schemas["GlanceView"];
 export type Measure = Schemas["MeasureView"];
 export type Result = Schemas["ResultView"];
 
-/** Which sessions are drawn; what is left out chooses nothing. */
+/** The filter that chooses which sessions are shown; null or empty means no restriction. */
 export interface Asked {
   readonly kind: DataKind;
   readonly participant: readonly string[];
@@ -24,7 +24,7 @@ export interface Asked {
   readonly limb: "hand" | "foot" | null;
 }
 
-/** What was chosen as the words of an address; whatever is usual is left out. */
+/** The filter as URL query parameters; defaults are left out. */
 export function searchOf(asked: Asked): URLSearchParams {
   const search = new URLSearchParams();
   if (asked.kind !== "people") search.set("kind", asked.kind);
@@ -37,7 +37,7 @@ export function searchOf(asked: Asked): URLSearchParams {
   return search;
 }
 
-/** The reverse; what an address says wrongly is as if it said nothing. */
+/** The filter in a URL's query parameters; invalid values are ignored. */
 export function askedOf(search: URLSearchParams): Asked {
   const one = <Word extends string>(name: string, known: readonly Word[]): Word | null =>
     known.find((word) => word === search.get(name)) ?? null;
@@ -55,7 +55,7 @@ export function askedOf(search: URLSearchParams): Asked {
 }
 
 export const analysis = {
-  /** One group of the figures: it is there sooner than all of them. */
+  /** One group of figures, which is ready sooner than all of them. */
   dashboard: (key: string, asked: Asked, group: FigureGroup) =>
     answer<Dashboard>(
       server.GET("/api/studies/{key}/dashboard", {
@@ -78,7 +78,7 @@ export type Declaration = Schemas["DeclarationView"];
 export type PrimaryResult = Schemas["PrimaryResult"];
 export type Deviation = Schemas["DeviationView"];
 
-/** Requests about what a study declared beforehand. */
+/** Requests for a study's preregistration. */
 export const preregistrations = {
   get: (key: string, kind: DataKind) =>
     answer<Preregistration>(

@@ -1,4 +1,4 @@
-/** Requests about captures of movement, and about what becomes of them on avatars. */
+/** Requests for motion captures and their retargeting to avatars. */
 import { decodeMotion, type PointMotion } from "../stage/motion";
 import { answer, errorFromBody, server, Unreachable } from "./request";
 import type { components, operations } from "./schema";
@@ -21,7 +21,7 @@ export type MovementFormat = NonNullable<
 >;
 export type Shown = "recorded" | "skeleton";
 
-/** One or two files that make a capture: an AMC goes with its ASF. */
+/** The one or two files of a capture: an AMC comes with its ASF. */
 export interface CaptureFiles {
   readonly file: File;
   readonly companion: File | null;
@@ -29,7 +29,7 @@ export interface CaptureFiles {
 
 export interface Uploaded {
   readonly capture: Capture;
-  /** False where the same content was here already. */
+  /** False if the same content had been uploaded before. */
   readonly isNew: boolean;
 }
 
@@ -84,7 +84,7 @@ async function motionFrom(url: string): Promise<PointMotion> {
   return decodeMotion(await response.arrayBuffer());
 }
 
-/** The address of an upload, whose body is the file and then its companion. */
+/** The URL for an upload; its body is the file, followed by its companion. */
 export function uploadUrl({ file, companion }: CaptureFiles): string {
   const query = new URLSearchParams({ name: file.name });
   if (companion !== null) {
@@ -95,9 +95,9 @@ export function uploadUrl({ file, companion }: CaptureFiles): string {
 }
 
 /**
- * Send a capture; `onSent` is told the share of its bytes that has gone out.
+ * Upload a capture; `onSent` is called with the fraction of bytes sent so far.
  *
- * By XMLHttpRequest, because `fetch` does not tell how far an upload is.
+ * Uses XMLHttpRequest because `fetch` does not report the progress of an upload.
  */
 export function uploadCapture(
   files: CaptureFiles,

@@ -1,4 +1,4 @@
-/** Requests about files that are being written, and about the library of instruments. */
+/** Requests for drafts of study files and for the library of instruments. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type {

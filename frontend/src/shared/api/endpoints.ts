@@ -1,4 +1,4 @@
-/** Every request the pages make, by what it is for. */
+/** Every request that the pages make, grouped by purpose. */
 import { uuid } from "../uuid";
 import { answer, server } from "./request";
 import type {

@@ -1,4 +1,4 @@
-/** Requests about files to fetch, the room that is left, and the scripted participant. */
+/** Requests for downloads, disk space and scripted participants. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { DataKind } from "./types";
@@ -12,7 +12,7 @@ export type Tryout = Schemas["TryoutView"];
 
 const one = (id: string) => ({ params: { path: { export_id: id } } });
 
-/** What to make a file of: the sessions of one kind, or one session of that kind. */
+/** What to export: all sessions of one kind, or one session of that kind. */
 export interface ExportWish {
   readonly studyKey: string;
   readonly kind: DataKind | "all";

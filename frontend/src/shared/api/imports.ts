@@ -1,4 +1,4 @@
-/** Requests about answers that were collected elsewhere. */
+/** Requests for importing answers that were collected elsewhere. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 

@@ -49,13 +49,13 @@ describe("a live feed", () => {
   beforeEach(() => void vi.useFakeTimers());
   afterEach(() => void vi.useRealTimers());
 
-  it("hands on what it hears", () => {
+  it("passes on the messages it receives", () => {
     const { sources, heard } = started();
     sources[0]?.send("session", { version: 3 });
     expect(heard).toEqual([{ version: 3 }]);
   });
 
-  it("says when it is live and when it is lost", () => {
+  it("reports when it is live and when the connection is lost", () => {
     const { sources, states } = started();
     sources[0]?.onopen?.(OPENED);
     sources[0]?.fail(0);
@@ -63,14 +63,14 @@ describe("a live feed", () => {
     expect(states).toEqual(["connecting", "live", "lost", "live"]);
   });
 
-  it("leaves a broken line to the browser, which reconnects by itself", () => {
+  it("leaves a broken connection to the browser, which reconnects automatically", () => {
     const { sources } = started();
     sources[0]?.fail(0);
     vi.advanceTimersByTime(60_000);
     expect(sources).toHaveLength(1);
   });
 
-  it("opens a new feed after the browser gave up, waiting longer each time", () => {
+  it("opens a new connection after the browser gave up, waiting longer each time", () => {
     const { sources } = started();
     sources[0]?.fail(2);
     vi.advanceTimersByTime(1000);
@@ -82,7 +82,7 @@ describe("a live feed", () => {
     expect(sources).toHaveLength(3);
   });
 
-  it("opens nothing more once it was stopped", () => {
+  it("opens no more connections once it was stopped", () => {
     const { sources, stop } = started();
     sources[0]?.fail(2);
     stop();

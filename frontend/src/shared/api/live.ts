@@ -1,12 +1,13 @@
 /**
- * A live feed of the server (server-sent events) that says honestly whether it is connected.
+ * A live feed of the server (server-sent events) that reports whether it is connected.
  *
- * The browser reconnects by itself after a broken line, but gives up for good after an HTTP error;
- * this feed then opens a new one, waiting a little longer each time.
+ * The browser reconnects automatically after a broken connection, but gives up for good after an
+ * HTTP
+ * error; this feed then opens a new one, waiting a little longer each time.
  */
 export type FeedState = "connecting" | "live" | "lost";
 
-/** The part of EventSource that is used here, so that tests can stand in for it. */
+/** The part of EventSource that is used here, so that tests can replace it. */
 export interface Source {
   readonly readyState: number;
   addEventListener(type: string, listener: (event: MessageEvent<string>) => void): void;

@@ -1,4 +1,4 @@
-/** Requests about the lab's people, their invitations and the audit trail. */
+/** Requests for accounts, invitations and the audit trail. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { Account, SessionView } from "./types";
@@ -13,7 +13,7 @@ export type AuditEntry = Schemas["AuditView"];
 export type AuditPage = Schemas["AuditPage"];
 export type AuditCheck = Schemas["AuditCheckView"];
 
-/** Keys of studies; null is all of them, also those to come. */
+/** Keys of studies; null means all studies, including future ones. */
 export type StudyKeys = readonly string[] | null;
 
 export interface PersonChange {

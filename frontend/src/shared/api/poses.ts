@@ -1,9 +1,10 @@
 /**
  * The live movement of a session over a WebSocket.
  *
- * Poses come in binary (`app/features/record/poses/service.py` tells the layout), everything else in JSON.
- * Whoever has drawn a pose says so by `drawn`: the server never has more than a few on the way, so
- * what is shown is the newest, however slow the page is.
+ * Poses arrive as binary messages (`app/features/record/poses/service.py` describes the layout),
+ * everything else as JSON. The client acknowledges each drawn pose with `drawn`: the server never
+ * has
+ * more than a few on the way, so the newest pose is shown, however slow the page is.
  */
 import type { FeedState } from "./live";
 
@@ -18,7 +19,7 @@ export interface PoseSurface {
   readonly half_size_m: Vector;
 }
 
-/** What poses are drawn with; who is blinded gets the participant's figure only. */
+/** What is needed to draw poses; blinded operators get the participant's figure only. */
 export interface PoseSetup {
   readonly type: "setup";
   readonly blinded: boolean;
@@ -33,7 +34,7 @@ export interface PoseSetup {
   readonly surfaces: readonly PoseSurface[];
 }
 
-/** A contact that is over, or a completed task. */
+/** A finished contact or a completed task. */
 export interface PoseTouch {
   readonly number: readonly [epoch: number, seq: number];
   readonly phase_id: number;
@@ -45,19 +46,19 @@ export interface PoseTouch {
 
 export interface Pose {
   readonly stream: PoseStream;
-  /** Whether the phase's clock ran. */
+  /** Whether the phase's clock was running. */
   readonly running: boolean;
   readonly phaseId: number;
-  /** The client's clock, seconds. */
+  /** Reading of the client's clock, seconds. */
   readonly time: number;
-  /** Root position in metres, then a rotation wxyz of each joint in its parent's frame. */
+  /** Root position in metres, then for each joint a rotation wxyz in its parent's frame. */
   readonly values: Float32Array;
 }
 
 const HEADER_BYTES = 28;
 const MAGIC = "RMP1";
 
-/** Null where the bytes are no pose. */
+/** The pose in a binary message; null if the bytes are not a pose. */
 export function decodePose(bytes: ArrayBuffer): Pose | null {
   if (bytes.byteLength < HEADER_BYTES) return null;
   const view = new DataView(bytes);
@@ -78,7 +79,7 @@ export function decodePose(bytes: ArrayBuffer): Pose | null {
 }
 
 export interface PoseFeed {
-  /** So many poses have been drawn, or were left out for newer ones. */
+  /** Acknowledge that so many poses were drawn, or skipped in favour of newer ones. */
   readonly drawn: (count: number) => void;
   readonly close: () => void;
 }
@@ -93,17 +94,17 @@ export interface PoseFeedOptions {
 }
 
 const WAITS_MS = [500, 1000, 2000, 4000] as const;
-/** Nobody is signed in, or the session is not theirs: trying again would not help. */
+/** Close codes for "not signed in" and "no access to this session": retrying would not help. */
 const REFUSED = [4401, 4403];
 
-/** Not every browser takes an address without a scheme here. */
+/** The WebSocket's URL with its scheme, since not every browser accepts a relative one. */
 function socketUrl(path: string): string {
   const url = new URL(path, location.href);
   url.protocol = url.protocol.replace("http", "ws");
   return url.href;
 }
 
-/** Open the feed; it comes back by itself after a broken line. */
+/** Open the feed; it reconnects automatically after a broken connection. */
 export function openPoses(options: PoseFeedOptions): PoseFeed {
   const open = options.open ?? ((url: string) => new WebSocket(socketUrl(url)));
   let socket: WebSocket | null = null;

@@ -1,4 +1,4 @@
-/** Records beside the data: consents, experts' suggestions, and how slow the equipment is. */
+/** Requests for consents, experts' suggestions and the measured latency of the equipment. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { TabletState } from "./types";

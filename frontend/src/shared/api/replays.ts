@@ -1,4 +1,4 @@
-/** Requests about phases that are looked at again: what happened in them, and the movement. */
+/** Requests for the replay of a phase: its events and its movement. */
 import { MotionError, type PointMotion } from "../stage/motion";
 import { answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
@@ -9,19 +9,19 @@ export type ReplayContact = Schemas["ReplayContact"];
 export type ReplaySurface = Schemas["ReplaySurface"];
 export type ReplayMoment = Schemas["Moment"];
 
-/** A stretch of the phase's time, seconds. */
+/** An interval of the phase's time, seconds. */
 export type Span = readonly [begin: number, end: number];
 
-/** What moved in a phase; the avatar is missing for readers who must not learn the latency. */
+/** The movement recorded in a phase, without the avatar for blinded readers. */
 export interface ReplayMovement {
   readonly participant: PointMotion;
   readonly avatar: PointMotion | null;
-  /** Stretches in which nothing was recorded. */
+  /** Intervals in which nothing was recorded. */
   readonly gaps: readonly Span[];
   readonly errors: JointErrors;
 }
 
-/** Angles between what the avatar was asked for and what it did: radians, [frame][joint]. */
+/** Angles between the avatar's target and actual joint rotations, radians, [frame][joint]. */
 export interface JointErrors {
   readonly joints: readonly string[];
   readonly frames: number;
@@ -59,10 +59,10 @@ export const replays = {
 };
 
 /**
- * Read the server's form: the header's length, the header as JSON, then float32, little-endian:
- * places of each body, then joint errors.
+ * Decode the server's format: the header's length, the header as JSON, then as little-endian
+ * float32 the positions of each body, followed by the joint errors.
  *
- * Throws MotionError where the bytes do not hold what the header says.
+ * Throws MotionError if the bytes do not match the header.
  */
 export function decodeMovement(bytes: ArrayBuffer): ReplayMovement {
   if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes hold no movement.`);

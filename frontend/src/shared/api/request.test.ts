@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { ApiError, errorFromBody, isApiError, isUnauthorised } from "./request";
 
 describe("errors of the server", () => {
-  it("keep message, remedy and details", () => {
+  it("keep their message, remedy and details", () => {
     const error = errorFromBody(422, {
       error: {
         code: "invalid_config",
@@ -18,13 +18,13 @@ describe("errors of the server", () => {
     expect(isApiError(error, "stale")).toBe(false);
   });
 
-  it("are understood also when something else than the server answered", () => {
+  it("are understood even if something other than the server answered", () => {
     const error = errorFromBody(502, null);
     expect(error).toBeInstanceOf(ApiError);
     expect(error.message).toContain("502");
   });
 
-  it("tell a lost sign-in from everything else", () => {
+  it("distinguish an expired sign-in from every other error", () => {
     expect(isUnauthorised(errorFromBody(401, null))).toBe(true);
     expect(isUnauthorised(errorFromBody(403, null))).toBe(false);
     expect(isUnauthorised(new Error("x"))).toBe(false);

@@ -1,4 +1,7 @@
-/** One way to the server, typed by its own description; every failure is an ApiError or Unreachable. */
+/**
+ * The single way to the server, typed by its OpenAPI description; failures are ApiError or
+ * Unreachable.
+ */
 import createClient from "openapi-fetch";
 import type { paths } from "./schema";
 
@@ -11,9 +14,9 @@ interface Outcome {
 }
 
 /**
- * The body of an answer. `Body` may tell the described type more exactly, as `types.ts` does.
+ * Return the body of a response. `Body` may narrow the described type, as `types.ts` does.
  *
- * Throws ApiError when the server refuses and Unreachable when there is no answer at all.
+ * Throws ApiError if the server returns an error and Unreachable if there is no response.
  */
 export async function answer<Body>(call: Promise<Outcome>): Promise<Body> {
   const { data, error, response } = await call.catch((cause: unknown) => {
@@ -73,7 +76,7 @@ export class Unreachable extends Error {
   override readonly name = "Unreachable";
 }
 
-/** The error in a response body, or a plain one when a proxy or a crash answered instead. */
+/** The error in a response body, or a generic one if a proxy or a crash answered instead. */
 export function errorFromBody(status: number, body: unknown): ApiError {
   const error = (body as { error?: Partial<ErrorBody> } | null)?.error;
   if (typeof error?.code === "string" && typeof error.message === "string") {

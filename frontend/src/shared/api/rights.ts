@@ -1,4 +1,4 @@
-/** Requests about what participants may ask for: a copy, a correction, and that their data go. */
+/** Requests for participants' rights: a copy, a correction or an erasure of their data. */
 import { answer, server } from "./request";
 import type { components } from "./schema";
 import type { Instrument, Kind, SessionStatus, StoredAnswers } from "./types";

@@ -1,5 +1,5 @@
 /**
- * The values that travel between server and pages; every number carries its unit in its name.
+ * The values exchanged between server and pages; every number has its unit in its name.
  *
  * Shapes come from the server's own description (`schema.d.ts`, made by `npm run api`). Where that
  * says no more than "a string" or "an object", the words and shapes of the protocol are added here.
@@ -8,7 +8,7 @@ import type { Text } from "../text";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];
-/** A type with some of its fields told more exactly. */
+/** A type in which some fields have a narrower type. */
 type With<Type, Exact> = Readonly<Omit<Type, keyof Exact> & Exact>;
 
 export type SessionSummary = Schemas["SessionSummary"];
@@ -27,7 +27,7 @@ export type Preflight = Schemas["Preflight"];
 export type Check = Schemas["Check"];
 
 export type Kind = SessionSummary["kind"];
-/** Sessions that are data of some sort; experts' are not. */
+/** Kinds of sessions whose data are analysed; experts' sessions are not. */
 export type DataKind = Exclude<Kind, "expert">;
 export type SessionStatus = SessionSummary["status"];
 export type StepKind = Step["kind"];
@@ -39,20 +39,20 @@ export type CommandType = Schemas["CommandRequest"]["type"];
 /** What the operator may do now: a command, or entering a form that is due. */
 export type Allowed = SessionView["allowed"][number];
 
-/** A participant who refuses the consent of a step, or takes the refusal back. */
+/** The participant's refusal of a consent step, or its retraction. */
 export type RefusalWish = Schemas["RefusalWish"];
 
 export type Network = Schemas["NetworkView"];
 export type Account = Schemas["AccountView"];
 export type StudySummary = Schemas["StudySummary"];
 export type StudyVersion = Schemas["VersionView"];
-/** `protocol` and `yaml` are null for an operator of a blinded study. */
+/** `protocol` and `yaml` are null for the operator of a blinded study. */
 export type StudyDetail = With<Schemas["StudyView"], { protocol: StudyProtocol | null }>;
 export type CheckResult = With<
   Schemas["CheckResult"],
   { problems: readonly ConfigProblem[]; tree?: Tree | null }
 >;
-/** A file as it was read, whatever is wrong with it. */
+/** A study file as it was parsed, whether valid or not. */
 export interface Tree {
   readonly [key: string]: Value;
 }
@@ -78,7 +78,7 @@ export interface SetupStep {
   readonly step: StepKind;
   readonly text?: string | null;
   readonly instrument?: string;
-  /** Of a practice. */
+  /** Only for a practice. */
   readonly limb?: Limb;
   readonly duration_s?: number;
   readonly latency_ms?: number;
@@ -102,7 +102,7 @@ export interface StudyProtocol {
     readonly replicates: number;
     readonly seed: number;
     readonly when_full: string;
-    /** Of the design "explicit". */
+    /** Only for the design "explicit". */
     readonly sequences?: readonly (readonly string[])[];
   };
   readonly procedure: {
@@ -128,7 +128,7 @@ export interface Command {
   readonly type: CommandType;
   readonly reason?: string;
   readonly text?: string;
-  /** The step that is meant: which one to do over, or which one a late click was for. */
+  /** The step the command is about: the one to repeat, or the one that was current on the page. */
   readonly step_index?: number;
   readonly height_m?: { readonly stated: number; readonly matched: number };
   readonly paper_consent?: { readonly place: string; readonly reason: string };
@@ -144,7 +144,7 @@ export interface Telemetry {
   readonly joint_error_deg?: Readonly<Record<string, number | null>>;
 }
 
-/** How good the headset's data are; null where it is not known. Counts begin with the phase. */
+/** How good the headset's data are; null if unknown. Counts start with the phase. */
 export interface Signal {
   readonly frame_rate_hz: number | null;
   readonly usual_rate_hz: number | null;
@@ -155,7 +155,7 @@ export interface Signal {
   readonly behind_s: number;
 }
 
-/** An alarm that is on, with its newest value. */
+/** An active alarm with its newest value. */
 export interface LiveAlarm extends Pick<Alarm, "code" | "severity" | "stream" | "message"> {
   readonly value: number | null;
   readonly unit: string | null;
@@ -163,13 +163,15 @@ export interface LiveAlarm extends Pick<Alarm, "code" | "severity" | "stream" | 
   readonly since: string;
 }
 
-/** What the server tells of the headset: always how good its data are, and figures with frames. */
+/**
+ * A live message about the headset: always its data quality, and figures if there are new frames.
+ */
 export interface TelemetryNews extends Partial<Telemetry> {
   readonly signal: Signal | null;
   readonly alarms: readonly LiveAlarm[];
 }
 
-/** Whether the record can be written: told when a page begins to listen, and when it changes. */
+/** Whether the record can be written: sent when a page subscribes and whenever it changes. */
 export interface StorageNews {
   readonly status: "ok" | "failing";
   readonly since: string | null;
@@ -177,7 +179,7 @@ export interface StorageNews {
   readonly low_disk: boolean;
 }
 
-/** What runs beside the requests on the server and fails: told when that changes. */
+/** The server's failing background tasks: sent whenever they change. */
 export interface FailingNews {
   readonly name: string;
   readonly state: "failing" | "stopped";
@@ -199,9 +201,9 @@ export interface Item {
   readonly max_length?: number | null;
   readonly unit?: string | null;
   readonly choices?: readonly Choice[];
-  /** Agreement speaks against what the scale measures. */
+  /** Agreement counts against what the scale measures. */
   readonly reverse_keyed?: boolean;
-  /** In place of the instrument's. */
+  /** Replaces the instrument's scale. */
   readonly scale?: Scale | null;
 }
 
@@ -213,7 +215,7 @@ export interface Choice {
 export interface Scale {
   readonly minimum: number;
   readonly maximum: number;
-  /** One label for each step, or two for both ends, or none. */
+  /** One label for each step, or two for the ends, or none. */
   readonly labels: readonly Text[];
   readonly step?: number;
 }

@@ -1,10 +1,10 @@
-/** Requests about how people walk: scenes, sets of walks, models and what they answer. */
+/** Requests for walking: scenes, sets of walks, models and their predictions. */
 import { answer, errorFromBody, server, Unreachable } from "./request";
 import type { components } from "./schema";
 
 type Schemas = components["schemas"];
 export type SceneListed = Schemas["SceneListed"];
-/** Lists of a known length, which the server's description does not tell apart from others. */
+/** A tuple, which the server's description does not distinguish from other lists. */
 export type Point = readonly [number, number];
 type With<Told, Exact> = Omit<Told, keyof Exact> & Exact;
 export type Scene = With<

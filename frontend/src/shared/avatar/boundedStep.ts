@@ -1,7 +1,7 @@
 /**
  * The best step within bounds: minimise x'Hx/2 - b'x with low <= x <= high.
  *
- * The server's `app/science/avatar/ik/bounded_step.py` explains it; source: block principal
+ * The server's `app/science/avatar/ik/bounded_step.py` explains the method; source: block principal
  * pivoting, Judice and Pires (1994), Computers & Operations Research 21(5), 587-596.
  */
 import { residual, solveInPlace } from "./linear";
@@ -39,7 +39,10 @@ export function boundedStep(
   return step.map((value, i) => Math.min(Math.max(value, low[i] as number), high[i] as number));
 }
 
-/** What is on the wrong side, and where it belongs: what left its bounds, what is drawn inwards. */
+/**
+ * The unknowns that are on the wrong side, each with its new side: free ones that left their
+ * bounds, and held ones that are pulled inwards.
+ */
 function wrongs(
   held: Int8Array,
   left: Float64Array,

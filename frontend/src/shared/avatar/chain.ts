@@ -1,7 +1,8 @@
 /**
- * The avatar's model as inverse kinematics sees it: hips that can be placed, hinges, tracked parts.
+ * The avatar's model as inverse kinematics uses it: hips that can be placed, hinges, tracked parts.
  *
- * Views of MuJoCo's arrays lose their memory when it grows, so each is read anew where it is used.
+ * Views of MuJoCo's arrays become invalid when its memory grows, so each is fetched again where it
+ * is used.
  */
 import type { DoubleBuffer, MjData, MjModel } from "@mujoco/mujoco";
 import { GOAL_PARTS, IkError } from "./goals";
@@ -23,7 +24,7 @@ export class Chain {
   readonly hinges: readonly Hinge[];
   /** Indices of the hinges that move a tracked part. */
   readonly moving: readonly number[];
-  /** Which of these moves which goal. */
+  /** For each of these hinges, whether it moves each goal. */
   readonly moves: readonly (readonly boolean[])[];
   readonly trunk: Trunk;
   private readonly data: MjData;
@@ -59,7 +60,7 @@ export class Chain {
     this.trunk = this.measured();
   }
 
-  /** Put the body somewhere: hips in the world, every hinge's angle. */
+  /** Set the pose: the hips in the world and the angle of every hinge. */
   place(hipsM: Vector, hips: Quaternion, anglesRad: Float64Array): void {
     const qpos: Float64Array = this.data.qpos;
     this.hinges.forEach((hinge, index) => {
@@ -75,7 +76,7 @@ export class Chain {
     this.mujoco.mj_kinematics(this.model, this.data);
   }
 
-  /** After `place`, before `addJacobian`. */
+  /** Call after `place` and before `writeJacobian`. */
   prepareJacobians(): void {
     this.mujoco.mj_comPos(this.model, this.data);
   }
@@ -88,7 +89,7 @@ export class Chain {
     return quaternionAt(this.data.xquat, 4 * (this.bodies[goal] as number));
   }
 
-  /** Write six rows, velocity and angular velocity per moving hinge, into rows of this width. */
+  /** Write six rows (velocity, angular velocity) per moving hinge into a matrix of this width. */
   writeJacobian(goal: number, into: Float64Array, start: number, width: number): void {
     this.mujoco.mj_jacBody(
       this.model,
@@ -108,7 +109,7 @@ export class Chain {
     });
   }
 
-  /** Free MuJoCo's memory; the model belongs to the caller. */
+  /** Free MuJoCo's memory, except for the model, which belongs to the caller. */
   delete(): void {
     for (const owned of [this.data, this.linear, this.angular]) owned.delete();
   }

@@ -1,7 +1,9 @@
-/** What inverse kinematics has to reach: the tracked parts of a body at one moment. */
+/** The goals of inverse kinematics: the tracked parts of a body at one moment. */
 import type { Place } from "./hips";
 
-/** The parts that can be tracked, in the order of a goal's rows; the waist tracker is the hips'. */
+/**
+ * The parts that can be tracked, in the order of a goal's rows; the waist tracker is for the hips.
+ */
 export const GOAL_PARTS = [
   "Hips",
   "Head",
@@ -12,20 +14,20 @@ export const GOAL_PARTS = [
 ] as const;
 
 /**
- * Where the joints of the tracked parts are in the world; null for what is not tracked just now.
+ * Where the joints of the tracked parts are in the world; null for a part that is not tracked now.
  *
- * What lies between a tracker and the joint of the part that wears it is calibrated before.
+ * The offset between a tracker and the joint of the part that wears it is calibrated beforehand.
  */
 export type Goals = Readonly<Record<(typeof GOAL_PARTS)[number], Place | null>>;
 
 const UNIT_WITHIN = 1e-3;
 
-/** Goals, or a model, that inverse kinematics cannot work with. */
+/** Thrown for goals, or a model, that inverse kinematics cannot use. */
 export class IkError extends Error {
   override name = "IkError";
 }
 
-/** The goals by row. */
+/** The goals in the order of the rows. */
 export function rowsOf(goals: Goals): readonly (Place | null)[] {
   for (const part of GOAL_PARTS) check(part, goals[part]);
   return GOAL_PARTS.map((part) => goals[part]);

@@ -1,7 +1,8 @@
 /**
- * Where the hips must be when no tracker tells: a triangle of head, knees and hips.
+ * Estimate the hips when no tracker reports them: from the triangle of head, knees and hips.
  *
- * The server's `app/science/avatar/ik/hips.py` explains the geometry; this is the same, operation by
+ * The server's `app/science/avatar/ik/hips.py` explains the geometry; this is the same, operation
+ * by
  * operation.
  */
 import {
@@ -25,19 +26,19 @@ const TINY = 1e-9;
 /** Lengths of one body in the T-pose. */
 export interface Trunk {
   readonly hipsToHeadM: number;
-  /** How far the hip sockets lie below the hips' joint. */
+  /** How far the hip sockets are below the hips' joint. */
   readonly hipsToSocketsM: number;
   readonly halfBreadthM: number;
   readonly thighM: number;
 }
 
-/** A part's joint in the world, and world_from_part. */
+/** The position of a part's joint in the world, and the rotation world_from_part. */
 export interface Place {
   readonly positionM: Vector;
   readonly rotation: Quaternion;
 }
 
-/** From the head and both shins, or from the head alone. */
+/** Estimate the hips from the head and both shins, or from the head alone. */
 export function estimatedHips(
   trunk: Trunk,
   head: Place,

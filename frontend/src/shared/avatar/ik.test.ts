@@ -21,20 +21,20 @@ const NOWHERE: Goals = {
 describe("the best step within bounds", () => {
   const hessian = Float64Array.of(2, 1, 1, 2);
 
-  it("is the solution of the equations where they lie within the bounds", () => {
+  it("solves the equations if the solution is within the bounds", () => {
     const step = boundedStep(hessian, Float64Array.of(3, 3), box(-5), box(5));
     expect(step[0]).toBeCloseTo(1, 12);
     expect(step[1]).toBeCloseTo(1, 12);
   });
 
-  it("holds one unknown at its bound and lets the other make up for it", () => {
+  it("holds one unknown at its bound and adjusts the other for it", () => {
     const step = boundedStep(hessian, Float64Array.of(3, 3), box(-5), Float64Array.of(0.5, 5));
     expect(step[0]).toBe(0.5);
     expect(step[1]).toBeCloseTo(1.25, 12);
   });
 
-  it("frees an unknown again that the others no longer push out", () => {
-    // Unbounded (-0.8, 1.6): both leave [-0.5, 0.5]; with the second held, the first wants -0.25.
+  it("frees an unknown once the others no longer push it past its bound", () => {
+    // Unbounded (-0.8, 1.6): both leave [-0.5, 0.5]; with the second held, the first becomes -0.25.
     const step = boundedStep(
       Float64Array.of(2, 1, 1, 3),
       Float64Array.of(0, 4),
@@ -55,7 +55,7 @@ describe("inverse kinematics", () => {
   });
   afterAll(() => model.delete());
 
-  it("stays at the bent rest pose while nothing is tracked", () => {
+  it("stays in the bent rest pose while nothing is tracked", () => {
     const solver = new InverseKinematics(mujoco, model);
     const { anglesRad, positionErrorsM } = solver.solve(NOWHERE);
     const bent = solver.axisNames.filter((_, at) => anglesRad[at] !== 0);
@@ -66,7 +66,7 @@ describe("inverse kinematics", () => {
     solver.delete();
   });
 
-  it("takes hips that are a free body as it takes carried ones", () => {
+  it("treats hips that are a free body like hips on a carrier", () => {
     const free = readFileSync(BODY, "utf8")
       .replace('<body name="Hips" mocap="true"', '<body name="Hips"')
       .replace(/(<body name="Hips"[^>]*>)/, '$1<freejoint name="Hips"/>');
@@ -83,7 +83,7 @@ describe("inverse kinematics", () => {
     for (const owned of [...solvers, other]) owned.delete();
   });
 
-  it("begins anew after a reset", () => {
+  it("starts from the rest pose after a reset", () => {
     const solver = new InverseKinematics(mujoco, model);
     const first = solver.solve(headAt(1.5)).anglesRad;
     solver.solve(headAt(1.2));
@@ -92,7 +92,7 @@ describe("inverse kinematics", () => {
     solver.delete();
   });
 
-  it("refuses places that are not known and rotations that are none, naming the part", () => {
+  it("rejects positions that are not finite and invalid rotations, and names the part", () => {
     const solver = new InverseKinematics(mujoco, model);
     expect(() => solver.solve(headAt(Number.NaN))).toThrow(/Head lies at/);
     const flat = { positionM: [0, 1.6, 0], rotation: [0, 0, 0, 0] } as const;
@@ -100,7 +100,7 @@ describe("inverse kinematics", () => {
     solver.delete();
   });
 
-  it("refuses a model that is no avatar's", () => {
+  it("rejects a model that is not an avatar's", () => {
     const ball = modelFrom(
       mujoco,
       "<mujoco><worldbody><body name='Hips'><geom size='1'/></body></worldbody></mujoco>",
@@ -110,19 +110,19 @@ describe("inverse kinematics", () => {
   });
 });
 
-describe("the ten megabytes of MuJoCo", () => {
+describe("MuJoCo's ten megabytes", () => {
   const files = readdirSync(SOURCE, { recursive: true, encoding: "utf8" })
     .filter((name) => /\.tsx?$/.test(name) && !name.includes(".test."))
     .map((name) => ({ name, text: readFileSync(join(SOURCE, name), "utf8") }));
 
-  it("are loaded in one place, when asked for", () => {
+  it("are imported dynamically, in one module only", () => {
     const statically = /^import (?!type\b)[^;]*"@mujoco\/mujoco"/m;
     expect(files.filter(({ text }) => statically.test(text)).map(({ name }) => name)).toEqual([]);
     const lazily = files.filter(({ text }) => text.includes('import("@mujoco/mujoco")'));
     expect(lazily.map(({ name }) => name)).toEqual([join("shared", "avatar", "mujoco.ts")]);
   });
 
-  it("are nothing to the console and the tablet", () => {
+  it("are not loaded by the console or the tablet", () => {
     const pages = files.filter(({ name }) => /^(console|tablet)\b/.test(name));
     expect(pages.length).toBeGreaterThan(50);
     expect(pages.filter(({ text }) => /shared\/avatar/.test(text)).map(({ name }) => name)).toEqual(

@@ -1,8 +1,9 @@
 /**
  * Inverse kinematics by damped least squares: from tracked parts to the avatar's angles.
  *
- * The equations stand in the server's `app/science/avatar/ik/solver.py`. Vectors in
- * `tests/vectors/avatar` hold the two together: same model, same goals, same angles.
+ * The server's `app/science/avatar/ik/solver.py` has the equations. Vectors in
+ * `tests/vectors/avatar`
+ * check that both give the same angles for the same model and goals.
  */
 import type { MjModel } from "@mujoco/mujoco";
 import { boundedStep } from "./boundedStep";
@@ -14,23 +15,23 @@ import type { Mujoco } from "./mujoco";
 import { length, minus, normalised, plus, rotationBetween, turned, type Vector } from "./turns";
 
 export interface Solution {
-  /** Every hinge of the model in its order; see `axisNames`. */
+  /** The angle of every hinge, in the model's order; see `axisNames`. */
   readonly anglesRad: Float64Array;
   readonly hips: Place;
-  /** In the order of `GOAL_PARTS`; NaN where a part is not tracked. */
+  /** In the order of `GOAL_PARTS`; NaN if a part is not tracked. */
   readonly positionErrorsM: Float64Array;
   readonly rotationErrorsRad: Float64Array;
 }
 
 export interface IkOptions {
-  /** Axis -> preferred angle; others rest at zero. */
+  /** Preferred angle of each axis; axes without one rest at zero. */
   readonly restRad?: Readonly<Record<string, number>>;
   readonly weights?: Weights;
-  /** Gauss-Newton steps a frame. */
+  /** Gauss-Newton steps per frame. */
   readonly steps?: number;
 }
 
-/** Per metre, per radian, and per radian from the rest pose. */
+/** Weights per metre, per radian, and per radian from the rest pose. */
 interface Weights {
   readonly position: number;
   readonly rotation: number;
@@ -38,7 +39,7 @@ interface Weights {
 }
 
 const RADIANS = Math.PI / 180;
-/** A straight limb cannot get shorter by a small turn, so knees and elbows rest bent. */
+/** A straight limb cannot be shortened by a small rotation, so knees and elbows rest bent. */
 export const REST_POSE_RAD: Readonly<Record<string, number>> = {
   LeftLowerLegX: 25 * RADIANS,
   LeftLowerArmY: 30 * RADIANS,
@@ -53,7 +54,7 @@ const ORIGIN: Place = { positionM: [0, 0, 0], rotation: [1, 0, 0, 0] };
 const FAR_M = 0.5;
 const FAR_RAD = Math.PI / 2;
 
-/** The weighted equations of one step, of so many unknowns. */
+/** The weighted equations of one step. */
 interface System {
   readonly jacobian: Float64Array;
   readonly error: Float64Array;
@@ -85,14 +86,14 @@ export class InverseKinematics {
     return this.chain.hinges.map(({ name }) => name);
   }
 
-  /** Forget the last frame: start again from the rest pose, hips at the origin. */
+  /** Forget the previous frame: start from the rest pose, with the hips at the origin. */
   reset(): void {
     this.angles = Float64Array.from(this.rest);
     this.hips = ORIGIN;
     this.begun = false;
   }
 
-  /** The pose of the next frame. */
+  /** Solve for the pose of the next frame. */
   solve(given: Goals): Solution {
     const goals = rowsOf(given);
     const estimate = this.setHips(given);
@@ -116,7 +117,9 @@ export class InverseKinematics {
     this.chain.delete();
   }
 
-  /** Take the hips from the waist; else return where they are estimated to be, if possible. */
+  /**
+   * Set the hips from the waist tracker; without one, return their estimated place, if possible.
+   */
   private setHips(goals: Goals): Place | null {
     const { Hips: waist, Head: head, LeftLowerLeg: left, RightLowerLeg: right } = goals;
     if (waist !== null) {
@@ -132,7 +135,7 @@ export class InverseKinematics {
     return estimate;
   }
 
-  /** Whether somebody has been carried elsewhere: further than any estimate is wrong. */
+  /** Whether the body was moved elsewhere: further than any error of the estimate. */
   private farFrom({ positionM, rotation }: Place): boolean {
     const turn = rotationBetween(this.hips.rotation, rotation);
     return length(minus(positionM, this.hips.positionM)) > FAR_M || length(turn) > FAR_RAD;
@@ -228,7 +231,7 @@ export class InverseKinematics {
   }
 }
 
-/** How a point at `arm` from the hips moves with them. */
+/** Write how a point at `arm` from the hips moves with them. */
 function writeRigid(arm: Vector, into: Float64Array, start: number, width: number): void {
   const [x, y, z] = arm;
   const crossed = [

@@ -1,7 +1,7 @@
-/** Small dense linear algebra: matrices are row by row in one array. */
+/** Small dense linear algebra: matrices are stored row by row in one array. */
 
 /**
- * Solves A x = b for a symmetric positive definite A by Cholesky's L L' and puts x into b.
+ * Solve A x = b for a symmetric positive definite A by Cholesky's L L' and store x in b.
  *
  * A is overwritten; only its lower triangle is read.
  */
@@ -29,7 +29,7 @@ export function solveInPlace(matrix: Float64Array, right: Float64Array): void {
   }
 }
 
-/** b - A x. */
+/** The residual b - A x. */
 export function residual(matrix: Float64Array, right: Float64Array, x: Float64Array): Float64Array {
   const n = right.length;
   const left = Float64Array.from(right);

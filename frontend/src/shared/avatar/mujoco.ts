@@ -1,8 +1,8 @@
 /**
- * MuJoCo in the browser: the very version the server computes with, so both compute the same.
+ * MuJoCo in the browser: exactly the version that the server uses, so both compute the same.
  *
- * Ten megabytes: whoever needs it loads it here, lazily, and everything else takes the loaded module
- * as an argument. The page's content security policy must allow `'unsafe-eval'`.
+ * It has ten megabytes: callers that need it load it here, lazily, and all other code takes the
+ * loaded module as an argument. The page's content security policy must allow `'unsafe-eval'`.
  */
 import type { MainModule, MjModel } from "@mujoco/mujoco";
 
@@ -13,7 +13,7 @@ export async function loadMujoco(): Promise<Mujoco> {
   return start();
 }
 
-/** A model from the MJCF the server writes; the caller ends its life with `delete()`. */
+/** A model from the MJCF that the server writes; the caller must `delete()` it. */
 export function modelFrom(mujoco: Mujoco, mjcf: string): MjModel {
   return mujoco.MjModel.from_xml_string(mjcf);
 }

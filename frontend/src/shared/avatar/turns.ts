@@ -16,7 +16,7 @@ export const cross = (a: Vector, b: Vector): Vector => [
   a[0] * b[1] - a[1] * b[0],
 ];
 
-/** a b: first b turns, then a. */
+/** The product a b: the rotation b followed by the rotation a. */
 export function multiply(a: Quaternion, b: Quaternion): Quaternion {
   const [aw, ax, ay, az] = a;
   const [bw, bx, by, bz] = b;
@@ -74,7 +74,7 @@ export function fromAxes(xAxis: Vector, yAxis: Vector, zAxis: Vector): Quaternio
   return [(m10 - m01) / s, (m02 + m20) / s, (m12 + m21) / s, 0.25 * s];
 }
 
-/** The rotation vector, in the world, that turns `current` into `goal`; at most pi long. */
+/** The rotation vector, in the world, that rotates `current` to `goal`; at most pi long. */
 export function rotationBetween(current: Quaternion, goal: Quaternion): Vector {
   const [w, x, y, z] = current;
   const [dw, dx, dy, dz] = multiply(goal, [w, -x, -y, -z]);
@@ -84,7 +84,7 @@ export function rotationBetween(current: Quaternion, goal: Quaternion): Vector {
   return [factor * dx, factor * dy, factor * dz];
 }
 
-/** `current` turned by a rotation vector in the world. */
+/** `current` rotated by a rotation vector in the world. */
 export function turned(current: Quaternion, by: Vector): Quaternion {
   const [x, y, z] = by;
   const angle = Math.sqrt(x * x + y * y + z * z);

@@ -9,7 +9,7 @@ import { loadMujoco, type Mujoco, modelFrom } from "./mujoco";
 const FOLDER = resolve(import.meta.dirname, "../../../../tests/vectors/avatar");
 const ALIKE = 1e-9;
 
-/** The files are ours and made by a script: their format is what the README beside them says. */
+/** The files are made by our own script; the README in their folder describes the format. */
 const textOf = (name: string) => readFileSync(resolve(FOLDER, name), "utf8");
 const ik: IkVector = JSON.parse(textOf("ik.json"));
 const trajectory: TrajectoryVector = JSON.parse(textOf("trajectory.json"));
@@ -72,7 +72,7 @@ describe("inverse kinematics in the browser's MuJoCo", () => {
     solver.delete();
   });
 
-  it.each(ik.cases)("tells the server's goal errors, $name", (vector) => {
+  it.each(ik.cases)("gives the server's goal errors, $name", (vector) => {
     const solver = new InverseKinematics(mujoco, model);
     const solved = ik.frames.map((_, index) => solver.solve(goalsOf(index, vector.waist)));
     const known = (values: Float64Array) => Array.from(values, (one) => (one >= 0 ? one : -1));
@@ -93,8 +93,8 @@ describe("inverse kinematics in the browser's MuJoCo", () => {
   });
 });
 
-describe("memory that grows", () => {
-  it("does not leave the solver with arrays that are no longer there", () => {
+describe("MuJoCo's memory, when it grows,", () => {
+  it("does not leave the solver with invalid arrays", () => {
     const solver = new InverseKinematics(mujoco, model);
     const vector = ik.cases[0];
     const data = new mujoco.MjData(model);
@@ -112,7 +112,7 @@ describe("memory that grows", () => {
 });
 
 describe("the simulated body in the browser's MuJoCo", () => {
-  it("goes through the server's angles and contacts for ten seconds", () => {
+  it("reproduces the server's angles and contacts for ten seconds", () => {
     const found = simulated(trajectory);
     expect(found.map(({ ncon }) => ncon)).toEqual(trajectory.samples.map(({ ncon }) => ncon));
     const wanted = trajectory.samples.map(({ qpos }) => qpos);
@@ -125,7 +125,7 @@ describe("the simulated body in the browser's MuJoCo", () => {
   });
 });
 
-/** The greatest difference; infinite where there is none to be told. */
+/** The greatest absolute difference; infinite if the two cannot be compared. */
 function apart(found: Rows, wanted: Rows): number {
   const gaps = wanted.flatMap((row, i) => row.map((value, j) => Math.abs(value - at(found, i, j))));
   return gaps.reduce((most, gap) => (gap <= most ? most : gap), 0);

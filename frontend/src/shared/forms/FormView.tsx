@@ -1,6 +1,6 @@
 /**
- * A form, a page at a time. Its owner is told of every change, so that no answer lives only on the
- * screen.
+ * A form, one page at a time. Every change is passed to its owner, so that no answer exists only on
+ * the screen.
  */
 import { Button, Text } from "@mantine/core";
 import { type JSX, type Ref, useEffect, useRef } from "react";
@@ -34,7 +34,7 @@ export function FormView(props: FormViewProps): JSX.Element {
     if (form.goal === null) return;
     if (form.goal.question === null) {
       top.current?.scrollIntoView({ block: "start" });
-      // Whoever listens to the page, or goes by keys, begins at its beginning.
+      // Move the focus to the heading, so that screen readers and keyboard users start at the top.
       heading.current?.focus({ preventScroll: true });
       return;
     }
@@ -106,7 +106,7 @@ interface HeadProps {
   readonly first: boolean;
 }
 
-/** The stem stays in sight on every page; the instructions are read once. */
+/** The stem is shown on every page, the instructions only on the first. */
 function Head({ heading, administration, language, first }: HeadProps): JSX.Element {
   const { stem, instructions, title } = administration.instrument;
   const lead = inLanguage(stem, language);
@@ -131,7 +131,7 @@ function PageDots({ page, pages, label }: PageDotsProps): JSX.Element {
     <div className={classes.progress}>
       <div className={classes.dots} aria-hidden="true">
         {Array.from({ length: pages }, (_, index) => (
-          // biome-ignore lint/suspicious/noArrayIndexKey: pages have no other name than their number
+          // biome-ignore lint/suspicious/noArrayIndexKey: pages have no identifier other than their number
           <span key={index} className={index <= page ? classes.passed : classes.ahead} />
         ))}
       </div>

@@ -1,4 +1,4 @@
-/** One question with its answers: all of them in sight, each as large as a thumb. */
+/** One question with its answers: all of them visible, each as large as a thumb. */
 import { type JSX, useId } from "react";
 import { STEPS_IN_A_ROW } from "./pages";
 import classes from "./QuestionField.module.css";
@@ -14,7 +14,7 @@ interface QuestionFieldProps {
   readonly onAnswer: (value: Value) => void;
 }
 
-/** What every kind of field tells a screen reader. */
+/** The attributes with which every kind of field describes itself to a screen reader. */
 interface Spoken {
   readonly "aria-labelledby": string;
   readonly "aria-describedby": string | undefined;
@@ -110,7 +110,7 @@ function Options({
       key={option.value}
       {...props}
       option={option}
-      // The group's own name tells it from every other one on the page.
+      // The group's unique name distinguishes it from every other group on the page.
       group={spoken["aria-labelledby"]}
       chosen={value === option.value}
       mayTakeBack={!question.required}
@@ -139,7 +139,7 @@ function OptionField(props: OptionFieldProps): JSX.Element {
         checked={chosen}
         disabled={props.disabled}
         onChange={() => onAnswer(option.value)}
-        // A radio button cannot be taken back by itself; where nothing must be answered, it can.
+        // A radio button cannot be unchecked by default; where no answer is required, it can here.
         onClick={() => chosen && props.mayTakeBack && onAnswer(undefined)}
       />
       <span>{option.text}</span>

@@ -3,7 +3,7 @@ import { answered, type ItemTraces, pageShown } from "./draft";
 
 type Step = readonly [atMs: number, item: string | "page", typed?: boolean];
 
-/** What is known after a page shown at 0 and these answers. */
+/** The traces after a page was shown at 0 and these answers were given. */
 function traced(steps: readonly Step[]): ItemTraces {
   let traces: ItemTraces = {};
   let turn = pageShown(0);
@@ -15,7 +15,7 @@ function traced(steps: readonly Step[]): ItemTraces {
 }
 
 describe("how an item was answered", () => {
-  it("takes from the showing of the page, then from the answer before", () => {
+  it("is timed from when its page was shown, then from the previous answer", () => {
     expect(
       traced([
         [2500, "a"],
@@ -30,7 +30,7 @@ describe("how an item was answered", () => {
     });
   });
 
-  it("keeps the first time and counts every later choice, at once or after another item", () => {
+  it("keeps the first time and counts every later choice, immediate or after another item", () => {
     expect(
       traced([
         [2000, "a"],
@@ -44,7 +44,7 @@ describe("how an item was answered", () => {
     });
   });
 
-  it("takes a word typed letter by letter for one answer, and a return for one change", () => {
+  it("counts a word typed letter by letter as one answer, and a later edit as one change", () => {
     expect(
       traced([
         [1000, "t", true],
@@ -60,7 +60,7 @@ describe("how an item was answered", () => {
     });
   });
 
-  it("counts a typed answer that is mended on a page shown again", () => {
+  it("counts a change of a typed answer on a page shown a second time", () => {
     expect(
       traced([
         [1000, "t", true],

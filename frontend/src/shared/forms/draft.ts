@@ -1,9 +1,9 @@
-/** What has been filled in so far: enough to go on after a reload, on the same page. */
+/** What has been filled in so far: enough to resume on the same page after a reload. */
 export interface FormDraft {
-  /** What was chosen or typed, by item; nothing for what is not answered. */
+  /** What was chosen or typed, by item; items that are not answered are missing. */
   readonly data: Readonly<Record<string, unknown>>;
   readonly page: number;
-  /** Seconds from the first showing of the form to the last change of each answer. */
+  /** Seconds from when the form was first shown to the last change of each answer. */
   readonly timings: Readonly<Record<string, number>>;
   /** How long each answer took, and how often it was changed. */
   readonly traces: ItemTraces;
@@ -12,13 +12,16 @@ export interface FormDraft {
 export const EMPTY_DRAFT: FormDraft = { data: {}, page: 0, timings: {}, traces: {} };
 
 /**
- * How each item was answered: how long it took, and how often the answer was changed afterwards.
+ * How an item was answered: how long it took, and how often the answer was changed afterwards.
  *
- * Several items are on a page at once, so nobody can know when an item is read. The usual stand-in:
- * an item's *turn* begins when its page is shown or when another item of the page is answered,
- * and its response time ends with its first answer. A typed answer is one answer until another item
- * is answered or the page is left: its time ends with the last key of the first writing, and each
- * return to it counts as one change.
+ * Several items are on a page at once, so it is unknown when an item is read. The usual
+ * approximation:
+ * an item's *turn* starts when its page is shown or when another item of the page is answered, and
+ * its
+ * response time ends with its first answer. A typed answer is one answer until another item is
+ * answered or the page is left: its time ends with the last keystroke of the first writing, and
+ * each
+ * later edit counts as one change.
  */
 interface ItemTrace {
   readonly response_s: number;
@@ -30,7 +33,7 @@ export type ItemTraces = Readonly<Record<string, ItemTrace>>;
 interface Turn {
   /** The item being answered; null before the first answer on a page. */
   readonly item: string | null;
-  /** When its turn began, and when it was changed last, on one steadily running clock. */
+  /** When its turn started, and when it was last changed, on one monotonic clock. */
   readonly sinceMs: number;
   readonly lastMs: number;
   /** Whether it is being answered for the first time. */
@@ -39,7 +42,7 @@ interface Turn {
 
 interface Answered {
   readonly item: string;
-  /** Written letter by letter, as opposed to chosen. */
+  /** Typed letter by letter, as opposed to chosen. */
   readonly typed: boolean;
 }
 

@@ -18,7 +18,7 @@ describe("pages of a form", () => {
     expect(pagesOf(instrument.items).flat()).toEqual(instrument.items);
   });
 
-  it("hold at most three rated items, as evenly as possible", () => {
+  it("contain at most three rated items, as evenly as possible", () => {
     const sizes = pagesOf(scale(14)).map((page) => page.length);
     expect(sizes).toEqual([3, 3, 3, 3, 2]);
     expect(pagesOf(scale(4)).map((page) => page.length)).toEqual([2, 2]);
@@ -31,7 +31,7 @@ describe("pages of a form", () => {
     expect(keys(pagesOf([...scale(3), open]))).toEqual([["q1", "q2", "q3"], ["open"]]);
   });
 
-  it("hold at most two items of a scale that needs two rows of buttons", () => {
+  it("contain at most two items of a scale that needs two rows of buttons", () => {
     expect(pagesOf(scale(6), () => 21).map((page) => page.length)).toEqual([2, 2, 2]);
     expect(pagesOf(scale(6), () => 11).map((page) => page.length)).toEqual([3, 3]);
   });

@@ -1,14 +1,14 @@
 /**
- * How the items of a form are spread over pages.
+ * Distribute the items of a form over pages.
  *
- * A page holds few items of one kind, so that nothing has to be scrolled and each answer gets its
- * own look; the items keep the order they are given in, because that order is part of the data.
+ * A page has few items of one kind, so that nobody has to scroll and each item gets its own
+ * attention; the items keep their given order, because that order is part of the data.
  */
 import type { Item } from "../api/types";
 
 type Family = "scale" | "fine" | "facts" | "prose";
 
-/** At most so many items on a page: what fits a tablet in both directions without scrolling. */
+/** The most items on a page: as many as fit a tablet in both orientations without scrolling. */
 const MOST: Readonly<Record<Family, number>> = {
   scale: 3,
   fine: 2,
@@ -16,10 +16,10 @@ const MOST: Readonly<Record<Family, number>> = {
   prose: 2,
 };
 
-/** A scale of more steps needs two rows of buttons, so that each is as wide as a finger. */
+/** A scale with more steps needs two rows of buttons, so that each is as wide as a finger. */
 export const STEPS_IN_A_ROW = 11;
 
-/** `steps`: how many answers the scale of a rated item has. */
+/** Split items into pages; `steps` returns the number of answers on a rated item's scale. */
 export function pagesOf(
   items: readonly Item[],
   steps: (item: Item) => number = () => 0,
@@ -35,7 +35,7 @@ function familyOf(item: Item, steps = 0): Family {
 
 const SHORT_TEXT = 200;
 
-/** Texts without a limit, or with a large one, get a field of several lines. */
+/** Texts with a large limit or none get a field of several lines. */
 export const isLong = (item: Item): boolean =>
   (item.max_length ?? Number.POSITIVE_INFINITY) > SHORT_TEXT;
 
@@ -53,7 +53,7 @@ function runsOf(
   return runs;
 }
 
-/** As few pages as `most` allows, and as equally full as they can be. */
+/** Split items into as few pages as `most` allows, as evenly as possible. */
 function evenly(items: readonly Item[], most: number): readonly (readonly Item[])[] {
   const count = Math.ceil(items.length / most);
   const pages: (readonly Item[])[] = [];
@@ -65,7 +65,7 @@ function evenly(items: readonly Item[], most: number): readonly (readonly Item[]
   return pages;
 }
 
-/** A single open question shares the page before it, where that one has room. */
+/** Move a single open question to the page before it, if that one has room. */
 function joinShortEnd(pages: readonly (readonly Item[])[]): readonly (readonly Item[])[] {
   const last = pages.at(-1);
   const before = pages.at(-2);

@@ -21,11 +21,11 @@ describe("an instrument as a form", () => {
     expect(questions().map(({ key }) => key)).toEqual(administration.item_order);
   });
 
-  it("speaks the language asked for", () => {
+  it("is in the requested language", () => {
     expect(questions({ language: "de" })[0]?.title).toBe("Glasses (de)");
   });
 
-  it("says at the few questions that may be left out that they may", () => {
+  it("marks the few optional questions as optional", () => {
     expect(asked("weight").title).toBe("Weight (optional)");
     expect(asked("weight", { mayOmit: true }).title).toBe("Weight");
   });
@@ -39,14 +39,14 @@ describe("an instrument as a form", () => {
     expect(question.kind === "rating" && question.options[0]?.text).toBe("strongly disagree");
   });
 
-  it("names both ends where only they have labels", () => {
+  it("labels both ends if only they have labels", () => {
     const labels = [{ en: "low" }, { en: "high" }];
     const question = asked("calm", {}, withItems({ scale: { minimum: 0, maximum: 20, labels } }));
     expect(question).toMatchObject({ kind: "rating", ends: ["low", "high"] });
     expect(question.kind === "rating" && question.options).toHaveLength(21);
   });
 
-  it("gives an item its own scale, in its own steps", () => {
+  it("shows an item's own scale with its own steps", () => {
     const labels = [{ en: "perfect" }, { en: "failure" }];
     const own = { minimum: 0, maximum: 100, step: 25, labels };
     const items = instrument.items.map((item) =>
@@ -59,25 +59,25 @@ describe("an instrument as a form", () => {
   });
 });
 
-describe("what is wrong with a form", () => {
-  it("does not go on without the required answers, and says so", () => {
+describe("the validation of a form", () => {
+  it("blocks the next page until the required answers are given, and says so", () => {
     expect(problemOf(asked("calm"), undefined, words)).toBe("Please answer.");
     expect(problemOf(asked("job"), "   ", words)).toBe("Please answer.");
     expect(problemOf(asked("weight"), undefined, words)).toBeNull();
     expect(firstProblem(questions(), { glasses: "no" }, words)?.key).toBe("calm");
   });
 
-  it("lets the operator leave out what was not answered", () => {
+  it("lets the operator omit what was not answered", () => {
     expect(firstProblem(questions({ mayOmit: true }), {}, words)).toBeUndefined();
   });
 
-  it("takes zero and no for answers", () => {
+  it("accepts zero and no as answers", () => {
     const scale = { minimum: 0, maximum: 4, labels: [] };
     expect(problemOf(asked("calm", {}, withItems({ scale })), 0, words)).toBeNull();
     expect(problemOf(asked("glasses"), "no", words)).toBeNull();
   });
 
-  it("refuses a number out of range and half a year", () => {
+  it("rejects a number out of range and half a year", () => {
     const age = asked("age");
     expect(problemOf(age, "17", words)).toBe("At least 18 years.");
     expect(problemOf(age, "111", words)).toBe("At most 110 years.");
@@ -88,7 +88,7 @@ describe("what is wrong with a form", () => {
 });
 
 describe("the answers of a form", () => {
-  it("come back by item, with the type the server expects", () => {
+  it("are returned by item, with the type the server expects", () => {
     const data = { calm: 4, age: "31", hand: "left", glasses: "no", job: "baker" };
     expect(answersOf(instrument, data)).toEqual({
       calm: 4,
@@ -101,7 +101,7 @@ describe("the answers of a form", () => {
     });
   });
 
-  it("tell zero and no from nothing", () => {
+  it("distinguish zero and no from a missing answer", () => {
     const answers = answersOf(instrument, { weight: 0, glasses: "no", problems: "" });
     expect(answers).toMatchObject({ weight: 0, glasses: false, problems: null, age: null });
   });

@@ -1,4 +1,4 @@
-/** An instrument as the questions of a form, page by page, and its answers back again. */
+/** Convert an instrument to the questions of a form, page by page, and its data to answers. */
 import type { Administration, Answer, Instrument, Item, Scale } from "../api/types";
 import { inLanguage } from "../text";
 import { isLong, pagesOf } from "./pages";
@@ -7,11 +7,11 @@ export interface FormWords {
   readonly yes: string;
   readonly no: string;
   readonly optional: string;
-  /** Said where an answer is missing. */
+  /** The message for a missing answer. */
   readonly required: string;
-  /** What a number may be: `{low}`, `{high}` and `{unit}` are filled in. */
+  /** The message for a number out of range, with `low`, `high` and `unit` filled in. */
   readonly range: (low: number | null, high: number | null, unit: string) => string;
-  /** Said where a number does not fit. */
+  /** The message for a number that must be whole. */
   readonly whole: string;
   readonly atLeast: (low: number, unit: string) => string;
   readonly atMost: (high: number, unit: string) => string;
@@ -20,7 +20,7 @@ export interface FormWords {
 interface FormOptions {
   readonly language: string;
   readonly words: FormWords;
-  /** The operator may leave out what the participant did not answer. */
+  /** Whether the operator may omit what the participant did not answer. */
   readonly mayOmit: boolean;
 }
 
@@ -35,7 +35,7 @@ interface Asked {
   readonly required: boolean;
 }
 
-/** `ends`: what the lowest and the highest step are called, where only they have a name. */
+/** `ends`: the names of the lowest and the highest step, if only they have names. */
 export interface Rating extends Asked {
   readonly kind: "rating";
   readonly options: readonly Option[];
@@ -64,7 +64,7 @@ export interface TextField extends Asked {
 
 export type Question = Rating | Choosing | NumberField | TextField;
 
-/** The questions in the order the server drew, spread over pages. */
+/** The questions in the order the server drew, distributed over pages. */
 export function questionPages(
   { instrument, item_order }: Administration,
   options: FormOptions,
@@ -83,7 +83,7 @@ function question(item: Item, scale: Scale | null, options: FormOptions): Questi
   const free = item.required === false;
   const asked: Asked = {
     key: item.key,
-    // Which question is required is said in words, at the few that are not.
+    // Optional questions are marked in words, since there are few of them.
     title: free && !mayOmit ? `${text} (${words.optional})` : text,
     required: !free && !mayOmit,
   };
@@ -116,7 +116,7 @@ function stepsOf(scale: Scale | null): readonly number[] {
   return Array.from({ length: count }, (_, index) => minimum + step * index);
 }
 
-/** Every step is written out where it has a label of its own; else the ends are. */
+/** Every step is listed if each has its own label; otherwise the ends are named. */
 function rating(scale: Scale | null, language: string): Omit<Rating, keyof Asked> {
   const steps = stepsOf(scale);
   const written = (scale?.labels ?? []).map((label) => inLanguage(label, language));
@@ -144,7 +144,7 @@ const NO = "no";
 
 type Data = Readonly<Record<string, unknown>>;
 
-/** Every item's answer by its key; what was left out is null, which is not the same as zero. */
+/** Every item's answer by its key; null for an omitted one, which is not the same as zero. */
 export function answersOf(instrument: Instrument, data: Data): Readonly<Record<string, Answer>> {
   return Object.fromEntries(
     instrument.items.map((item) => [item.key, answerOf(item, data[item.key])]),
@@ -159,9 +159,10 @@ function answerOf(item: Item, value: unknown): Answer {
   return Number.isFinite(parsed) ? parsed : null;
 }
 
-// What is wrong with an answer, in the participant's words; the server looks again at all of them.
+// Messages about invalid answers, in the participant's language; the server validates all answers
+// again.
 
-/** Why the form cannot go on with this value; null where it can. */
+/** Why the form cannot continue with this value; null if it can. */
 export function problemOf(question: Question, value: unknown, words: FormWords): string | null {
   const missing = value === undefined || value === null || String(value).trim() === "";
   if (missing) return question.required ? words.required : null;
@@ -179,7 +180,7 @@ function numberProblem(
   return whole && !Number.isInteger(value) ? words.whole : null;
 }
 
-/** The first question of those that cannot go on. */
+/** The first question whose answer is missing or invalid. */
 export function firstProblem(
   questions: readonly Question[],
   data: Data,

@@ -1,4 +1,4 @@
-/** The words around a form; each family of pages has its own table, with the same keys. */
+/** The texts of a form; each family of pages has its own table, with the same keys. */
 import type { Translate } from "../i18n/i18n";
 import type { FormWords } from "./questions";
 

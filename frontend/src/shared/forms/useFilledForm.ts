@@ -1,4 +1,6 @@
-/** A form while it is filled in: its pages, its answers with their times, what is still missing. */
+/**
+ * The state of a form that is being filled in: pages, answers with their times, missing answers.
+ */
 import { useMemo, useRef, useState } from "react";
 import type { Administration, Answer } from "../api/types";
 import { answered, type FormDraft, pageShown } from "./draft";
@@ -22,9 +24,11 @@ export interface FilledFormOptions {
   readonly onSubmit: (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => void;
 }
 
-/** Where the page is to be read from now: its beginning, or a question that has to be answered. */
+/**
+ * Where to move the focus now: to the top of the page, or to a question that has to be answered.
+ */
 export interface Goal {
-  /** Null: the beginning. */
+  /** Null: the top of the page. */
   readonly question: string | null;
 }
 
@@ -32,7 +36,7 @@ export interface FilledForm {
   readonly questions: readonly Question[];
   readonly page: number;
   readonly pages: number;
-  /** Another one at every move; null before the first. */
+  /** A new object at every move; null before the first. */
   readonly goal: Goal | null;
   readonly valueOf: (question: Question) => unknown;
   readonly problemOf: (question: Question) => string | null;
@@ -45,12 +49,12 @@ export interface FilledForm {
 export function useFilledForm(options: FilledFormOptions): FilledForm {
   const { administration, language, texts, mayOmit = false } = options;
   const [draft, setDraft] = useState(options.draft);
-  // Questions whose problems are told: those of pages that somebody wanted to leave.
+  // Questions whose problems are shown: those of the pages that the participant tried to leave.
   const [checked, setChecked] = useState<ReadonlySet<string>>(new Set());
   const [goal, setGoal] = useState<Goal | null>(null);
   const turn = useRef(pageShown(performance.now()));
-  // The words change a moment after the language: a word of theirs tells which one they are in.
-  // biome-ignore lint/correctness/useExhaustiveDependencies: texts are new at every drawing
+  // The texts change a moment after the language: one of them serves as a marker of their language.
+  // biome-ignore lint/correctness/useExhaustiveDependencies: texts are new at every render
   const pages = useMemo(
     () => questionPages(administration, { language, words: texts, mayOmit }),
     [administration.key, language, mayOmit, texts.required],
@@ -69,7 +73,7 @@ export function useFilledForm(options: FilledFormOptions): FilledForm {
     turn.current = pageShown(performance.now());
     keep({ page: number });
   };
-  /** Tells what is wrong on a page, if anything is, and leads there. */
+  /** Show what is wrong on a page, if anything is, and go there. */
   const stays = (number: number): boolean => {
     const asked = pages[number] ?? [];
     const wrong = firstProblem(asked, draft.data, texts);
@@ -106,7 +110,7 @@ export function useFilledForm(options: FilledFormOptions): FilledForm {
   };
 }
 
-/** What was taken back or wiped out counts as never answered. */
+/** An answer that was taken back or deleted counts as never answered. */
 function withAnswer(
   data: FormDraft["data"],
   key: string,

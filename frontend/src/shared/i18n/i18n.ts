@@ -13,7 +13,7 @@ type Table = Readonly<Record<string, string>>;
 type Plural<Key> = Key extends `${infer Stem}_${"one" | "other"}` ? Stem : Key;
 type Values = Readonly<Record<string, string | number>>;
 
-/** The keys of a table as they are asked for: plural forms by their stem. */
+/** The keys of a table as they are requested: plural forms by their stem. */
 export type KeyOf<Texts extends Table> = Plural<keyof Texts & string>;
 export type Translate<Key extends string> = (key: Key, values?: Values) => string;
 
@@ -37,7 +37,7 @@ export interface Texts<Key extends string> {
   readonly setLanguage: (language: Language) => void;
 }
 
-/** The texts of the page; each page family calls it with its own keys. */
+/** Return the texts of the page; each family of pages calls it with its own keys. */
 export function useTranslations<Key extends string>(): Texts<Key> {
   const { t, i18n } = useTranslation();
   return {
@@ -47,7 +47,7 @@ export function useTranslations<Key extends string>(): Texts<Key> {
   };
 }
 
-/** The browser's language if we speak it, else English. */
+/** The browser's language if it is supported, otherwise English. */
 export function preferredLanguage(wanted: readonly string[]): Language {
   for (const tag of wanted) {
     const known = LANGUAGES.find((language) => tag.toLowerCase().startsWith(language));

@@ -1,4 +1,4 @@
-/** A movement without WebGL: seen from the side on which it goes furthest, as lines on a plane. */
+/** A movement without WebGL: lines on a plane, seen from the side with the largest extent. */
 import { type JSX, useMemo } from "react";
 import type { Seconds } from "../units";
 import { type Figure, LEFT_COLOUR, RIGHT_COLOUR } from "./figure";

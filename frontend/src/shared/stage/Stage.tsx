@@ -1,7 +1,8 @@
 /**
- * Bodies, markers and trackers in space over a measured floor, whatever they come from.
+ * Bodies, markers and trackers in 3-D over a floor with a scale, whatever their source.
  *
- * Seen in 3-D where the browser can, else from the side with a notice. The camera is moved by mouse
+ * Drawn in 3-D if the browser can, otherwise from the side with a notice. The camera is moved by
+ * mouse
  * or touch, or by the page's own buttons through `StageHandle`.
  */
 import { Center, Loader, useComputedColorScheme } from "@mantine/core";
@@ -25,7 +26,7 @@ export interface StageTexts {
   readonly loading: string;
   readonly flat: string;
   readonly flatRemedy: string;
-  /** The size of the floor's squares, given in metres. */
+  /** The text for the size of the floor's squares, given in metres. */
   readonly squares: (metres: number) => string;
 }
 
@@ -41,11 +42,14 @@ interface StageProps {
   readonly label: string;
   readonly texts: StageTexts;
   readonly handle?: Ref<StageHandle>;
-  /** The same array while the same blocks stand there. */
+  /** Must be the same array while the blocks are the same. */
   readonly blocks?: readonly Block[];
-  /** Figures of other stages that this one is compared with; the same array while they are. */
+  /**
+   * Figures of other stages for comparison, which share the floor's size; the same array while they
+   * are the same.
+   */
   readonly beside?: readonly Figure[];
-  /** The same map while the blocks mean the same. */
+  /** Must be the same map while the tones are the same. */
   readonly tones?: BlockTones;
 }
 
@@ -75,7 +79,7 @@ export function Stage(props: StageProps): JSX.Element {
   }
   return (
     <div className={classes.stage} data-way={way}>
-      {/* What is in the picture is told by its label; it is moved by the buttons around it. */}
+      {/* The label describes the picture; the buttons around it move the camera. */}
       <div
         ref={root}
         className={classes.canvas}
@@ -119,10 +123,10 @@ function useStage3d(root: React.RefObject<HTMLDivElement | null>, shown: Shown) 
   const newest = useRef(tones);
   newest.current = tones;
   const [step, setStep] = useState(1);
-  // First the moment: figures that come to a new floor are looked at as they stand then.
+  // Set the time first: figures on a new floor are framed as they are at that moment.
   useEffect(() => stage?.setMode(mode), [stage, mode]);
   useEffect(() => stage?.show(time), [stage, time]);
-  // The appearance is asked for: another one has other colours.
+  // Read the colours again when the colour scheme changes.
   useEffect(() => {
     if (stage === null || root.current === null || scheme === undefined) return;
     stage.setFigures(figures, paletteOf(root.current), { blocks, beside });

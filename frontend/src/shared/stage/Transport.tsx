@@ -18,7 +18,7 @@ export interface TransportTexts {
   /** `1.25 s of 2.85 s`. */
   readonly time: (time: number, duration: number) => string;
   readonly frame: (frame: number, last: number) => string;
-  /** What the strip of gaps says as a picture. */
+  /** The accessible label of the strip of gaps. */
   readonly gaps: string;
   readonly unseen: (names: readonly string[]) => string;
 }
@@ -88,7 +88,7 @@ export function Transport({ motion, playback, texts }: TransportProps): JSX.Elem
   );
 }
 
-/** The more was not seen, the higher the mark: it does not depend on colour. */
+/** The more points are missing, the higher the mark: it does not depend on colour. */
 function GapStrip({
   motion,
   label,
@@ -123,7 +123,7 @@ function GapStrip({
   );
 }
 
-/** Always as high as one line where there are gaps, so that nothing jumps while it plays. */
+/** Always one line high if there are gaps, so that nothing jumps during playback. */
 function Unseen({
   motion,
   frame,
@@ -148,7 +148,7 @@ interface Keys {
   readonly step: (by: number) => void;
 }
 
-/** Space and arrows work anywhere on the page where they mean nothing else. */
+/** Space and arrows work anywhere on the page unless the focused element uses them. */
 function useTransportKeys({ toggle, step }: Keys): void {
   useEffect(() => {
     const onKey = (event: KeyboardEvent) => {
@@ -177,7 +177,7 @@ interface PressProps {
   readonly onClick: () => void;
 }
 
-/** A button of a transport: an icon with its name beside it. */
+/** A button of a transport: an icon with its name as a tooltip. */
 export function Press({ icon, name, filled = false, onClick }: PressProps): JSX.Element {
   return (
     <Tooltip label={name}>

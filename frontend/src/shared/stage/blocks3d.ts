@@ -1,4 +1,7 @@
-/** Blocks in the scene: a translucent body with its edges, coloured anew without making it again. */
+/**
+ * Blocks in the scene: translucent bodies with edges, which can be recoloured without rebuilding
+ * them.
+ */
 import {
   BoxGeometry,
   EdgesGeometry,
@@ -16,7 +19,7 @@ import {
   type StagePalette,
 } from "./figure";
 
-/** How much is seen of a block through another. */
+/** How opaque a block is. */
 const OPACITY = { wall: 0.1, solid: 0.5, glowing: 0.82 } as const;
 
 export class Blocks3d {
@@ -32,7 +35,7 @@ export class Blocks3d {
     this.light(new Map());
   }
 
-  /** The middle of what is there to be touched, metres. */
+  /** The centre of the blocks that can be touched, metres. */
   get middle(): [x: number, y: number, z: number] {
     const touched = this.#parts.filter(({ block }) => !block.wall);
     const mean = (axis: 0 | 1 | 2) =>
@@ -40,7 +43,7 @@ export class Blocks3d {
     return [mean(0), mean(1), mean(2)];
   }
 
-  /** Show what the blocks mean now. */
+  /** Show the blocks in their current tones. */
   light(tones: BlockTones): void {
     for (const { block, body, edges } of this.#parts) {
       const tone: BlockTone = tones.get(block.key) ?? "plain";

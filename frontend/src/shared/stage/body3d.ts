@@ -1,4 +1,6 @@
-/** A figure in the scene: bones, joints and a shadow on the floor, moved without making anything new. */
+/**
+ * A figure in the scene: bones, joints and a shadow on the floor, moved without allocating objects.
+ */
 import {
   Color,
   type ColorRepresentation,
@@ -22,18 +24,20 @@ import { type PointMotion, sizeOf } from "./motion";
 import { type Placing, placing } from "./placing";
 
 const UP = new Vector3(0, 1, 0);
-/** Of a body of 1.7 m, metres. */
+/** The size of a body of 1.7 m, metres. */
 const USUAL_SIZE = 1.7;
 const RADIUS = { skeleton: 0.029, markers: 0.018, bodies: 0.05 } as const;
 const HEAD_RADIUS = 0.095;
 const GHOST_OPACITY = 0.45;
-/** A ghost is thinner: where it is at one with the body that it is compared with, it is not seen. */
+/**
+ * A ghost is thinner, so that it disappears inside the body it is compared with where both agree.
+ */
 const GHOST_GIRTH = 0.85;
 
 export class Body3d {
   readonly group = new Group();
   readonly placing: Placing;
-  /** Nobody sees their own head. */
+  /** Hide the head, for a view through the figure's own eyes. */
   headless = false;
   readonly #bones: readonly (readonly [from: number, to: number])[];
   readonly #meshes: Meshes;
@@ -48,7 +52,7 @@ export class Body3d {
     this.#bones = motion.parents.flatMap((parent, child) =>
       parent < 0 ? [] : [[parent, child] as const],
     );
-    // One or two trackers do not tell how large a body is.
+    // One or two trackers do not show how large a body is.
     const size = motion.names.length < 3 ? 1 : Math.max(sizeOf(motion), 1e-3) / USUAL_SIZE;
     this.#scale = size * (figure.tone === "ghost" ? GHOST_GIRTH : 1);
     this.#meshes = makeMeshes(motion, this.#bones.length, figure, palette);
@@ -56,7 +60,7 @@ export class Body3d {
     this.#colour(palette);
   }
 
-  /** Move to a time; the frame that is shown. */
+  /** Move to a time; return the frame that is shown. */
   show(time: Seconds): number {
     const frame = this.placing.place(time);
     this.#placeBones();
@@ -65,7 +69,7 @@ export class Body3d {
     return frame;
   }
 
-  /** Colour it anew: a bone is moved by the joint at its upper end, and has that one's colour. */
+  /** Recolour the figure: a bone has the colour of the joint at its upper end, which moves it. */
   paint(colourOf: (point: number) => ColorRepresentation): void {
     const { bones, joints, head } = this.#meshes;
     this.#bones.forEach(([parent], index) => {
@@ -106,7 +110,7 @@ export class Body3d {
       along.subVectors(this.#point(child, to), from);
       const length = along.length();
       const seen = this.placing.seen[parent] === 1 && this.placing.seen[child] === 1;
-      // A bone whose ends are not both seen is a thread.
+      // A bone with an unseen end is drawn as a thread.
       const radius = Math.min(0.021 * this.#scale, 0.14 * length) * (seen ? 1 : 0.25);
       turned.setFromUnitVectors(UP, length > 0 ? along.divideScalar(length) : UP);
       matrix.compose(
@@ -200,7 +204,7 @@ function makeMeshes(
   const flat = new MeshBasicMaterial({ color: palette.shadow });
   const bones = instanced(new InstancedMesh(bone, new MeshLambertMaterial(look), boneCount));
   const shadow = instanced(new InstancedMesh(bone.clone(), flat, boneCount));
-  // The bones once more, pressed onto the floor.
+  // The bones a second time, flattened onto the floor.
   shadow.scale.y = 0;
   shadow.position.y = 0.001;
   shadow.visible = figure.tone === "solid";
@@ -226,7 +230,7 @@ function headOf(figure: Figure, palette: StagePalette, look: object): Head | nul
   );
 }
 
-/** Seen through everything: what it points at may be inside the body. */
+/** Drawn on top of everything: what it points at may be inside the body. */
 function pointerOf(palette: StagePalette): Mesh {
   const material = new MeshBasicMaterial({
     color: palette.highlight,
@@ -242,7 +246,7 @@ function pointerOf(palette: StagePalette): Mesh {
 
 function instanced(mesh: InstancedMesh): InstancedMesh {
   mesh.instanceMatrix.setUsage(DynamicDrawUsage);
-  // Where it is changes all the time; what is not in view is cheap to draw.
+  // The figure moves all the time, and drawing what is out of view is cheap.
   mesh.frustumCulled = false;
   return mesh;
 }

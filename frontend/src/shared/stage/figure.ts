@@ -1,7 +1,7 @@
-/** What stands on a stage, and how it is told apart. */
+/** What is drawn on a stage, and how it is distinguished. */
 import type { PointMotion } from "./motion";
 
-/** Which points of a skeleton are which part of a body; what is not known is left out. */
+/** Which points of a skeleton are which part of a body; unknown ones are left out. */
 export interface BodyRoles {
   readonly head: number | null;
   readonly leftHip: number | null;
@@ -15,14 +15,17 @@ export interface Figure {
   readonly motion: PointMotion;
   /** A ghost is there for comparison: grey and translucent. */
   readonly tone: "solid" | "ghost";
-  /** Moved aside on the floor, metres. */
+  /** Offset on the floor, metres. */
   readonly aside?: readonly [x: number, z: number];
   readonly roles?: BodyRoles;
-  /** A point to point at. */
+  /** The point to highlight. */
   readonly highlighted?: number | null;
 }
 
-/** `orbit` stays where it is put, `follow` goes along, `eyes` looks out of the first figure's. */
+/**
+ * The camera: `orbit` stays where it is, `follow` moves along, `eyes` looks through the first
+ * figure's.
+ */
 export type CameraMode = "orbit" | "follow" | "eyes";
 export type LookFrom = "corner" | "front" | "side" | "top";
 
@@ -41,7 +44,7 @@ export interface StagePalette {
   readonly font: string;
 }
 
-/** Told apart with any kind of colour vision; the same in both appearances. */
+/** Distinguishable with any kind of colour vision; the same in both colour schemes. */
 export const LEFT_COLOUR = "#8067c9";
 export const RIGHT_COLOUR = "#d55e00";
 
@@ -64,7 +67,7 @@ export function paletteOf(element: HTMLElement): StagePalette {
   };
 }
 
-/** The point a camera follows: the middle of the hips where they are known, else of all points. */
+/** The point that a camera follows: the middle of the hips if known, otherwise of all points. */
 export function middleOf(
   figure: Figure,
   placed: Float32Array,
@@ -87,7 +90,9 @@ export function middleOf(
   return [x, y, z];
 }
 
-/** Where a body faces on the floor, from its hips: up x (left to right). Null where it is unknown. */
+/**
+ * The direction a body faces on the floor, from its hips: up x (left to right). Null if unknown.
+ */
 export function facingOf(
   figure: Figure,
   placed: Float32Array,
@@ -101,24 +106,24 @@ export function facingOf(
   return length > 1e-6 ? [z / length, -x / length] : null;
 }
 
-// Blocks that stand in the scene: walls and panels of boxes, targets, places to start from.
+// Blocks in the scene: walls and panels of boxes, targets, starting places.
 
-/** How a block looks: `plain` as it stands there; the others mean something and glow. */
+/** How a block looks: `plain` by default; the other tones have a meaning and glow. */
 export type BlockTone = "plain" | "good" | "touched" | "odd" | "bad";
 
 export interface Block {
   readonly key: string;
-  /** Walls are seen through; the others are there to be touched. */
+  /** Walls are see-through; other blocks are there to be touched. */
   readonly wall: boolean;
   /** Metres, in the world of the figures. */
   readonly center: readonly [x: number, y: number, z: number];
   readonly halfSize: readonly [x: number, y: number, z: number];
 }
 
-/** What is not `plain`, by the blocks' keys. */
+/** The tones of the blocks that are not `plain`, by their keys. */
 export type BlockTones = ReadonlyMap<string, BlockTone>;
 
-/** Told apart with any kind of colour vision, and by how strongly they are drawn. */
+/** Distinguishable with any kind of colour vision, and also by the strength of their lines. */
 export const BLOCK_COLOURS: Readonly<Record<Exclude<BlockTone, "plain">, string>> = {
   good: "#009e73",
   touched: "#3a8fd6",

@@ -1,13 +1,13 @@
-/** How far the floor goes and how it is divided, so that lengths can be read off it. */
+/** The extent of the floor and its division into squares, so that lengths can be read from it. */
 import type { Block, Figure } from "./figure";
 import { type Box, boxOf } from "./motion";
 
 export interface FloorPlan {
   readonly min: readonly [x: number, z: number];
   readonly max: readonly [x: number, z: number];
-  /** Between two lines, metres: a power of ten. */
+  /** Distance between two lines, metres: a power of ten. */
   readonly step: number;
-  /** What moves on it, from the floor upwards. */
+  /** The bounding box of what moves on it, extended to the floor. */
   readonly box: Box;
 }
 
@@ -29,14 +29,16 @@ export function floorPlan(figures: readonly Figure[], blocks: readonly Block[] =
   };
 }
 
-/** Whole metres for what happens in a room; tens of them where it does not fit into one. */
+/** Whole metres for what fits into a room; multiples of ten for what does not. */
 export function stepFor(span: number): number {
   if (!(span > 0)) return 1;
   if (span >= MOST_CELLS) return 10 ** Math.floor(Math.log10(span / 4));
   return span >= 1 ? 1 : 10 ** Math.max(-4, Math.floor(Math.log10(span)));
 }
 
-/** A metre at least: one or two trackers that lie still do not tell how large things are. */
+/**
+ * Extend the box to at least a metre: one or two trackers at rest do not show how large things are.
+ */
 function withRoom({ min, max }: Box): Box {
   const [[minX, maxX], [minZ, maxZ]] = ([0, 2] as const).map((axis) => {
     const more = Math.max(0, 1 - (max[axis] - min[axis])) / 2;
@@ -59,7 +61,7 @@ function boxOfAll(figures: readonly Figure[], blocks: readonly Block[]): Box {
   });
   boxes.push(...blocks.map(boxOfBlock));
   if (boxes.length === 0) return { min: [-1, 0, -1], max: [1, 1.7, 1] };
-  // The floor belongs to it: a single tracker that lies still has a size only by its height.
+  // Include the floor: a single tracker at rest has no size other than its height.
   boxes.push({ min: [Infinity, 0, Infinity], max: [-Infinity, 0, -Infinity] });
   const over = (pick: (...values: number[]) => number, side: "min" | "max"): Box["min"] => [
     pick(...boxes.map((box) => box[side][0])),

@@ -1,4 +1,4 @@
-/** The floor of the scene: lines every step of metres, and what they measure along two edges. */
+/** The floor of the scene: lines at regular distances in metres, labelled along two edges. */
 import {
   BufferAttribute,
   BufferGeometry,
@@ -85,7 +85,7 @@ function sprite(text: string, palette: StagePalette): Sprite {
       map: new CanvasTexture(canvas),
       transparent: true,
       depthWrite: false,
-      // As large from afar as from nearby: it is there to be read.
+      // The same size near and far, so that it can be read.
       sizeAttenuation: false,
     }),
   );

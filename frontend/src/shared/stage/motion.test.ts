@@ -23,7 +23,7 @@ const HEADER = {
   recorded_rate_hz: 120,
 };
 
-/** As app/features/movement/captures/preview.py writes it; `padded` as there, or not. */
+/** Encode a preview like app/features/movement/captures/preview.py, with or without its padding. */
 function encoded(values: readonly number[], padded = true): ArrayBuffer {
   const text = new TextEncoder().encode(JSON.stringify(HEADER));
   const length = padded ? text.length + ((4 - (text.length % 4)) % 4) : text.length;
@@ -53,18 +53,18 @@ const seenAt = (...heights: (number | null)[]) =>
   movement(heights.flatMap((y) => (y === null ? [Number.NaN, Number.NaN, Number.NaN] : [0, y, 0])));
 
 describe("the bytes of a preview", () => {
-  it("hold names, parents and rates in the header and positions after it", () => {
+  it("have names, parents and rates in the header, followed by positions", () => {
     const motion = decodeMotion(encoded(VALUES));
     expect(motion).toMatchObject({ names: ["Hips", "Knie-Ä"], parents: [-1, 0], frames: 2 });
     expect([motion.rateHz, motion.recordedRateHz]).toEqual([60, 120]);
     expect([...motion.positions]).toEqual(VALUES);
   });
 
-  it("are read wherever the numbers begin", () => {
+  it("are decoded at any offset of the numbers", () => {
     expect([...decodeMotion(encoded(VALUES, false)).positions]).toEqual(VALUES);
   });
 
-  it("are refused where they are cut off or no movement at all", () => {
+  it("are rejected if they are truncated or not a movement", () => {
     const whole = encoded(VALUES);
     for (const length of [0, 3, 20, whole.byteLength - 4]) {
       expect(() => decodeMotion(whole.slice(0, length))).toThrow(MotionError);
@@ -76,7 +76,7 @@ describe("the bytes of a preview", () => {
 describe("time and frame", () => {
   const motion = movement(Array.from({ length: 3 * 344 }, () => 0));
 
-  it("lead to each other for every frame", () => {
+  it("convert to each other for every frame", () => {
     for (let frame = 0; frame < motion.frames; frame++) {
       expect(frameAt(motion, timeOf(motion, frame))).toBe(frame);
     }
@@ -88,11 +88,11 @@ describe("time and frame", () => {
     expect(durationOf(movement([0, 0, 0]))).toBe(0);
   });
 
-  it("name the frame of the recording where frames were left out", () => {
+  it("give the frame number of the recording if frames were left out", () => {
     expect(recordedFrame(motion, 10)).toBe(20);
   });
 
-  it("run on while it plays, to the end or round again", () => {
+  it("advance during playback, to the end or in a loop", () => {
     expect(advanced(seconds(1), 0.5, seconds(2), false)).toEqual({ time: 1.5, ended: false });
     expect(advanced(seconds(1.5), 1, seconds(2), false)).toEqual({ time: 2, ended: true });
     expect(advanced(seconds(1.5), 1, seconds(2), true)).toEqual({ time: 0.5, ended: false });
@@ -100,10 +100,10 @@ describe("time and frame", () => {
   });
 });
 
-describe("what was not seen", () => {
+describe("an unseen point", () => {
   const motion = seenAt(null, 1, null, null, 2);
 
-  it("is where it was seen last, or before that where it will appear", () => {
+  it("is shown where it was last seen, or before that where it will appear", () => {
     expect([...seenFrames(motion)]).toEqual([1, 1, 1, 1, 4]);
     expect([...seenFrames(seenAt(null, null))]).toEqual([-1, -1]);
   });
@@ -117,7 +117,7 @@ describe("what was not seen", () => {
     expect([[...body.placed], [...body.seen]]).toEqual([[5, 2, -5], [1]]);
   });
 
-  it("is told in stretches, however long the movement", () => {
+  it("is reported in intervals, however long the movement is", () => {
     expect(hasGaps(motion)).toBe(true);
     expect(gapStretches(motion)).toEqual([
       { from: 0, to: 1, share: 1 },
@@ -137,20 +137,20 @@ describe("the floor", () => {
     expect(plan).toMatchObject({ min: [-1, 8], max: [3, 11], step: 1 });
   });
 
-  it("is a metre wide at least under a single tracker that lies still", () => {
+  it("is at least a metre wide under a single tracker at rest", () => {
     const motion = movement([5, 0.1, 5, 5, 0.1, 5]);
     const plan = floorPlan([{ key: "a", motion, tone: "solid" }]);
     expect(plan).toMatchObject({ min: [4, 4], max: [6, 6], step: 1 });
   });
 
-  it("is divided into metres for a room, and by tens of it for a wrong unit", () => {
+  it("is divided into metres for a room, and into multiples of ten for a wrong unit", () => {
     expect([1.7, 8, 39].map(stepFor)).toEqual([1, 1, 1]);
     expect([170, 1700].map(stepFor)).toEqual([10, 100]);
     expect([0.17, 0.0017].map(stepFor)).toEqual([0.1, 0.001]);
     expect(stepFor(0)).toBe(1);
   });
 
-  it("is there even where nothing was ever seen", () => {
+  it("exists even if nothing was ever seen", () => {
     expect(floorPlan([{ key: "a", motion: seenAt(null), tone: "solid" }]).step).toBe(1);
   });
 });

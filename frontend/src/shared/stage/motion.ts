@@ -10,17 +10,17 @@ export type PointKind = "skeleton" | "markers" | "bodies";
 export interface PointMotion {
   readonly kind: PointKind;
   readonly names: readonly string[];
-  /** Index of the point above each, -1 where there is none. */
+  /** Index of each point's parent, -1 for none. */
   readonly parents: readonly number[];
   readonly frames: number;
   readonly rateHz: number;
-  /** Before frames were left out for drawing. */
+  /** The rate of the recording, before frames were left out for drawing. */
   readonly recordedRateHz: number;
   /** x, y, z in metres: [frame][point][axis]. */
   readonly positions: Float32Array;
 }
 
-/** The bytes are no movement: cut off, or of another form. */
+/** Thrown if the bytes are not a movement: truncated, or of another format. */
 export class MotionError extends Error {
   override readonly name = "MotionError";
 }
@@ -35,9 +35,10 @@ interface Header {
 }
 
 /**
- * Read the server's form: the header's length, the header as JSON, then float32, all little-endian.
+ * Decode the server's format: the header's length, the header as JSON, then float32, all
+ * little-endian.
  *
- * Throws MotionError where the bytes do not hold what the header says.
+ * Throws MotionError if the bytes do not match the header.
  */
 export function decodeMotion(bytes: ArrayBuffer): PointMotion {
   if (bytes.byteLength < 4) throw new MotionError(`${bytes.byteLength} bytes hold no movement.`);
@@ -78,13 +79,13 @@ function numbers(bytes: ArrayBuffer, from: number, count: number): Float32Array 
 
 const isLittleEndian = (): boolean => new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;
 
-/** When the last frame is shown; a single frame lasts no time. */
+/** The time of the last frame; zero for a single frame. */
 export const durationOf = (motion: PointMotion): Seconds =>
   seconds(Math.max(0, motion.frames - 1) / motion.rateHz);
 
-/** The frame that is nearest to a time. */
+/** The frame nearest to a time. */
 export function frameAt(motion: PointMotion, time: Seconds): number {
-  // A time that was made from a frame must lead back to it.
+  // A time that was computed from a frame must lead back to it.
   const frame = Math.round(time * motion.rateHz + 1e-6);
   return Math.min(Math.max(frame, 0), Math.max(0, motion.frames - 1));
 }
@@ -92,7 +93,7 @@ export function frameAt(motion: PointMotion, time: Seconds): number {
 export const timeOf = (motion: PointMotion, frame: number): Seconds =>
   seconds(frame / motion.rateHz);
 
-/** Its number in the recording, counted from 0. */
+/** The frame's number in the recording, counted from 0. */
 export const recordedFrame = (motion: PointMotion, frame: number): number =>
   Math.round((frame / motion.rateHz) * motion.recordedRateHz);
 
@@ -101,7 +102,7 @@ export interface Box {
   readonly max: readonly [x: number, y: number, z: number];
 }
 
-/** What all seen points of all frames fit into; null where nothing was ever seen. */
+/** The bounding box of all seen points of all frames; null if nothing was ever seen. */
 export function boxOf(motion: PointMotion): Box | null {
   const min: [number, number, number] = [Infinity, Infinity, Infinity];
   const max: [number, number, number] = [-Infinity, -Infinity, -Infinity];
@@ -117,7 +118,7 @@ export function boxOf(motion: PointMotion): Box | null {
   return Number.isFinite(min[0]) ? { min, max } : null;
 }
 
-/** The largest side of what one frame takes up; of a body about its height. */
+/** The largest side of one frame's bounding box; for a body about its height. */
 export function sizeOf(motion: PointMotion): number {
   const points = motion.names.length;
   const every = Math.max(1, Math.floor(motion.frames / 20));

@@ -1,15 +1,15 @@
-/** Where the points of a figure are at a time, those that were not seen where they were last. */
+/** Place the points of a figure at a time; unseen points stay where they were last seen. */
 import type { Seconds } from "../units";
 import type { Figure } from "./figure";
 import { frameAt, type PointMotion } from "./motion";
 
 export interface Placing {
   readonly figure: Figure;
-  /** x, y, z of every point, metres; NaN where it was never seen. Written anew by `place`. */
+  /** x, y, z of every point, metres; NaN if it was never seen. Overwritten by `place`. */
   readonly placed: Float32Array;
-  /** 1 where a point is seen now. */
+  /** 1 for a point that is seen now. */
   readonly seen: Uint8Array;
-  /** To move to a time; the frame that is shown. */
+  /** Move to a time; return the frame that is shown. */
   readonly place: (time: Seconds) => number;
 }
 
@@ -38,7 +38,7 @@ export function placing(figure: Figure): Placing {
 const unseen = (motion: PointMotion, index: number): boolean =>
   Number.isNaN(motion.positions[3 * index] ?? Number.NaN);
 
-/** Where points were not seen, and where they were seen last. */
+/** Whether any point is unseen in any frame. */
 export const hasGaps = (motion: PointMotion): boolean => {
   const { positions } = motion;
   for (let at = 0; at < positions.length; at += 3) {
@@ -48,8 +48,8 @@ export const hasGaps = (motion: PointMotion): boolean => {
 };
 
 /**
- * The frame to take each point of each frame from: itself where it was seen, else the last one in
- * which it was, else the next one, else -1. Laid out as [frame][point].
+ * The frame to take each point of each frame from: the frame itself if the point was seen in it,
+ * otherwise the last one before, otherwise the next one, otherwise -1. Laid out as [frame][point].
  */
 export function seenFrames(motion: PointMotion): Int32Array {
   const points = motion.names.length;
@@ -59,7 +59,7 @@ export function seenFrames(motion: PointMotion): Int32Array {
     for (let frame = 0; frame < motion.frames; frame++) {
       const index = frame * points + point;
       if (!unseen(motion, index)) {
-        // What comes before the first sight is shown where it will appear.
+        // Before a point is first seen, it is shown where it will appear.
         if (last < 0)
           for (let early = 0; early < frame; early++) from[early * points + point] = frame;
         last = frame;
@@ -70,14 +70,14 @@ export function seenFrames(motion: PointMotion): Int32Array {
   return from;
 }
 
-/** A stretch of frames with the same share of points unseen; `to` is the frame after the last. */
+/** An interval of frames with the same share of unseen points; `to` is the frame after the last. */
 interface Stretch {
   readonly from: number;
   readonly to: number;
   readonly share: number;
 }
 
-/** Stretches in which something was not seen, told in at most `bins` parts of the movement. */
+/** Intervals with unseen points, at a resolution of at most `bins` parts of the movement. */
 export function gapStretches(motion: PointMotion, bins = 480): readonly Stretch[] {
   const points = motion.names.length;
   const wide = Math.max(1, Math.ceil(motion.frames / bins));

@@ -1,6 +1,6 @@
 /**
- * Figures on a measured floor, seen from wherever one likes: the room is as large as what moves in
- * it. This module brings three.js with it: import it lazily.
+ * Figures on a floor with a scale and a movable camera: the room is as large as what moves in it.
+ * This module imports three.js: import it lazily.
  */
 import { Color, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -20,14 +20,14 @@ import type { Placing } from "./placing";
 import { Space3d } from "./space3d";
 import { alongFloor, directionOf, fitting, lookOut } from "./views";
 
-/** What else there is around the figures. */
+/** What else is in the scene with the figures. */
 export interface Surroundings {
   readonly blocks?: readonly Block[];
-  /** Figures of other stages: the room is as large as if they were here, so that both compare. */
+  /** Figures of other stages: the room is made large enough for them too, so that both compare. */
   readonly beside?: readonly Figure[];
 }
 
-/** Fields of view, from top to bottom. */
+/** Vertical fields of view, degrees. */
 const USUAL_DEG = 28;
 const WIDE_DEG = 75;
 
@@ -39,9 +39,9 @@ export class Stage3d extends Space3d {
   #time = 0 as Seconds;
   #followed: Vector3 | null = null;
 
-  /** Throws where the browser has no WebGL. */
+  /** Throws if the browser has no WebGL. */
   constructor(canvas: HTMLCanvasElement) {
-    // Kept after drawing, so that a picture of it can be saved.
+    // The buffer is kept after drawing, so that a picture of it can be saved.
     super(new PerspectiveCamera(USUAL_DEG, 1, 0.02, 500), { canvas, preserveDrawingBuffer: true });
     this.#controls = new OrbitControls(this.camera, canvas);
     this.#controls.enableDamping = false;
@@ -113,7 +113,7 @@ export class Stage3d extends Space3d {
     this.show(this.#time);
   }
 
-  /** Nearer by a factor below 1, farther by one above. */
+  /** Zoom in with a factor below 1, out with one above. */
   zoom(factor: number): void {
     const { target } = this.#controls;
     this.camera.position.sub(target).multiplyScalar(factor).add(target);
@@ -121,7 +121,7 @@ export class Stage3d extends Space3d {
     this.ask();
   }
 
-  /** The point that is nearest to a place on the stage, where one is near. */
+  /** The point nearest to a position on the stage, if one is close enough. */
   nearest(xPx: number, yPx: number): Pointed | null {
     const { clientWidth, clientHeight } = this.renderer.domElement;
     const size = [clientWidth, clientHeight] as const;
@@ -137,7 +137,7 @@ export class Stage3d extends Space3d {
     super.dispose();
   }
 
-  /** Where the first body faces as it is shown; towards +z where that is not known. */
+  /** The direction the first body faces as it is shown; +z if unknown. */
   #facing(): readonly [x: number, z: number] {
     const body = this.bodies[0];
     return (body && alongFloor(facingOf(body.figure, body.placing.placed))) ?? [0, 1];
@@ -162,7 +162,7 @@ export class Stage3d extends Space3d {
   }
 }
 
-/** Which point of the figures is pointed at. */
+/** Which point of the figures is under the pointer. */
 
 /** A point of a figure on the screen; pixels from the stage's upper left corner. */
 export interface Pointed {
@@ -171,10 +171,10 @@ export interface Pointed {
   readonly y: number;
 }
 
-/** Farther away nothing is meant, pixels. */
+/** Points farther from the pointer are ignored, pixels. */
 const WITHIN = 14;
 
-/** The point that is nearest to a place on the stage, where one is near. */
+/** The point nearest to a position on the stage, if one is close enough. */
 function nearestPoint(
   bodies: readonly { readonly placing: Placing }[],
   camera: PerspectiveCamera,

@@ -1,8 +1,9 @@
 /**
- * What every view in space is made of: renderer, camera and light, bodies among blocks on a floor.
+ * The base of every 3-D view: renderer, camera and light, bodies among blocks on a floor.
  *
- * A picture is drawn once an animation frame at most, and only after something has changed, so that
- * a page at rest costs nothing. This module brings three.js with it: import it lazily.
+ * A picture is drawn at most once per animation frame, and only after something has changed, so
+ * that
+ * a page at rest costs nothing. This module imports three.js: import it lazily.
  */
 import {
   AmbientLight,
@@ -27,7 +28,7 @@ export abstract class Space3d {
   #floor: Group | null = null;
   #asked = 0;
 
-  /** Throws where the browser has no WebGL. */
+  /** Throws if the browser has no WebGL. */
   constructor(
     protected readonly camera: PerspectiveCamera,
     canvas: WebGLRendererParameters,
@@ -39,7 +40,7 @@ export abstract class Space3d {
     this.scene.add(new AmbientLight("#ffffff", 1.5), sun);
   }
 
-  /** Show what the blocks mean now; those that are not named are plain. */
+  /** Show the blocks in their current tones; those that are not listed are plain. */
   light(tones: BlockTones): void {
     this.blocks?.light(tones);
     this.ask();
@@ -52,7 +53,7 @@ export abstract class Space3d {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.resized(before);
-    // At once: a canvas is empty after its size has changed.
+    // Immediately: a canvas is empty after its size has changed.
     this.#draw();
   }
 
@@ -65,7 +66,7 @@ export abstract class Space3d {
     this.renderer.forceContextLoss();
   }
 
-  /** Called after the camera got another aspect; `before` is the one it had. */
+  /** Called after the camera's aspect ratio has changed; `before` is the previous one. */
   protected abstract resized(before: number): void;
 
   /** Called after every picture. */

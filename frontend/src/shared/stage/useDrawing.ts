@@ -1,4 +1,4 @@
-/** A drawing in space on a canvas of its own, as large as the element that it stands in. */
+/** A 3-D drawing on a canvas of its own, as large as its parent element. */
 import { type RefObject, useEffect, useState } from "react";
 
 interface Drawing {
@@ -6,12 +6,12 @@ interface Drawing {
   dispose(): void;
 }
 
-/** `flat` where the browser has no WebGL, or gives none. */
+/** `flat` if the browser has no WebGL or refuses a context. */
 export type Way = "loading" | "space" | "flat";
 
 /**
- * Draw on an element while it is on the page. `load` brings three.js and what draws with it, and is
- * the same function at every call.
+ * Draw on an element while it is on the page. `load` imports three.js and the drawing code, and
+ * must be the same function at every call.
  */
 export function useDrawing<T extends Drawing>(
   root: RefObject<HTMLElement | null>,
@@ -42,7 +42,7 @@ export function useDrawing<T extends Drawing>(
   return { way, drawing };
 }
 
-/** Begin to draw; null where the browser has no WebGL, or gives none. */
+/** Start to draw; null if the browser has no WebGL or refuses a context. */
 function mount<T extends Drawing>(element: HTMLElement, make: (canvas: HTMLCanvasElement) => T) {
   if (!hasWebGl()) return null;
   const canvas = document.createElement("canvas");
@@ -65,7 +65,7 @@ function mount<T extends Drawing>(element: HTMLElement, make: (canvas: HTMLCanva
   }
 }
 
-/** Asked beforehand, because the library complains aloud where there is none. */
+/** Checked beforehand, because the library logs errors if there is no WebGL. */
 function hasWebGl(): boolean {
   try {
     const context = document.createElement("canvas").getContext("webgl2");

@@ -1,4 +1,4 @@
-/** A movement that is played: time runs with the clock of the screen, never by itself. */
+/** The playback of a movement: time advances with the screen's animation frames. */
 import { useEffect, useRef, useState } from "react";
 import { type Seconds, seconds } from "../units";
 
@@ -45,7 +45,7 @@ export function usePlayback(
     return () => cancelAnimationFrame(asked);
   }, [playing, speed, loop, duration]);
   return {
-    // What is shown now may be shorter than what was before.
+    // The current movement may be shorter than the previous one.
     time: seconds(Math.min(time, duration)),
     playing,
     speed,
@@ -60,7 +60,7 @@ export function usePlayback(
   };
 }
 
-/** A time later, and whether the end was reached; with `loop` it begins again. */
+/** A later time, and whether the end was reached; with `loop` it starts over. */
 export function advanced(
   time: Seconds,
   passed: number,

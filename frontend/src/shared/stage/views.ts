@@ -1,22 +1,22 @@
-/** From where a stage is looked at, and how far away that must be. */
+/** Where the camera of a stage is placed, and how far away it must be. */
 import { type PerspectiveCamera, Vector3 } from "three";
 import { type Figure, facingOf, type LookFrom } from "./figure";
 import type { FloorPlan } from "./floor";
 
-/** The direction from the middle to the camera, of length 1; `facing` is where the body faces. */
+/** The unit vector from the middle to the camera; `facing` is the direction the body faces. */
 export function directionOf(from: LookFrom, [x, z]: readonly [x: number, z: number]): Vector3 {
   const front = new Vector3(x, 0, z);
-  // Its right hand: facing x up.
+  // Its right-hand side: facing x up.
   const right = new Vector3(-z, 0, x);
   const up = new Vector3(0, 1, 0);
   if (from === "front") return front.addScaledVector(up, 0.1).normalize();
   if (from === "side") return right.addScaledVector(up, 0.1).normalize();
-  // Not quite straight down: there, orbiting would not know which way is up.
+  // Not quite straight down: orbiting needs an up direction there.
   if (from === "top") return up.addScaledVector(right, 0.001).normalize();
   return right.addScaledVector(front, 0.6).addScaledVector(up, 0.36).normalize();
 }
 
-/** Along the lines of the floor where it is nearly so anyway: the picture is calmer. */
+/** Snap a direction to the lines of the floor if it is almost parallel: the picture is calmer. */
 export function alongFloor(
   facing: readonly [x: number, z: number] | null,
 ): readonly [x: number, z: number] | null {
@@ -50,7 +50,7 @@ export function fitting(
   return { middle, distance: distance * 1.06 };
 }
 
-/** Of what moves, with room around it for whoever stands in its corner. */
+/** The corners of the movement's box, with a margin for a body that stands in one of them. */
 function cornersOf({ box, step }: FloorPlan): Vector3[] {
   const room = 0.2 * step;
   const sides = ([0, 2] as const).map((axis) => [box.min[axis] - room, box.max[axis] + room]);
@@ -62,10 +62,13 @@ function cornersOf({ box, step }: FloorPlan): Vector3[] {
   );
 }
 
-/** How far ahead eyes look at least, of how far they look down. */
+/** The least distance ahead at which eyes look, relative to the distance down. */
 const LEAST_AHEAD = 0.55;
 
-/** Look out of the eyes of a figure at a place, or ahead where there is none; nothing happens where the body is not known. */
+/**
+ * Look from a figure's eyes at a place, or ahead if it is null; do nothing if the body's parts are
+ * unknown.
+ */
 export function lookOut(
   camera: PerspectiveCamera,
   figure: Figure,
@@ -78,9 +81,9 @@ export function lookOut(
   const [x = 0, y = 0, z = 0] = placed.subarray(3 * head, 3 * head + 3);
   const [fx, fz] = facing;
   camera.position.set(x + 0.12 * fx, y + 0.08, z + 0.12 * fz);
-  // A little downwards, as one looks when walking.
+  // A little downwards, as people look when walking.
   const [px, py, pz] = place ?? [x + fx, y - 0.4, z + fz];
-  // Never straight down: what is ahead stays at the top of the picture, and the own feet in it.
+  // Never straight down: what is ahead stays at the top of the picture, with the own feet in view.
   const ahead = (px - x) * fx + (pz - z) * fz;
   const more = Math.max(0, LEAST_AHEAD * (y - py) - ahead);
   camera.lookAt(px + more * fx, py, pz + more * fz);

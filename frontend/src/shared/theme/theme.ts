@@ -60,7 +60,7 @@ const clay: MantineColorsTuple = [
 
 export const theme = createTheme({
   primaryColor: "petrol",
-  // Both shades carry white text at 4.5 : 1 or more.
+  // White text has a contrast of at least 4.5 : 1 on both shades.
   primaryShade: { light: 7, dark: 6 },
   colors: { petrol, gray: slate, dark: night, red: clay, clay },
   white: "#ffffff",
@@ -95,7 +95,7 @@ export const theme = createTheme({
     }),
     Drawer: Drawer.extend({
       defaultProps: { overlayProps: { backgroundOpacity: 0.4 } },
-      // The title sticks to the very top, or what is scrolled would show above it.
+      // The title sticks to the very top, or scrolled content would show above it.
       styles: { title: { fontWeight: 620, fontSize: "1.125rem" }, content: { paddingTop: 0 } },
     }),
     Button: Button.extend({ styles: { label: { fontWeight: 560 } } }),

@@ -1,4 +1,4 @@
-/** The product's own line icons, drawn on a 24 px grid; always decoration beside words, never alone. */
+/** The product's own line icons, drawn on a 24 px grid; always shown with words, never alone. */
 import type { JSX } from "react";
 
 const PATHS = {

@@ -1,4 +1,4 @@
-/** The product's mark: a body, and the echo of it that follows. */
+/** The product's mark: a body, and the echo that follows it. */
 import type { JSX } from "react";
 
 export function Mark({ size = 28 }: { readonly size?: number }): JSX.Element {

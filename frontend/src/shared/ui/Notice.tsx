@@ -1,4 +1,4 @@
-/** A short message on the page: what is the matter, and what to do about it. */
+/** A short message on the page: what the problem is, and what to do about it. */
 import { Button } from "@mantine/core";
 import type { JSX, ReactNode } from "react";
 import { ApiError, Unreachable } from "../api/request";
@@ -53,7 +53,7 @@ interface ErrorNoticeProps {
   readonly onRetry?: (() => void) | undefined;
 }
 
-/** An error of the server as the reader needs it: the message, the value, what to do. */
+/** An error of the server as the reader needs it: the message, the value, the remedy. */
 export function ErrorNotice({ error, texts, onRetry }: ErrorNoticeProps): JSX.Element {
   const { message, remedy } = describe(error, texts);
   const retry =
@@ -65,7 +65,7 @@ export function ErrorNotice({ error, texts, onRetry }: ErrorNoticeProps): JSX.El
   return <Notice tone="bad" title={message} remedy={remedy} actions={retry} />;
 }
 
-/** Message and remedy of any failure; details are joined to the message where there are any. */
+/** Message and remedy of any failure; details, if any, are appended to the message. */
 export function describe(
   error: unknown,
   texts: ErrorTexts,
@@ -80,5 +80,5 @@ export function describe(
   return { message: texts.unexpected, remedy: error instanceof Error ? error.message : "" };
 }
 
-/** The server's messages begin in lower case, because logs put words before them. */
+/** Capitalise a message: the server's start in lower case, because logs put words before them. */
 const sentence = (message: string): string => message.charAt(0).toUpperCase() + message.slice(1);

@@ -1,4 +1,4 @@
-/** What every page starts with: theme, data cache, notices. */
+/** What every page starts with: theme, data cache, notifications. */
 import { MantineProvider } from "@mantine/core";
 import { Notifications } from "@mantine/notifications";
 import { QueryClient, QueryClientProvider } from "@tanstack/react-query";
@@ -16,7 +16,7 @@ const queries = new QueryClient({
   defaultOptions: {
     queries: {
       staleTime: 10_000,
-      // An answer of the server stays the same when asked again; only a lost line is worth a retry.
+      // The server's answer would be the same after a retry; only a lost connection is worth one.
       retry: (count, error) => !(error instanceof ApiError) && count < 2,
     },
   },
