@@ -1,8 +1,9 @@
-"""`python -m tests.architecture [walks] [--json] [COMMIT]`: the structure of the house.
+"""`python -m tests.architecture [walks | repeats] [--json] [COMMIT]`: the structure of the house.
 
 Without a word it measures how the files import each other (`tests.architecture.measure`); `walks`
-follows four pieces of data through the running code (`tests.architecture.walks`). Both look at the
-working tree, or at a commit.
+follows four pieces of data through the running code (`tests.architecture.walks`), and `repeats`
+lists the code that stands twice (`tests.architecture.repetition`). All look at the working tree, or
+at a commit.
 """
 
 # ruff: noqa: T201  # what it prints is what it is for
@@ -11,8 +12,10 @@ import argparse
 import json
 import subprocess
 import sys
+from dataclasses import asdict
 
 from tests.architecture.measure import measure, table
+from tests.architecture.repetition import repeats
 from tests.architecture.trees import tree_of
 from tests.architecture.walks import walks, written
 
@@ -24,14 +27,28 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.architecture", description=__doc__)
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("commit", nargs="?", help="a commit instead of the working tree")
-    walking = arguments[:1] == ["walks"]
-    given = parser.parse_args(arguments[1:] if walking else arguments)
+    walking, repeating = arguments[:1] == ["walks"], arguments[:1] == ["repeats"]
+    given = parser.parse_args(arguments[1:] if walking or repeating else arguments)
     try:
         with tree_of(given.commit) as root:
             if walking:
                 walked = walks(root)
                 figures = {name: walk.as_json() for name, walk in walked.items()}
                 print(json.dumps(figures, indent=1) if given.json else written(walked))
+            elif repeating:
+                repeated = repeats(root)
+                figures = {"repeats": len(repeated), "lines": sum(one.lines for one in repeated)}
+                listed = [asdict(one) for one in repeated]
+                print(
+                    json.dumps({**figures, "list": listed}, indent=1)
+                    if given.json
+                    else "\n".join(
+                        [
+                            *(f"{one.lines:4} {one.first} ~ {one.again}" for one in repeated),
+                            "{repeats} repeats, {lines} lines".format(**figures),
+                        ]
+                    )
+                )
             else:
                 result = measure(root)
                 print(json.dumps(result.as_json(), indent=1) if given.json else table(result))

@@ -23,19 +23,15 @@ import plotly.graph_objects as go
 from scipy import stats
 from sqlalchemy import update
 
-from app.clock import Clock
-from app.database import Database, open_database
-from app.features.care.opening import bring_up_to_date
-from app.features.design.studies import add_shipped
+from app.database import Database
 from app.features.results.analysis.dashboard import dashboard_of
 from app.features.results.analysis.figures import completions_drawing, embodiment_drawings
 from app.features.results.analysis.material import Material, read_material
 from app.features.results.analysis.tables import phases_table, scores_table
 from app.features.results.exports.writing.cells import csv_pieces
 from app.models import Participant, StudySession
-from app.settings import Settings
 from tests.benchmarks.report import Figure, Report
-from tests.benchmarks.thousand import fill_thousand
+from tests.benchmarks.thousand import fill_thousand, shipped_database
 from tests.features.builders import STUDY
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
@@ -63,12 +59,7 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
 
 def _filled(data_dir: Path, sessions: int) -> Database:
     """A database with so many completed simulated sessions."""
-    data_dir.mkdir(parents=True, exist_ok=True)
-    settings = Settings(data_dir=data_dir)
-    bring_up_to_date(settings, Clock())
-    database = open_database(settings.resolved_database_url)
-    with database.writing() as db:
-        add_shipped(db, Clock().utc_now())
+    database = shipped_database(data_dir)
     fill_thousand(database, sessions)
     with database.writing() as db:
         for table in (StudySession, Participant):

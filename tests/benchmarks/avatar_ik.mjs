@@ -4,37 +4,12 @@
  * Bundles `shared/avatar` in memory, follows the frames of the vectors there and back again so many
  * times, and prints the times of single frames in microseconds as JSON: {name: [times]}.
  */
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { pathToFileURL } from "node:url";
+import { goalsOf, withBundles } from "./avatar_bundles.mjs";
 
 const [, , frontend, vectors, rounds] = process.argv;
-const require = createRequire(join(frontend, "package.json"));
-const { rolldown } = await import(pathToFileURL(require.resolve("rolldown")).href);
-const folder = mkdtempSync(join(frontend, "node_modules", ".avatar-ik-"));
-
-async function bundled(name) {
-  const bundle = await rolldown({
-    input: join(frontend, "src/shared/avatar", `${name}.ts`),
-    external: /^@mujoco\//,
-  });
-  const { output } = await bundle.generate({ format: "esm" });
-  const file = join(folder, `${name}.mjs`);
-  writeFileSync(file, output[0].code);
-  return import(pathToFileURL(file).href);
-}
-
-function goalsOf(frame, parts, waist) {
-  const places = parts.map((part, row) => {
-    const seen = frame.tracked[row] && (row > 0 || waist);
-    const place = { positionM: frame.positions_m[row], rotation: frame.rotations[row] };
-    return [part, seen ? place : null];
-  });
-  return Object.fromEntries(places);
-}
-
-try {
+await withBundles(frontend, async (bundled) => {
   const { InverseKinematics } = await bundled("ik");
   const { loadMujoco, modelFrom } = await bundled("mujoco");
   const mujoco = await loadMujoco();
@@ -56,6 +31,4 @@ try {
     solver.delete();
   }
   console.log(JSON.stringify(times));
-} finally {
-  rmSync(folder, { recursive: true });
-}
+});

@@ -4,37 +4,12 @@
  * Bundles `shared/avatar` in memory, goes through the vectors' commands and goals, and prints as
  * JSON: `qpos` and `ncon` after every sample, and of each case `angles_rad`, `hips_m`, `hips`.
  */
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createRequire } from "node:module";
+import { readFileSync } from "node:fs";
 import { join } from "node:path";
-import { pathToFileURL } from "node:url";
+import { goalsOf, withBundles } from "./avatar_bundles.mjs";
 
 const [, , frontend, vectors] = process.argv;
-const require = createRequire(join(frontend, "package.json"));
-const { rolldown } = await import(pathToFileURL(require.resolve("rolldown")).href);
-const folder = mkdtempSync(join(frontend, "node_modules", ".avatar-wasm-"));
-
-async function bundled(name) {
-  const bundle = await rolldown({
-    input: join(frontend, "src/shared/avatar", `${name}.ts`),
-    external: /^@mujoco\//,
-  });
-  const { output } = await bundle.generate({ format: "esm" });
-  const file = join(folder, `${name}.mjs`);
-  writeFileSync(file, output[0].code);
-  return import(pathToFileURL(file).href);
-}
-
 const read = (name) => JSON.parse(readFileSync(join(vectors, `${name}.json`), "utf8"));
-
-function goalsOf(frame, parts, waist) {
-  const places = parts.map((part, row) => {
-    const seen = frame.tracked[row] && (row > 0 || waist);
-    const place = { positionM: frame.positions_m[row], rotation: frame.rotations[row] };
-    return [part, seen ? place : null];
-  });
-  return Object.fromEntries(places);
-}
 
 function simulated(mujoco, model, { key_s, sample_s, targets_rad, hips_m }) {
   const data = new mujoco.MjData(model);
@@ -63,7 +38,7 @@ function simulated(mujoco, model, { key_s, sample_s, targets_rad, hips_m }) {
   return samples;
 }
 
-try {
+await withBundles(frontend, async (bundled) => {
   const { InverseKinematics } = await bundled("ik");
   const { loadMujoco, modelFrom } = await bundled("mujoco");
   const mujoco = await loadMujoco();
@@ -82,6 +57,4 @@ try {
     return rows;
   });
   console.log(JSON.stringify({ samples, cases: solved }));
-} finally {
-  rmSync(folder, { recursive: true });
-}
+});

@@ -12,14 +12,9 @@ from pathlib import Path
 import httpx2
 import numpy as np
 
-from app.clock import Clock
-from app.database import open_database
-from app.features.care.opening import bring_up_to_date
-from app.features.design.studies import add_shipped
 from app.platform.policy import POLICY
-from app.settings import Settings
 from tests.benchmarks.report import Figure, Report
-from tests.benchmarks.thousand import fill_thousand
+from tests.benchmarks.thousand import fill_thousand, shipped_database
 from tests.features.builders import STUDY
 from tests.support.server import ADMIN_PASSWORD, LiveServer
 
@@ -49,12 +44,7 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
 
 
 def _fill(server: LiveServer) -> list[str]:
-    settings = Settings(data_dir=server.data_dir)
-    server.data_dir.mkdir(parents=True)
-    bring_up_to_date(settings, Clock())
-    database = open_database(settings.resolved_database_url)
-    with database.writing() as db:
-        add_shipped(db, Clock().utc_now())
+    database = shipped_database(server.data_dir)
     session_ids = fill_thousand(database, PARTICIPANTS)
     database.close()
     return session_ids

@@ -17,15 +17,12 @@ import numpy as np
 import psutil
 from sqlalchemy import Table, insert, literal, select, update
 
-from app.clock import Clock
-from app.database import Base, Database, open_database
-from app.features.care.opening import bring_up_to_date
-from app.features.design.studies import add_shipped
+from app.database import Base, Database
 from app.models import TelemetryStream
-from app.settings import Settings
 from app.wire import StreamName
 from tests.benchmarks.headsets import FRAMES_PER_BATCH, movement
 from tests.benchmarks.report import Figure, Report
+from tests.benchmarks.thousand import shipped_database
 from tests.features.builders import STUDY, SessionSpec, build_session
 from tests.features.movement_builders import store_chunks
 from tests.support.server import ADMIN_PASSWORD, LiveServer
@@ -71,12 +68,8 @@ def measure(parts: frozenset[str], duration_s: float | None = None) -> Report:
 
 
 def _fill(server: LiveServer) -> None:
-    settings = Settings(data_dir=server.data_dir)
-    server.data_dir.mkdir(parents=True)
-    bring_up_to_date(settings, Clock())
-    database = open_database(settings.resolved_database_url)
+    database = shipped_database(server.data_dir)
     with database.writing() as db:
-        add_shipped(db, Clock().utc_now())
         first = build_session(db, SessionSpec("SIM-01", kind="simulated"))
         pieces = [movement(seed)[:-FRAMES_PER_BATCH] for seed in range(-(-FRAMES // 900))]
         values = np.concatenate(pieces)[:FRAMES]

@@ -61,24 +61,31 @@ async def stream(url: str, token: str, duration_s: float, seed: int) -> list[tup
         start_s = time.monotonic()
         for batch in range(int(duration_s * RATE_HZ / FRAMES_PER_BATCH)):
             seq = batch * FRAMES_PER_BATCH
-            times_s = (seq + np.arange(FRAMES_PER_BATCH)) / RATE_HZ
             for name in StreamName:
-                message = encode_batch(
-                    name,
-                    epoch=client.epoch,
-                    phase_id=0,
-                    seq_first=seq,
-                    times_s=times_s,
-                    flags=np.zeros(FRAMES_PER_BATCH, np.uint8),
-                    values=values[seq % 900 : seq % 900 + FRAMES_PER_BATCH],
-                    active_s=0.0,
-                    closed_at_s=float(times_s[-1]),
-                )
+                message = batch_of(name, client.epoch, seq, values)
                 await client.send_batch(name, seq + FRAMES_PER_BATCH, message)
             due_s = start_s + (seq + FRAMES_PER_BATCH) / RATE_HZ
             await asyncio.sleep(max(0.0, due_s - time.monotonic()))
         await client.drained()
     return [(added_s - start_s, latency_s) for added_s, latency_s in journal.latencies_s]
+
+
+def batch_of(
+    name: StreamName, epoch: int, seq: int, values: "np.typing.NDArray[np.float32]"
+) -> bytes:
+    """A batch of `values` (900 and more, 91) beginning at `seq`."""
+    times_s = (seq + np.arange(FRAMES_PER_BATCH)) / RATE_HZ
+    return encode_batch(
+        name,
+        epoch=epoch,
+        phase_id=0,
+        seq_first=seq,
+        times_s=times_s,
+        flags=np.zeros(FRAMES_PER_BATCH, np.uint8),
+        values=values[seq % 900 : seq % 900 + FRAMES_PER_BATCH],
+        active_s=0.0,
+        closed_at_s=float(times_s[-1]),
+    )
 
 
 def movement(seed: int) -> "np.typing.NDArray[np.float32]":

@@ -5,13 +5,16 @@ Every row that a finished session has stands a thousand times, movement excepted
 
 from collections.abc import Sequence
 from datetime import timedelta
+from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Column, ColumnElement, Connection, Table, func, insert, literal, select
 from sqlalchemy.orm import Session
 
-from app.database import Base, Database
-from app.features.design.studies import newest_version, protocol_of, study_by_key
+from app.clock import Clock
+from app.database import Base, Database, open_database
+from app.features.care.opening import bring_up_to_date
+from app.features.design.studies import add_shipped, newest_version, protocol_of, study_by_key
 from app.features.record.ledger import hold_slot, take_slot
 from app.models import (
     Answer,
@@ -30,6 +33,7 @@ from app.models import (
     StudySession,
     Submission,
 )
+from app.settings import Settings
 from tests.features.builders import NOW, STUDY, SessionSpec, build_session
 from tests.features.session_filler import stable_id
 
@@ -44,6 +48,17 @@ OWN = (
     *(JointErrorRow, JointErrorCourseRow, SessionContent, SessionEvent, Submission),
 )
 OF_A_SUBMISSION = (Answer, ScoreValue)
+
+
+def shipped_database(data_dir: Path) -> Database:
+    """Open a new SQLite database in `data_dir`, with the shipped studies in it."""
+    settings = Settings(data_dir=data_dir)
+    data_dir.mkdir(parents=True, exist_ok=True)
+    bring_up_to_date(settings, Clock())
+    database = open_database(settings.resolved_database_url)
+    with database.writing() as db:
+        add_shipped(db, Clock().utc_now())
+    return database
 
 
 def fill_thousand(database: Database, participants: int = 1000) -> list[str]:

@@ -1,7 +1,6 @@
 """Somebody at a tablet who answers at once, over the interface that the tablet's page uses."""
 
 import threading
-from types import TracebackType
 from typing import Any, Self
 
 import httpx2
@@ -27,12 +26,7 @@ class ScriptedTablet:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        _type: type[BaseException] | None,
-        _error: BaseException | None,
-        _traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self._over.set()
         self._thread.join(timeout=20.0)
 

@@ -3,7 +3,6 @@
 import asyncio
 import json
 import threading
-from types import TracebackType
 from typing import Self
 
 import httpx2
@@ -27,12 +26,7 @@ class Wearer:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        _type: type[BaseException] | None,
-        _error: BaseException | None,
-        _traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self._thread.join(timeout=20.0)
 
     def _live(self) -> None:

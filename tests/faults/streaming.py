@@ -8,13 +8,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import httpx2
-import numpy as np
 
 from app.client.telemetry import TelemetryClient
 from app.rehearsal.rehearse import AVATARS
-from app.wire import StreamName, encode_batch
+from app.wire import StreamName
 from app.wire.messages import MaterialisedReport
-from tests.benchmarks.headsets import FRAMES_PER_BATCH, RATE_HZ, movement
+from tests.benchmarks.headsets import FRAMES_PER_BATCH, RATE_HZ, batch_of, movement
 from tests.rehearsal.ledger import LedgerJournal
 from tests.rehearsal.performed import STUDY
 from tests.support.server import ADMIN_PASSWORD, LiveServer
@@ -112,21 +111,3 @@ async def _stream_one(
             else:
                 await client.at_most_waiting(MOST_WAITING)
         await client.drained()
-
-
-def batch_of(
-    name: StreamName, epoch: int, seq: int, values: "np.typing.NDArray[np.float32]"
-) -> bytes:
-    """A batch of `values` (900 and more, 91) beginning at `seq`."""
-    times_s = (seq + np.arange(FRAMES_PER_BATCH)) / RATE_HZ
-    return encode_batch(
-        name,
-        epoch=epoch,
-        phase_id=0,
-        seq_first=seq,
-        times_s=times_s,
-        flags=np.zeros(FRAMES_PER_BATCH, np.uint8),
-        values=values[seq % 900 : seq % 900 + FRAMES_PER_BATCH],
-        active_s=0.0,
-        closed_at_s=float(times_s[-1]),
-    )

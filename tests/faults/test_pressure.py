@@ -15,9 +15,9 @@ import pytest
 from app.client.journal import Entry
 from app.client.telemetry import TelemetryClient
 from app.wire import StreamName
-from tests.benchmarks.headsets import movement
+from tests.benchmarks.headsets import batch_of, movement
 from tests.faults.figures import note
-from tests.faults.streaming import StreamingHeadset, batch_of, pair_headsets, signed_in, stream
+from tests.faults.streaming import StreamingHeadset, pair_headsets, signed_in, stream
 from tests.features.record.headset.site import open_site
 from tests.rehearsal.ledger import LedgerJournal, reconcile
 from tests.support.server import LiveServer

@@ -1,11 +1,27 @@
 """Batches of plausible and of broken frames."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from app.wire import VALUES_PER_FRAME, StreamName, encode_batch
 
 RATE_HZ = 90.0
+CONTACT_REPORT: dict[str, Any] = {
+    "kind": "contact",
+    "surface": "hand/2/left",
+    "surface_kind": "side",
+    "box": 2,
+    "side": "left",
+    "body_part": "RightHand",
+    "begin_s": 1.0,
+    "end_s": 2.0,
+    "begin_active_s": 0.5,
+    "end_active_s": 1.5,
+    "effect": "side",
+}
+"""The body of a report of a contact, but for the phase it belongs to."""
 
 
 def standing(count: int) -> NDArray[np.float32]:

@@ -9,21 +9,9 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from app.wire.messages import CLIENT_MESSAGE, SERVER_MESSAGE, Ack, Report, StreamPosition
+from tests.wire.samples import CONTACT_REPORT
 
-CONTACT: dict[str, Any] = {
-    "kind": "contact",
-    "phase_id": 1,
-    "surface": "hand/2/left",
-    "surface_kind": "side",
-    "box": 2,
-    "side": "left",
-    "body_part": "RightHand",
-    "begin_s": 1.0,
-    "end_s": 2.0,
-    "begin_active_s": 0.5,
-    "end_active_s": 1.5,
-    "effect": "side",
-}
+CONTACT: dict[str, Any] = {**CONTACT_REPORT, "phase_id": 1}
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5),
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=8), inner),

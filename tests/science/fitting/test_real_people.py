@@ -106,15 +106,21 @@ def test_stride_of_the_cmu_walk_is_a_persons(shared_data: Path) -> None:
     assert 1.0 < travel / motion.duration_s < 1.5
 
 
-def test_the_cmu_fit_agrees_with_the_cmus_own_skeleton(shared_data: Path) -> None:
-    """Joints from the C3D lie within 4 cm rms of those the CMU solved from them (AMC)."""
+def _solved_by_the_cmu(shared_data: Path) -> RigMotion:
+    """The movement of the same trial as the CMU solved it, from its ASF and AMC files."""
     folder = shared_data / "motion" / "cmu_asfamc"
-    theirs = read_capture(
+    motion = read_capture(
         (folder / "02_01.amc").read_bytes(),
         name="02_01.amc",
         reading=Reading(companions={"02.asf": (folder / "02.asf").read_bytes()}),
     ).motion
-    assert isinstance(theirs, RigMotion)
+    assert isinstance(motion, RigMotion)
+    return motion
+
+
+def test_the_cmu_fit_agrees_with_the_cmus_own_skeleton(shared_data: Path) -> None:
+    """Joints from the C3D lie within 4 cm rms of those the CMU solved from them (AMC)."""
+    theirs = _solved_by_the_cmu(shared_data)
     ours = _fitted(shared_data, "cmu_c3d/02_01.c3d").motion
     pairs = {"LowerLeg": "tibia", "Foot": "foot", "UpperLeg": "femur"}
     pairs |= {"UpperArm": "humerus", "LowerArm": "radius"}
@@ -129,13 +135,7 @@ def test_the_cmu_fit_agrees_with_the_cmus_own_skeleton(shared_data: Path) -> Non
 
 def test_the_cmu_fit_faces_where_the_cmus_own_skeleton_faces(shared_data: Path) -> None:
     """Hips, chest and head turn about the vertical as in the AMC, to 0.2 degrees in the mean."""
-    folder = shared_data / "motion" / "cmu_asfamc"
-    theirs = read_capture(
-        (folder / "02_01.amc").read_bytes(),
-        name="02_01.amc",
-        reading=Reading(companions={"02.asf": (folder / "02.asf").read_bytes()}),
-    ).motion
-    assert isinstance(theirs, RigMotion)
+    theirs = _solved_by_the_cmu(shared_data)
     ours = _fitted(shared_data, "cmu_c3d/02_01.c3d").motion
     for joint, bone in (("Hips", "root"), ("UpperChest", "thorax"), ("Head", "head")):
         # Ours faces -z at rest and theirs +z; our -z, x are their x, z.

@@ -1,24 +1,14 @@
-"""One process reads the models of all applications here: to start one takes seconds."""
+"""One process reads the models of all applications in this package."""
 
 from collections.abc import Iterator
 
 import pytest
 
 from app.features.movement.captures import workbench
-from app.platform.workers import Worker
-
-
-class SharedWorker(Worker):
-    """Outlives the applications that use it."""
-
-    def end(self) -> None:
-        """The next application goes on with it."""
+from tests.features.movement.shared_worker import shared_worker
 
 
 @pytest.fixture(scope="package", autouse=True)
 def _one_process() -> Iterator[None]:
-    worker = SharedWorker(workbench.limit_memory)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(workbench, "Worker", lambda _prepare: worker)
+    with shared_worker(workbench.limit_memory, (workbench, "Worker")):
         yield
-    Worker.end(worker)

@@ -1,4 +1,4 @@
-"""One process computes for all applications here: to start one takes seconds."""
+"""One process fits models for all applications in this package."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -7,25 +7,14 @@ import pytest
 
 from app.features.movement.walking import bench, desk
 from app.features.movement.walking.desk import FittingDesk
-from app.platform.workers import Worker
 from tests.features.lab import Lab
-
-
-class SharedWorker(Worker):
-    """Outlives the applications that use it."""
-
-    def end(self) -> None:
-        """The next application goes on with it."""
+from tests.features.movement.shared_worker import shared_worker
 
 
 @pytest.fixture(scope="package", autouse=True)
 def _one_process() -> Iterator[None]:
-    worker = SharedWorker(bench.load)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(bench, "Worker", lambda _prepare: worker)
-        patch.setattr(desk, "new_worker", lambda: worker)
+    with shared_worker(bench.load, (bench, "Worker"), (desk, "new_worker")):
         yield
-    Worker.end(worker)
 
 
 @pytest.fixture(scope="module")

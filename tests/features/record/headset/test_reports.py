@@ -8,21 +8,8 @@ from sqlalchemy import select
 from app.models import ClientReport, Completion, Contact, JointErrorRow, Phase, StudySession
 from tests.features.lab import Json
 from tests.features.record.headset.site import Headset, Site
-from tests.wire.samples import message, standing
+from tests.wire.samples import CONTACT_REPORT, message, standing
 
-CONTACT: Json = {
-    "kind": "contact",
-    "surface": "hand/2/left",
-    "surface_kind": "side",
-    "box": 2,
-    "side": "left",
-    "body_part": "RightHand",
-    "begin_s": 1.0,
-    "end_s": 2.0,
-    "begin_active_s": 0.5,
-    "end_active_s": 1.5,
-    "effect": "side",
-}
 COMPLETION: Json = {
     "kind": "completion",
     "number": 1,
@@ -69,7 +56,7 @@ def test_contacts_and_completions_of_a_phase_are_counted(site: Site) -> None:
     session_id, token = running(site)
     with site.headset(token) as headset:
         phase_id = begin(site, session_id, headset)
-        headset.reported(**CONTACT, phase_id=phase_id)
+        headset.reported(**CONTACT_REPORT, phase_id=phase_id)
         headset.reported(**COMPLETION, phase_id=phase_id)
     (phase,) = site.view(session_id)["phases"]
     assert (phase["side_contacts"], phase["side_contact_s"]) == (1, 1.0)
@@ -77,7 +64,7 @@ def test_contacts_and_completions_of_a_phase_are_counted(site: Site) -> None:
 
 
 @pytest.mark.one_engine
-@pytest.mark.parametrize("body", [CONTACT, COMPLETION])
+@pytest.mark.parametrize("body", [CONTACT_REPORT, COMPLETION])
 def test_nothing_is_counted_for_a_phase_that_is_not_there(site: Site, body: Json) -> None:
     """A contact or completion of an unknown phase is refused and kept as a report."""
     session_id = site.join()
@@ -106,9 +93,9 @@ def test_the_same_report_sent_again_is_acknowledged_and_nothing_else(site: Site)
     session_id, token = running(site)
     with site.headset(token) as headset:
         phase_id = begin(site, session_id, headset)
-        headset.reported(**CONTACT, phase_id=phase_id)
+        headset.reported(**CONTACT_REPORT, phase_id=phase_id)
         headset.next_report -= 1
-        headset.reported(**CONTACT, phase_id=phase_id)
+        headset.reported(**CONTACT_REPORT, phase_id=phase_id)
     assert site.view(session_id)["phases"][0]["side_contacts"] == 1
 
 

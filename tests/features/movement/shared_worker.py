@@ -1,0 +1,26 @@
+"""One worker process for all applications of a package's tests: starting one takes seconds."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from app.platform.workers import Worker
+
+
+class SharedWorker(Worker):
+    """A worker that outlives the applications that use it."""
+
+    def end(self) -> None:
+        """Keep the process for the next application."""
+
+
+@contextmanager
+def shared_worker(prepare: Callable[[], None], *makers: tuple[object, str]) -> Iterator[None]:
+    """Let each maker (its module and name) return the same worker, and end it afterwards."""
+    worker = SharedWorker(prepare)
+    with pytest.MonkeyPatch.context() as patch:
+        for module, name in makers:
+            patch.setattr(module, name, lambda *_arguments: worker)
+        yield
+    Worker.end(worker)
