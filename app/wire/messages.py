@@ -47,20 +47,24 @@ class Hello(Message):
     )
 
 
+PhaseEvent = Literal[
+    "started",
+    "paused",
+    "resumed",
+    "walk_back_started",
+    "walk_back_ended",
+    "time_up",
+    "ended",
+]
+"""What a headset can report about the clock of a phase."""
+
+
 class PhaseReport(Message):
     """A change of a phase's clock by the headset, at the headset's monotonic time."""
 
     kind: Literal["phase"] = "phase"
     phase_id: Count
-    what: Literal[
-        "started",
-        "paused",
-        "resumed",
-        "walk_back_started",
-        "walk_back_ended",
-        "time_up",
-        "ended",
-    ]
+    what: PhaseEvent
     t_s: Seconds
     active_s: Seconds
     cause: Name = Field(default="headset", max_length=40)

@@ -37,15 +37,15 @@ def main(arguments: list[str]) -> int:
                 print(json.dumps(figures, indent=1) if given.json else written(walked))
             elif repeating:
                 repeated = repeats(root)
-                figures = {"repeats": len(repeated), "lines": sum(one.lines for one in repeated)}
+                counts = {"repeats": len(repeated), "lines": sum(one.lines for one in repeated)}
                 listed = [asdict(one) for one in repeated]
                 print(
-                    json.dumps({**figures, "list": listed}, indent=1)
+                    json.dumps({**counts, "list": listed}, indent=1)
                     if given.json
                     else "\n".join(
                         [
                             *(f"{one.lines:4} {one.first} ~ {one.again}" for one in repeated),
-                            "{repeats} repeats, {lines} lines".format(**figures),
+                            "{repeats} repeats, {lines} lines".format(**counts),
                         ]
                     )
                 )

@@ -18,6 +18,13 @@ MS_PER_S = 1000.0
 _BROKEN = frozenset({"frozen", "bad_values"})
 """Alarms that say that joints are not sound; the check's findings have their names."""
 
+UNPAIRED = Finding(
+    "unpaired",
+    "fail",
+    Words(en="Not paired", de="Nicht gekoppelt"),
+    remedy=Words(en="Pair it under Devices.", de="Unter Geräte koppeln."),
+)
+
 
 def _tablet(situation: Situation) -> Found:
     tablet = _paired(situation, "tablet")
@@ -42,12 +49,7 @@ TABLET = StateCheck(
     key="tablet",
     title=Words(en="Tablet", de="Tablet"),
     findings=(
-        Finding(
-            "unpaired",
-            "fail",
-            Words(en="Not paired", de="Nicht gekoppelt"),
-            remedy=Words(en="Pair it under Devices.", de="Unter Geräte koppeln."),
-        ),
+        UNPAIRED,
         Finding(
             "away",
             "fail",
@@ -79,12 +81,7 @@ HEADSET = StateCheck(
     key="headset",
     title=Words(en="Headset", de="Headset"),
     findings=(
-        Finding(
-            "unpaired",
-            "fail",
-            Words(en="Not paired", de="Nicht gekoppelt"),
-            remedy=Words(en="Pair it under Devices.", de="Unter Geräte koppeln."),
-        ),
+        UNPAIRED,
         Finding(
             "away",
             "fail",

@@ -16,20 +16,12 @@ from pydantic import BaseModel
 from app.features.record.cockpit import LimbName, PhaseStatus
 from app.features.record.questionnaires import StoredScores
 from app.protocol import StepKind
+from app.wire.messages import PhaseEvent
 
 View = Literal["full", "participant"]
 """`participant`: for readers who must not learn the latency. The participant's own movement alone,
 without the avatar and without what happened to it: their distance in time is the latency."""
-What = Literal[
-    "started",
-    "paused",
-    "resumed",
-    "walk_back_started",
-    "walk_back_ended",
-    "time_up",
-    "ended",
-    "voided",
-]
+What = Literal[PhaseEvent, "voided"]
 Vector = tuple[float, float, float]
 
 

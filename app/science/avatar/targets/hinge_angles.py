@@ -29,7 +29,7 @@ import numpy.typing as npt
 
 from app.science.compiled import compiled_fused
 from app.science.retargeting import IntArray
-from app.science.rotations import FloatArray, Quaternion, Vector
+from app.science.rotations import FloatArray, Quaternion, Vector, q_multiply
 
 BoolArray = npt.NDArray[np.bool_]
 _TURN = 2.0 * pi
@@ -40,16 +40,7 @@ _FARTHEST_RAD = 1.25 * pi
 _STRAIGHT = 0.05
 
 
-@compiled_fused
-def _product(a: Quaternion, b: Quaternion) -> Quaternion:
-    aw, ax, ay, az = a
-    bw, bx, by, bz = b
-    return (
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-    )
+_product = compiled_fused(q_multiply)
 
 
 @compiled_fused

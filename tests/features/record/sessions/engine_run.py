@@ -1,6 +1,7 @@
 """The engine driven by hand: a plan, the events so far, and the state they fold to."""
 
 from dataclasses import dataclass, field
+from typing import get_args
 
 from app.features.record.sessions.engine import (
     Command,
@@ -13,19 +14,12 @@ from app.features.record.sessions.engine import (
 )
 from app.features.record.sessions.engine import commands as c
 from app.protocol.plan import Step, compile_plan
+from app.wire.messages import PhaseEvent
 from tests.protocol.helpers import study
 
 PLAN: tuple[Step, ...] = compile_plan(study(), ("latency_125", "latency_0", "latency_350"))
 WORDS = ContentRef("content", "hash")
-REPORTS = (
-    "started",
-    "paused",
-    "resumed",
-    "walk_back_started",
-    "walk_back_ended",
-    "time_up",
-    "ended",
-)
+REPORTS: tuple[str, ...] = get_args(PhaseEvent)
 
 
 def index_of(key: str) -> int:

@@ -140,6 +140,14 @@ def drawn_rows(values: pd.DataFrame, unit: str, across: Across = LATENCY) -> pd.
     return frame.reindex(columns=[*names, "n", "unit"])
 
 
+def limb_panels(data: pd.DataFrame) -> tuple[list[str], list[float], go.Figure]:
+    """Return the limbs and latencies (ms) in `data`, and an empty figure with a panel per limb."""
+    limbs = [limb for limb in LIMBS if (data["limb"] == limb).any()]
+    latencies_ms = sorted(data["latency_ms"].unique().tolist())
+    titles = tuple(f"{limb.capitalize()} task" for limb in limbs)
+    return limbs, latencies_ms, new_figure(titles=titles, shared_yaxes=True)
+
+
 def cells(values: pd.DataFrame, across: str = LATENCY.column) -> dict[float, MeanInterval]:
     """Mean and interval at each latency, in order."""
     by_place = values.sort_values(across).groupby(across)["value"]

@@ -3,7 +3,7 @@
 import pandas as pd
 import plotly.graph_objects as go
 
-from app.features.results.analysis.figures.by_latency import LIMBS, cells
+from app.features.results.analysis.figures.by_latency import cells, limb_panels
 from app.features.results.analysis.figures.drawing import (
     FEWEST_PARTICIPANTS,
     Drawing,
@@ -13,7 +13,7 @@ from app.features.results.analysis.figures.drawing import (
     too_few,
 )
 from app.features.results.analysis.figures.joint_errors import INTERVAL, task_angles, what_of
-from app.features.results.analysis.figures.theme import COLOURS, latency_line, new_figure
+from app.features.results.analysis.figures.theme import COLOURS, latency_line
 
 KEY, TITLE = "joint_error_blocks", "Joint error over the blocks of a session"
 HOW = (
@@ -49,11 +49,7 @@ def _means(values: pd.DataFrame) -> pd.DataFrame:
 
 
 def _figure(data: pd.DataFrame) -> go.Figure:
-    limbs = [limb for limb in LIMBS if (data["limb"] == limb).any()]
-    latencies = sorted(data["latency_ms"].unique().tolist())
-    figure = new_figure(
-        titles=tuple(f"{limb.capitalize()} task" for limb in limbs), shared_yaxes=True
-    )
+    limbs, latencies, figure = limb_panels(data)
     for column, limb in enumerate(limbs, start=1):
         for place, latency in enumerate(latencies):
             own = data[(data["limb"] == limb) & (data["latency_ms"] == latency)]

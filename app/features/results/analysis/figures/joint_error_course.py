@@ -3,7 +3,7 @@
 import pandas as pd
 import plotly.graph_objects as go
 
-from app.features.results.analysis.figures.by_latency import LIMBS, cells
+from app.features.results.analysis.figures.by_latency import cells, limb_panels
 from app.features.results.analysis.figures.drawing import (
     FEWEST_PARTICIPANTS,
     Drawing,
@@ -16,7 +16,6 @@ from app.features.results.analysis.figures.joint_errors import HINGES
 from app.features.results.analysis.figures.theme import (
     COLOURS,
     latency_line,
-    new_figure,
     see_through,
 )
 from app.protocol import COUNTED_KINDS
@@ -69,11 +68,7 @@ def _means(values: pd.DataFrame) -> pd.DataFrame:
 
 
 def _figure(data: pd.DataFrame) -> go.Figure:
-    limbs = [limb for limb in LIMBS if (data["limb"] == limb).any()]
-    latencies = sorted(data["latency_ms"].unique().tolist())
-    figure = new_figure(
-        titles=tuple(f"{limb.capitalize()} task" for limb in limbs), shared_yaxes=True
-    )
+    limbs, latencies, figure = limb_panels(data)
     for column, limb in enumerate(limbs, start=1):
         owns = [
             data[(data["limb"] == limb) & (data["latency_ms"] == latency)] for latency in latencies
