@@ -71,8 +71,7 @@ class DelayBuffer:
     """Computes the delayed-copy avatar frame by frame, with a delay that can change at any moment.
 
     The buffer keeps enough samples for the longest delay that it allows. A change of the delay
-    takes
-    effect with the next frame; the avatar then jumps in time, as it does between the study's
+    takes effect with the next frame; the avatar then jumps in time, as it does between the study's
     conditions.
     """
 

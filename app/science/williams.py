@@ -11,8 +11,7 @@ def williams(n: int) -> tuple[Row, ...]:
 
     Every treatment is equally often at every position (once; twice for an odd n), and every ordered
     pair of different treatments is adjacent equally often. For n = 3 these are all six
-    permutations.
-    Raises ValueError for n below 1.
+    permutations. Raises ValueError for n below 1.
     """
     if n < 1:
         raise ValueError(f"{n} treatments cannot be ordered; give at least 1.")

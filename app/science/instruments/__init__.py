@@ -1,7 +1,7 @@
-"""Questionnaires with their scoring: what is asked, which answers fit, what they add up to.
+"""Questionnaires: their items, which answers are valid, and how scores are computed.
 
-An `Instrument` that exists is consistent. Tables of answers are read by `instruments.table`, which
-loads pandas.
+An `Instrument` is checked when it is created, so every instance is consistent. Tables of answers
+are read by `instruments.table`, which loads pandas.
 """
 
 from app.science.instruments.answers import fits, valid_answers, validate_answers

@@ -1,4 +1,4 @@
-"""Whether answers fit their items, for forms (every problem at once) and for scoring (numbers)."""
+"""Validation of answers: for forms (all problems at once) and for scoring (as numbers)."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ _NUMBERS = (int, float, np.integer, np.floating)
 
 @dataclass(frozen=True)
 class AnswerProblem:
-    """Why one answer cannot be taken."""
+    """Why one answer is rejected."""
 
     item: str
     message: str
@@ -28,10 +28,10 @@ class AnswerProblem:
 def validate_answers(
     instrument: Instrument, answers: Mapping[str, object]
 ) -> tuple[AnswerProblem, ...]:
-    """Every problem of a filled-in form, in the order of the items; empty if it can be stored.
+    """Return every problem of a completed form, in the order of the items; empty if it is valid.
 
-    `answers`: item key -> number, text, True/False, choice key; None or absent for no answer.
-    Whole numbers may come as floats (3.0).
+    `answers`: item key -> number, text, True/False, choice key; None or absent for no answer. Whole
+    numbers may be given as floats (3.0).
     """
     problems: list[AnswerProblem] = []
     for item in instrument.items:
@@ -46,9 +46,11 @@ def validate_answers(
         elif not fits(instrument, item, value):
             message = f"The answer {shortened(value)!r} is not possible here."
             problems.append(AnswerProblem(item.key, message, value, valid, f"Give {valid}."))
-    known = ", ".join(instrument.by_key)
+    item_keys = ", ".join(instrument.by_key)
     problems.extend(
-        AnswerProblem(str(key), "There is no such question.", answers[key], known, "Leave it out.")
+        AnswerProblem(
+            str(key), "There is no such question.", answers[key], item_keys, "Leave it out."
+        )
         for key in answers
         if key not in instrument.by_key
     )
@@ -56,7 +58,7 @@ def validate_answers(
 
 
 def fits(instrument: Instrument, item: Item, value: object) -> bool:
-    """Whether a value that is not missing is a possible answer to the item."""
+    """Return whether a value that is not missing is a valid answer to the item."""
     if item.type == "text":
         limit = DEFAULT_TEXT_LENGTH if item.max_length is None else item.max_length
         return isinstance(value, str) and len(value) <= limit and "\0" not in value
@@ -75,7 +77,7 @@ def fits(instrument: Instrument, item: Item, value: object) -> bool:
 
 
 def valid_answers(instrument: Instrument, item: Item) -> str:
-    """What can be answered to an item, in words: "a whole number from 1 to 7"."""
+    """Describe the valid answers to an item, for messages: "a whole number from 1 to 7"."""
     if item.type == "text":
         return f"text of at most {item.max_length or DEFAULT_TEXT_LENGTH} characters"
     if item.type == "choice":
@@ -100,13 +102,13 @@ def valid_answers(instrument: Instrument, item: Item) -> str:
 def as_number(
     instrument: Instrument, item: Item, value: object, *, row: int | None = None
 ) -> float:
-    """An answer as a raw number for the formulas; NaN if missing, 1 and 0 for yes and no.
+    """Return an answer as a raw number for the formulas; NaN if missing, 1 and 0 for yes and no.
 
-    Raises AnswerError for a value that is not a possible answer; `row` is passed on to it.
+    Raises AnswerError for a value that is not a valid answer; `row` is passed on to it.
     """
     if value is None or (isinstance(value, _NUMBERS) and math.isnan(value)):
         return math.nan
-    # Tables have no booleans of their own: there a yes is a 1.
+    # Tables may encode a yes as 1.
     if item.type == "boolean" and not isinstance(value, bool) and value in (0, 1):
         value = bool(value)
     if not item.is_numeric or not fits(instrument, item, value):

@@ -1,9 +1,9 @@
-"""What can be wrong with an instrument, its formulas or its answers.
+"""Errors of instruments, their formulas and their answers.
 
 InstrumentError (ValueError)
-├── FormulaError               a score's formula cannot be read; points at the character
-├── InstrumentDefinitionError  the instrument contradicts itself; holds every problem with its place
-├── AnswerError                one answer is not on its item's scale
+├── FormulaError               a score's formula cannot be parsed; gives the character position
+├── InstrumentDefinitionError  the instrument is inconsistent; lists every problem with its path
+├── AnswerError                one answer is not valid for its item
 └── InstrumentTableError       a table of answers cannot be scored at all
 """
 
@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 
 class InstrumentError(ValueError):
-    """Something about an instrument or its answers was refused."""
+    """Base class of the errors in instruments and their answers."""
 
 
 class FormulaError(InstrumentError):
-    """A formula cannot be read. `position` counts characters from 0."""
+    """A formula cannot be parsed. `position` counts characters from 0."""
 
     def __init__(self, formula: str, position: int, message: str, remedy: str) -> None:
         self.formula = formula
@@ -29,7 +29,10 @@ class FormulaError(InstrumentError):
 
 @dataclass(frozen=True)
 class DefinitionProblem:
-    """One contradiction in an instrument; `path` leads to it, such as ("scores", 2, "formula")."""
+    """One inconsistency in an instrument.
+
+    `path` locates it in the definition, such as ("scores", 2, "formula").
+    """
 
     path: tuple[str | int, ...]
     message: str
@@ -39,7 +42,7 @@ class DefinitionProblem:
 
 
 class InstrumentDefinitionError(InstrumentError):
-    """An instrument contradicts itself; `problems` holds every reason, not just the first."""
+    """An instrument is inconsistent; `problems` lists all inconsistencies, not just the first."""
 
     def __init__(self, problems: tuple[DefinitionProblem, ...]) -> None:
         self.problems = problems
@@ -47,11 +50,11 @@ class InstrumentDefinitionError(InstrumentError):
             f"{'.'.join(map(str, problem.path))}: {problem.message} {problem.remedy}".rstrip()
             for problem in problems
         )
-        super().__init__("The instrument contradicts itself:\n" + "\n".join(lines))
+        super().__init__("The instrument is not consistent:\n" + "\n".join(lines))
 
 
 class AnswerError(InstrumentError):
-    """One answer is not on its item's scale. `row` counts data rows from 1; None outside tables."""
+    """One answer is not valid for its item. `row` counts data rows from 1; None outside tables."""
 
     def __init__(self, item: str, value: object, valid: str, *, row: int | None = None) -> None:
         self.item = item
@@ -60,17 +63,17 @@ class AnswerError(InstrumentError):
         self.row = row
         where = "" if row is None else f"Row {row}: "
         super().__init__(
-            f"{where}item {item} has the answer {shortened(value)!r}. Valid is {valid}. "
+            f"{where}item {item} has the answer {shortened(value)!r}. Valid answer: {valid}. "
             "Correct the answer, or leave it empty if it is missing."
         )
 
 
 class InstrumentTableError(InstrumentError):
-    """A table of answers cannot be scored: the message says where, why and what to do."""
+    """A table of answers cannot be scored; the message says where, why and what to do."""
 
 
 def shortened(value: object, limit: int = 80) -> object:
-    """The value itself, but long text cut down so that a message stays readable."""
+    """Return the value, with long text truncated so that a message stays readable."""
     if isinstance(value, str) and len(value) > limit:
         return value[: limit - 3] + "..."
     return value

@@ -1,4 +1,4 @@
-"""The scoring of one form, step by step, so that a person can check it with a pencil."""
+"""The scoring of one form, step by step, so that a person can verify it by hand."""
 
 import math
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from app.science.instruments.tokens import tokenize
 
 @dataclass(frozen=True)
 class ExplainedItem:
-    """A numeric item: as answered, and as the formulas get it; None where there is no answer."""
+    """The value of a numeric item, as answered and after recoding; None if it was not answered."""
 
     key: str
     raw: float | None
@@ -25,7 +25,7 @@ class ExplainedItem:
 
 @dataclass(frozen=True)
 class ExplainedScore:
-    """A score, its formula with values in place of names, and the items it lacks."""
+    """A score, its formula with values in place of names, and its unanswered items."""
 
     score: Score
     filled_in: str
@@ -42,9 +42,9 @@ class ExplainedScoring:
 
 
 def explain_scoring(instrument: Instrument, answers: Mapping[str, object]) -> ExplainedScoring:
-    """The steps by which `answers` (raw, possible ones) become scores.
+    """Return the steps by which raw `answers` become scores.
 
-    Raises AnswerError as `score_answers` does, whose values these are.
+    The values are those of `score_answers`; raises AnswerError as it does.
     """
     values = score_answers(instrument, answers)
     items = tuple(
@@ -52,17 +52,17 @@ def explain_scoring(instrument: Instrument, answers: Mapping[str, object]) -> Ex
         for item in instrument.items
         if item.is_numeric
     )
-    known = {item.key: item.recoded for item in items} | values
-    lacking: dict[str, tuple[str, ...]] = {
+    all_values = {item.key: item.recoded for item in items} | values
+    unanswered: dict[str, tuple[str, ...]] = {
         item.key: () if item.raw is not None else (item.key,) for item in items
     }
     scores: list[ExplainedScore] = []
     for score in instrument.scores:
         needed = names_in(instrument.formulas[score.key])
-        missing = {name for key in needed for name in lacking[key]}
+        missing = {name for key in needed for name in unanswered[key]}
         in_order = tuple(item.key for item in items if item.key in missing)
-        lacking[score.key] = in_order
-        filled_in = _filled_in(score.formula, known)
+        unanswered[score.key] = in_order
+        filled_in = _filled_in(score.formula, all_values)
         scores.append(ExplainedScore(score, filled_in, values[score.key], in_order))
     return ExplainedScoring(items, tuple(scores))
 
@@ -75,14 +75,14 @@ def _item(instrument: Instrument, key: str, raw: float) -> ExplainedItem:
     return ExplainedItem(key, raw, None if math.isnan(recoded) else recoded)
 
 
-def _filled_in(formula: str, known: Mapping[str, float | None]) -> str:
-    """The formula as written, with each name's value; a missing one is a question mark."""
+def _filled_in(formula: str, all_values: Mapping[str, float | None]) -> str:
+    """Return the formula with each name replaced by its value; a question mark if it is missing."""
     pieces: list[str] = []
     at = 0
     for token in tokenize(formula)[:-1]:
         pieces.append(formula[at : token.position])
         at = token.position + len(token.text)
-        pieces.append(_number(known[token.text]) if token.text in known else token.text)
+        pieces.append(_number(all_values[token.text]) if token.text in all_values else token.text)
     return "".join([*pieces, formula[at:]])
 
 

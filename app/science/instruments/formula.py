@@ -1,12 +1,12 @@
-"""The language of score formulas: arithmetic on answers, and nothing else.
+"""The language of score formulas: arithmetic on answers.
 
     formula = term (("+" | "-") term)*
     term    = factor (("*" | "/") factor)*
     factor  = "-" factor | number | name | function "(" formula ("," formula)* ")" | "(" formula ")"
 
-Functions: mean, sum, min, max. Names: item keys and the keys of earlier scores. A formula becomes a
-frozen tree; nothing of it is ever executed as Python. Length and nesting are limited, so a formula
-from a stranger's file costs little to refuse.
+Functions: mean, sum, min, max. Names: item keys and the keys of earlier scores. A formula is parsed
+into a frozen tree; no part of it is ever executed as Python. Length and nesting are limited, so a
+formula from an untrusted file is cheap to reject.
 """
 
 import difflib
@@ -21,21 +21,21 @@ MAX_DEPTH = 32
 
 @dataclass(frozen=True)
 class Number:
-    """A constant."""
+    """A constant in a formula."""
 
     value: float
 
 
 @dataclass(frozen=True)
 class Name:
-    """The value of an item (after recoding) or of an earlier score."""
+    """A reference to the value of an item (after recoding) or of an earlier score."""
 
     key: str
 
 
 @dataclass(frozen=True)
 class Negative:
-    """The operand with its sign turned round."""
+    """The negation of an operand."""
 
     operand: "Node"
 
@@ -51,7 +51,7 @@ class Binary:
 
 @dataclass(frozen=True)
 class Call:
-    """One of `FUNCTIONS` over at least one argument."""
+    """A call of one of `FUNCTIONS` with at least one argument."""
 
     function: str
     arguments: tuple["Node", ...]
@@ -61,9 +61,9 @@ Node = Number | Name | Negative | Binary | Call
 
 
 def parse_formula(text: str, names: AbstractSet[str]) -> Node:
-    """Read a formula in which only `names` may occur.
+    """Parse a formula in which only the given `names` may occur.
 
-    Raises FormulaError with the character position of the first thing that cannot be understood.
+    Raises FormulaError with the character position of the first error.
     """
     parser = _Parser(text, tokenize(text), names)
     tree = parser.formula(0)
@@ -72,7 +72,7 @@ def parse_formula(text: str, names: AbstractSet[str]) -> Node:
 
 
 def names_in(node: Node) -> frozenset[str]:
-    """Every item and score key that the formula reads."""
+    """Return the keys of all items and scores that the formula uses."""
     match node:
         case Name(key):
             return frozenset({key})
@@ -87,7 +87,10 @@ def names_in(node: Node) -> frozenset[str]:
 
 
 class _Parser:
-    """Recursive descent; `depth` counts open parentheses and signs, never the length of a sum."""
+    """Recursive-descent parser of formulas.
+
+    `depth` counts open parentheses and signs; the length of a sum does not increase it.
+    """
 
     def __init__(self, text: str, tokens: tuple[Token, ...], names: AbstractSet[str]) -> None:
         self._text = text
@@ -96,7 +99,7 @@ class _Parser:
         self._at = 0
 
     def formula(self, depth: int) -> Node:
-        """A sum of terms, grouped from the left."""
+        """Parse a sum of terms, left-associative."""
         left = self._term(depth)
         while self._next.text in ("+", "-"):
             operator = self._take().text
@@ -104,10 +107,10 @@ class _Parser:
         return left
 
     def expect_end(self) -> None:
-        """Refuse whatever is left over."""
+        """Raise FormulaError if tokens remain."""
         if self._next.kind != "end":
             raise self._error(
-                f"Here a formula cannot go on with {self._next.text!r}",
+                f"{self._next.text!r} cannot follow here",
                 "Join two values with + - * or /, and close each parenthesis once.",
             )
 
@@ -163,12 +166,12 @@ class _Parser:
             return Name(token.text)
         close = difflib.get_close_matches(token.text, sorted(self._names), n=1)
         hint = f"Did you mean {close[0]}? " if close else ""
-        known = ", ".join(sorted(self._names, key=lambda name: (len(name), name))) or "none"
+        valid = ", ".join(sorted(self._names, key=lambda name: (len(name), name))) or "none"
         raise FormulaError(
             self._text,
             token.position,
-            f"The name {token.text!r} is not known",
-            f"{hint}Known here: {known}; functions: {', '.join(FUNCTIONS)}.",
+            f"The name {token.text!r} is unknown",
+            f"{hint}Valid names: {valid}; functions: {', '.join(FUNCTIONS)}.",
         )
 
     def _close(self, opening: Token) -> None:

@@ -1,11 +1,11 @@
-"""A questionnaire with its scoring, as values: what is asked, how, and what it adds up to.
+"""A questionnaire with its scoring: its items, their scales, and the formulas of its scores.
 
 An *instrument* is a list of *items*. Likert items share the instrument's *scale* or have one of
-their own; other items carry their own type and range. Before scoring, `recode` is applied to every
+their own; other items have their own type and range. Before scoring, `recode` is applied to every
 number ("x - 4" turns 1..7 into -3..+3), then each *score* is a formula over items and earlier
-scores. A score has no value as soon as one of its items has none.
+scores. A score has no value if any of its items has none.
 
-An instrument that exists is consistent: making one finds every contradiction, each with its place.
+Creating an instrument checks it and reports every inconsistency with its path.
 """
 
 import re
@@ -34,10 +34,10 @@ _KEY_REMEDY = "Use lower-case letters, digits and _, beginning with a letter, at
 
 @dataclass(frozen=True)
 class Instrument:
-    """A questionnaire. That it exists proves that it is consistent and its formulas readable.
+    """A questionnaire. Every instance is consistent, and its formulas can be parsed.
 
     `stem`: the words before each likert item. `shuffle`: ask the items in random order, but those
-    in `last` at the end, as listed. Raises InstrumentDefinitionError with every contradiction.
+    in `last` at the end, as listed. Raises InstrumentDefinitionError with every inconsistency.
     """
 
     __pydantic_config__: ClassVar[dict[str, object]] = STRICT
@@ -65,7 +65,7 @@ class Instrument:
         return {item.key: item for item in self.items}
 
     def scale_of(self, item: Item) -> Scale | None:
-        """The scale on which a likert item is answered; None for other items."""
+        """Return the scale on which a likert item is answered; None for other items."""
         return (item.scale or self.scale) if item.type == "likert" else None
 
     @cached_property
@@ -80,22 +80,22 @@ class Instrument:
 
     @cached_property
     def recoding(self) -> Node | None:
-        """The parsed recoding of a raw number `x`; None to take answers as they are."""
+        """The parsed recoding of a raw number `x`; None if answers are not recoded."""
         return None if self.recode is None else parse_formula(self.recode, {"x"})
 
     @cached_property
     def scored_items(self) -> frozenset[str]:
-        """Keys of the items that enter at least one score."""
+        """Keys of the items used by at least one score."""
         used = frozenset[str]().union(*(names_in(tree) for tree in self.formulas.values()))
         return used & self.by_key.keys()
 
 
 def item_order(instrument: Instrument, seed: int) -> tuple[str, ...]:
-    """Item keys in the order to show them.
+    """Return the item keys in the order in which to show them.
 
     If the instrument shuffles, all items but those in `last` come in a random order drawn from
-    PCG64 seeded with `seed` (>= 0); those in `last` follow as listed. Otherwise the order is
-    that of the instrument, again with `last` at the end. Raises ValueError for a negative seed.
+    PCG64 seeded with `seed` (>= 0); those in `last` follow as listed. Otherwise the order is that
+    of the instrument, again with `last` at the end. Raises ValueError for a negative seed.
     """
     free = [item.key for item in instrument.items if item.key not in instrument.last]
     if instrument.shuffle:
@@ -105,7 +105,7 @@ def item_order(instrument: Instrument, seed: int) -> tuple[str, ...]:
 
 
 def check_definition(instrument: Instrument) -> None:
-    """Raise InstrumentDefinitionError with every contradiction of the instrument, if any."""
+    """Raise InstrumentDefinitionError with every inconsistency of the instrument, if any."""
     problems = (
         *_basics(instrument),
         *_keys(instrument),
@@ -120,14 +120,14 @@ def check_definition(instrument: Instrument) -> None:
 
 
 def is_key(text: str) -> bool:
-    """Whether the text can name an item, a score or an instrument."""
+    """Return whether the text is a valid key of an item, a score or an instrument."""
     return _KEY.fullmatch(text) is not None
 
 
 def _basics(instrument: Instrument) -> Iterator[DefinitionProblem]:
     if not is_key(instrument.key):
         yield DefinitionProblem(
-            ("key",), "This cannot be a key.", instrument.key, remedy=_KEY_REMEDY
+            ("key",), "This is not a valid key.", instrument.key, remedy=_KEY_REMEDY
         )
     if instrument.version < 1:
         yield DefinitionProblem(
@@ -143,7 +143,7 @@ def _basics(instrument: Instrument) -> Iterator[DefinitionProblem]:
         if not _LANGUAGE.fullmatch(language) or language in instrument.languages[:index]:
             yield DefinitionProblem(
                 ("languages", index),
-                "This is not a language code, or it is there twice.",
+                "This is not a language code, or it is listed twice.",
                 language,
                 "two or three lower-case letters, such as en or de",
                 "Name each language once by its code.",
@@ -151,7 +151,7 @@ def _basics(instrument: Instrument) -> Iterator[DefinitionProblem]:
 
 
 def _keys(instrument: Instrument) -> Iterator[DefinitionProblem]:
-    """Items and scores share one name space, because formulas do."""
+    """Check that keys are valid and unique; items and scores share one namespace."""
     taken: set[str] = {"x", *FUNCTIONS}
     groups: tuple[tuple[str, Iterable[str]], ...] = (
         ("items", (item.key for item in instrument.items)),
@@ -161,7 +161,7 @@ def _keys(instrument: Instrument) -> Iterator[DefinitionProblem]:
         for index, key in enumerate(keys):
             if not is_key(key):
                 yield DefinitionProblem(
-                    (group, index, "key"), "This cannot be a key.", key, remedy=_KEY_REMEDY
+                    (group, index, "key"), "This is not a valid key.", key, remedy=_KEY_REMEDY
                 )
             elif key in taken:
                 yield DefinitionProblem(
@@ -182,15 +182,15 @@ def _items(instrument: Instrument) -> Iterator[DefinitionProblem]:
 
 
 def _last(instrument: Instrument) -> Iterator[DefinitionProblem]:
-    known = [item.key for item in instrument.items]
+    item_keys = [item.key for item in instrument.items]
     counts = Counter(instrument.last)
     for index, key in enumerate(instrument.last):
-        if key not in known or counts[key] > 1:
+        if key not in item_keys or counts[key] > 1:
             yield DefinitionProblem(
                 ("last", index),
                 f"{key!r} is not an item, or it is listed twice.",
                 key,
-                known,
+                item_keys,
                 "List each item that stays at the end once.",
             )
 
@@ -229,7 +229,7 @@ def _formula(
 
 
 def _texts_of(instrument: Instrument) -> Iterator[tuple[Path, Text]]:
-    """Every text of an instrument with its path."""
+    """Yield every text of an instrument with its path."""
     yield ("title",), instrument.title
     for field, text in (("stem", instrument.stem), ("instructions", instrument.instructions)):
         if text is not None:

@@ -1,7 +1,7 @@
-"""Whether an item, its scale and its texts are consistent.
+"""Checks that an item, its scale and its texts are consistent.
 
-Each type of item has its own fields, and needs some of them; a scale has ends, steps and labels; a
-text is there in every language that is promised to participants.
+Each type of item has its own fields, some of them required; a scale has ends, steps and labels; a
+text must exist in every language that the instrument declares.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -17,7 +17,7 @@ MAX_STEPS = 101
 
 
 def item_problems(item: Item, path: Path, *, has_scale: bool) -> Iterator[DefinitionProblem]:
-    """Every contradiction within one item; `path` leads to the item."""
+    """Yield every inconsistency within one item; `path` is the path of the item."""
     yield from _misplaced(item, path)
     yield from _range(item, path)
     yield from _choices(item, path)
@@ -40,7 +40,7 @@ def item_problems(item: Item, path: Path, *, has_scale: bool) -> Iterator[Defini
 
 
 def _misplaced(item: Item, path: Path) -> Iterator[DefinitionProblem]:
-    """Fields that this type of item ignores: better refused than silently without effect."""
+    """Yield a problem for each field that this type of item would silently ignore."""
     ranged = ("integer", "number")
     fields = (
         ("minimum", item.minimum is not None, ranged),
@@ -88,14 +88,14 @@ def _choices(item: Item, path: Path) -> Iterator[DefinitionProblem]:
         if not key or len(key) > 40 or key in keys[:index]:
             yield DefinitionProblem(
                 (*path, "choices", index, "key"),
-                "This choice's key is empty, too long (over 40) or there twice.",
+                "This choice's key is empty, too long (over 40) or used twice.",
                 key,
                 remedy="Give each choice its own short key.",
             )
 
 
 def scale_problems(scale: Scale | None, path: Path) -> Iterator[DefinitionProblem]:
-    """Every contradiction within a scale, if there is one; `path` leads to it."""
+    """Yield every inconsistency within a scale; none for None. `path` is the path of the scale."""
     if scale is None:
         return
     count = len(scale.steps)
@@ -132,16 +132,16 @@ def scale_problems(scale: Scale | None, path: Path) -> Iterator[DefinitionProble
 def text_problems(
     path: Path, text: Mapping[str, str], languages: Iterable[str]
 ) -> Iterator[DefinitionProblem]:
-    """One problem for each declared language in which the text at `path` is missing or blank.
+    """Yield a problem for each declared language in which the text at `path` is missing or blank.
 
-    A language that is not declared may be there: it is simply not offered.
+    A text may also exist in a language that is not declared; it is not offered then.
     """
     for language in languages:
         if not text.get(language, "").strip():
             yield DefinitionProblem(
                 (*path, language),
-                f"The text has no wording in the declared language {language!r}.",
+                f"The text is missing in the declared language {language!r}.",
                 sorted(text),
-                f"a wording for {language}",
+                f"a text in {language}",
                 f"Add it, or take {language} out of the languages.",
             )

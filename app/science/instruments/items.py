@@ -1,4 +1,4 @@
-"""What an instrument consists of: items with their scales and choices, and scores.
+"""The components of an instrument: items with their scales and choices, and scores.
 
 Texts are given in every language the instrument declares: `{"en": ..., "de": ...}`.
 """
@@ -14,7 +14,7 @@ ItemType = Literal["likert", "integer", "number", "text", "boolean", "choice"]
 Answer = float | int | str | bool | None
 """What can be answered; None for an item that was left out."""
 
-# Read by pydantic when an instrument file is loaded: nothing unknown, nothing converted silently.
+# Used by pydantic to load instrument files: unknown fields and implicit conversions are errors.
 STRICT: dict[str, object] = {"extra": "forbid", "strict": True, "allow_inf_nan": False}
 
 
@@ -32,7 +32,8 @@ class Choice:
 class Scale:
     """The scale of likert items: whole numbers, with labels from lowest to highest.
 
-    `step`: from one to the next. `labels`: one for each step, or two for both ends, or none.
+    `step`: the difference between neighbouring numbers. `labels`: one for each step, or two for
+    both ends, or none.
     """
 
     __pydantic_config__: ClassVar[dict[str, object]] = STRICT
@@ -50,7 +51,7 @@ class Scale:
 
 @dataclass(frozen=True)
 class Item:
-    """One question.
+    """One question or statement of an instrument.
 
     `minimum`, `maximum`: limits of integer and number items, in `unit`. `scale`: of a likert item,
     in place of the instrument's. `max_length`: characters of a text answer. `reverse_keyed`:
@@ -81,7 +82,7 @@ class Item:
 
 @dataclass(frozen=True)
 class Score:
-    """A formula with a name. `minimum`, `maximum`: the range that its author states."""
+    """A formula over items, with a name. `minimum`, `maximum`: the range stated by its author."""
 
     __pydantic_config__: ClassVar[dict[str, object]] = STRICT
 
@@ -95,7 +96,7 @@ class Score:
 
 @dataclass(frozen=True)
 class Provenance:
-    """Where a text or an instrument comes from, and how far that was checked."""
+    """Where a text or an instrument comes from, and how far that was verified."""
 
     __pydantic_config__: ClassVar[dict[str, object]] = STRICT
 

@@ -1,7 +1,7 @@
-"""Scores from the instrument's own formulas, for one person or for a column of people at once.
+"""Compute scores from the instrument's own formulas, for one form or for a column of forms.
 
-A missing answer is NaN, and whatever it enters becomes NaN: a score with a missing item has no
-value. Dividing by zero gives no value either, and neither does a result too large for a float.
+A missing answer is NaN, and so is every value computed from it: a score with a missing item has no
+value. A division by zero gives no value either, nor does a result too large for a float.
 """
 
 import math
@@ -20,11 +20,11 @@ FloatArray = NDArray[np.float64]
 
 
 def score_answers(instrument: Instrument, answers: Mapping[str, object]) -> dict[str, float | None]:
-    """Every score of one filled-in form, in the instrument's order; None where it has no value.
+    """Return every score of one completed form, in the instrument's order; None if it has no value.
 
     `answers`: raw, as answered (before recoding). Texts and choices are ignored. A score is None if
-    one of its items is missing or a division by zero occurs.
-    Raises AnswerError for an answer off its scale and for a key that is no item.
+    one of its items is missing or a division by zero occurs. Raises AnswerError for an invalid
+    answer and for a key that is not an item.
     """
     unknown = [key for key in answers if key not in instrument.by_key]
     if unknown:
@@ -44,7 +44,7 @@ def score_answers(instrument: Instrument, answers: Mapping[str, object]) -> dict
 def scores_of_columns(
     instrument: Instrument, columns: Mapping[str, FloatArray], *, rows: int
 ) -> dict[str, FloatArray]:
-    """Raw answers (rows,) by item -> scores (rows,); items that are absent count as missing."""
+    """Return scores (rows,) from columns of raw answers (rows,); absent items count as missing."""
     missing = np.full(rows, np.nan)
     raw = {item.key: columns.get(item.key, missing) for item in instrument.items if item.is_numeric}
     values = _recoded(instrument, raw)
@@ -55,7 +55,7 @@ def scores_of_columns(
 
 
 def _recoded(instrument: Instrument, raw: dict[str, FloatArray]) -> dict[str, FloatArray]:
-    """All items at once: the formula is the same for each."""
+    """Recode all items in one operation: the formula is the same for each."""
     if instrument.recoding is None or not raw:
         return raw
     together = np.stack(list(raw.values()))
@@ -64,14 +64,14 @@ def _recoded(instrument: Instrument, raw: dict[str, FloatArray]) -> dict[str, Fl
 
 
 def evaluate(node: Node, values: Mapping[str, FloatArray]) -> FloatArray:
-    """Value of a formula, elementwise.
+    """Evaluate a formula elementwise.
 
     `values`: arrays of one common shape, float64, NaN where missing. The result has their shape, or
     shape () for a formula without names. It is finite or NaN.
     """
     with np.errstate(all="ignore"):
         result = _evaluate(node, values)
-        # Adding zero turns -0.0 into 0.0, which would look odd in a table.
+        # Adding zero turns -0.0, which would look odd in a table, into 0.0.
         return np.asarray(np.where(np.isfinite(result), result + 0.0, np.nan), dtype=np.float64)
 
 
@@ -99,12 +99,12 @@ def _binary(operator: str, left: FloatArray, right: FloatArray) -> FloatArray:
             result = np.multiply(left, right)
         case _:
             result = np.divide(left, right)
-    # At once, so that an infinity cannot creep back as a number, as in 1 / (1 / 0) = 0.
+    # After each operation, so that an infinity cannot become a number again, as in 1 / (1 / 0) = 0.
     return np.where(np.isfinite(result), result, np.nan)
 
 
 def _call(function: str, arguments: list[FloatArray]) -> FloatArray:
-    # np.minimum and np.maximum pass NaN on, as a missing item demands.
+    # np.minimum and np.maximum propagate NaN, as required for a missing item.
     match function:
         case "min":
             return reduce(np.minimum, arguments)

@@ -1,9 +1,10 @@
-"""Answers as CSV in, scores as CSV out, for people who keep their data in spreadsheets.
+"""Score tables of answers, CSV to CSV, for people who keep their data in spreadsheets.
 
 Spreadsheets write the same table in many ways: with ; or tabs, with a byte order mark, with CRLF,
-blank lines and Q1 for q1. All of that is read. What cannot be understood is refused with its line.
+blank lines and Q1 for q1. All of these are accepted. Errors name the line of the file.
 
-Apart from `scoring` because of pandas, which a server that scores single forms need not load.
+This is separate from `scoring` because it needs pandas, which a server that scores single forms
+does not have to load.
 """
 
 import csv
@@ -36,14 +37,15 @@ class _Row:
 
 
 def score_csv(instrument: Instrument, text_in: str) -> str:
-    """Score a CSV of raw answers: id columns as they are, then one column for each score.
+    r"""Score a CSV of raw answers: id columns unchanged, then one column for each score.
 
-    `text_in`: a header line, then one row for each filled-in form; columns named like items hold
-    answers, empty (or NA) where missing. The result uses commas and \\n; scores have every digit
-    that a float has and are empty where they have no value. A header alone gives a header.
+    `text_in`: a header line, then one row for each completed form; columns named like items contain
+    answers, empty (or NA) where missing. The result uses commas and \n; scores have every digit of
+    a
+    float and are empty where they have no value. A table with only a header gives only a header.
 
-    Raises InstrumentTableError, naming line and column, for: no header, no item column, doubled
-    columns, a row of another length, broken quotes, an answer off its scale.
+    Raises InstrumentTableError, naming line and column, for: no header, no item column, duplicate
+    columns, a row of another length, broken quotes, an invalid answer.
     """
     separator, header, rows = _read(instrument, text_in.removeprefix("\ufeff"))
     for row in rows:
@@ -55,20 +57,20 @@ def score_csv(instrument: Instrument, text_in: str) -> str:
     cells = [row.cells for row in rows]
     if separator == ";":
         # Where ; separates cells, spreadsheets write decimals with a comma.
-        cells = [_with_points(instrument, header, row) for row in cells]
+        cells = [_with_decimal_points(instrument, header, row) for row in cells]
     frame = pd.DataFrame(cells, columns=header, dtype=object)
     try:
         table = score_table(instrument, frame)
     except AnswerError as error:
-        raise _located(error, instrument, header, rows) from error
-    return _written(table, [score.key for score in instrument.scores])
+        raise _with_location(error, instrument, header, rows) from error
+    return _to_csv(table, [score.key for score in instrument.scores])
 
 
 def _read(instrument: Instrument, text: str) -> tuple[str, list[str], list[_Row]]:
     lines = io.StringIO(text, newline="")
     first = next((line for line in lines if line.strip()), "")
     if not first:
-        raise _empty(instrument)
+        raise _empty_table_error(instrument)
 
     def n_items(separator: str) -> int:
         names = (cell.strip().strip('"') for cell in first.strip("\r\n").split(separator))
@@ -88,12 +90,12 @@ def _read(instrument: Instrument, text: str) -> tuple[str, list[str], list[_Row]
             f"Line {reader.line_num} cannot be read: {error}. "
             'Close every quote; write a quote inside a quoted cell twice ("").'
         ) from error
-    if not rows:  # a quoted empty cell is a line of text, but no row
-        raise _empty(instrument)
+    if not rows:  # a line with only a quoted empty cell has text but gives no row
+        raise _empty_table_error(instrument)
     return separator, rows[0].cells, rows[1:]
 
 
-def _empty(instrument: Instrument) -> InstrumentTableError:
+def _empty_table_error(instrument: Instrument) -> InstrumentTableError:
     return InstrumentTableError(
         "The table is empty. Give a header line with id columns and the items "
         + ", ".join(instrument.by_key)
@@ -101,14 +103,14 @@ def _empty(instrument: Instrument) -> InstrumentTableError:
     )
 
 
-def _with_points(instrument: Instrument, header: list[str], cells: list[str]) -> list[str]:
+def _with_decimal_points(instrument: Instrument, header: list[str], cells: list[str]) -> list[str]:
     return [
         cell.replace(",", ".") if _item_name(instrument, name) in instrument.by_key else cell
         for name, cell in zip(header, cells, strict=True)
     ]
 
 
-def _located(
+def _with_location(
     error: AnswerError, instrument: Instrument, header: list[str], rows: list[_Row]
 ) -> InstrumentTableError:
     number = error.row or 1
@@ -116,12 +118,12 @@ def _located(
     at = next(n for n, name in enumerate(header) if _item_name(instrument, name) == error.item)
     return InstrumentTableError(
         f"Row {number} (line {row.line}), column {header[at].strip()}: the answer is "
-        f"{shortened(row.cells[at])!r}. Valid is {error.valid}, or an empty cell if it is missing. "
+        f"{shortened(row.cells[at])!r}. Valid: {error.valid}, or an empty cell if it is missing. "
         "Correct it and score again; nothing was written."
     )
 
 
-def _written(table: pd.DataFrame, scores: list[str]) -> str:
+def _to_csv(table: pd.DataFrame, scores: list[str]) -> str:
     out = io.StringIO(newline="")
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow(table.columns.tolist())
@@ -132,14 +134,14 @@ def _written(table: pd.DataFrame, scores: list[str]) -> str:
 
 
 def score_table(instrument: Instrument, frame: pd.DataFrame) -> pd.DataFrame:
-    """Scores of a table with one row for each filled-in form.
+    """Return the scores of a table with one row for each completed form.
 
-    `frame`: columns named like items (q1 or Q1) hold raw answers, as numbers or as text; all others
-    are ids. Returns the ids as they are, then one float column for each score (NaN: no value), with
-    the same index. A missing item column empties just the scores that need it.
+    `frame`: columns named like items (q1 or Q1) contain raw answers, as numbers or as text; all
+    others are ids. Returns the ids unchanged, then one float column for each score (NaN: no value),
+    with the same index. Without the column of an item, just the scores that need it are empty.
 
-    Raises AnswerError with the row (from 1) for an answer off its scale; InstrumentTableError if no
-    column is an item, if a column is there twice, or if an id is named like a score.
+    Raises AnswerError with the row (from 1) for an invalid answer; InstrumentTableError if no
+    column is an item, if a column is duplicated, or if an id is named like a score.
     """
     named = _item_columns(instrument, [str(name) for name in frame.columns])
     columns = {
@@ -170,7 +172,7 @@ def _numbers(instrument: Instrument, item: Item, column: "pd.Series[float]") -> 
 
 
 def _cell(value: object) -> object:
-    """Text of a table as a number where it is one; the usual words for "missing" as None."""
+    """Convert a cell: text to a number if it is one, and the usual words for "missing" to None."""
     if value is pd.NA:
         return None
     if not isinstance(value, str):
@@ -190,16 +192,16 @@ def _cell(value: object) -> object:
 
 
 def _item_columns(instrument: Instrument, headers: Sequence[str]) -> dict[str, int]:
-    """Item key -> position of its column. Capitals and blanks around a header do not matter.
+    """Return item key -> position of its column, ignoring case and surrounding blanks in headers.
 
-    Raises InstrumentTableError if a column is there twice or if no column is an item.
+    Raises InstrumentTableError if a column is duplicated or if no column is an item.
     """
     names = [_item_name(instrument, header) for header in headers]
-    doubled = [name for name, count in Counter(names).items() if count > 1]
-    if doubled:
-        places = ", ".join(str(at + 1) for at, name in enumerate(names) if name == doubled[0])
+    duplicates = [name for name, count in Counter(names).items() if count > 1]
+    if duplicates:
+        places = ", ".join(str(at + 1) for at, name in enumerate(names) if name == duplicates[0])
         raise InstrumentTableError(
-            f"The column {doubled[0]!r} is there more than once (columns {places}). "
+            f"The column {duplicates[0]!r} occurs more than once (columns {places}). "
             "Keep the right one and remove the others."
         )
     found = {name: at for at, name in enumerate(names) if name in instrument.by_key}
@@ -214,6 +216,6 @@ def _item_columns(instrument: Instrument, headers: Sequence[str]) -> dict[str, i
 
 
 def _item_name(instrument: Instrument, header: str) -> str:
-    """The item that a header means; other headers stay as they are."""
+    """Return the key of the item that a header names; other headers unchanged."""
     name = header.strip()
     return name.lower() if name.lower() in instrument.by_key else header

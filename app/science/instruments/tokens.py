@@ -1,4 +1,4 @@
-"""The letters of the formula language: numbers, names, + - * / ( ) and the comma."""
+"""The tokens of the formula language: numbers, names, + - * / ( ) and the comma."""
 
 import re
 from dataclasses import dataclass
@@ -7,8 +7,8 @@ from app.science.instruments.errors import FormulaError
 
 FUNCTIONS = ("mean", "sum", "min", "max")
 MAX_LENGTH = 1000
-# Each operator of a chain like 1+1+1... is one level of the tree: the limit keeps any walk through
-# the tree far away from Python's recursion limit.
+# Each operator of a chain like 1+1+1... is one level of the tree: the limit keeps any traversal of
+# the tree far below Python's recursion limit.
 MAX_TOKENS = 400
 
 _TOKEN = re.compile(
@@ -20,7 +20,10 @@ _BLANKS = re.compile(r"\s*")
 
 @dataclass(frozen=True)
 class Token:
-    """`kind` is number, name, symbol or end; `position` counts characters from 0."""
+    """One token of a formula.
+
+    `kind` is number, name, symbol or end; `position` counts characters from 0.
+    """
 
     kind: str
     text: str
@@ -28,7 +31,7 @@ class Token:
 
 
 def tokenize(text: str) -> tuple[Token, ...]:
-    """Cut a formula into tokens; the last one is always of kind "end".
+    """Split a formula into tokens; the last one is always of kind "end".
 
     Raises FormulaError for a character outside the language, and for formulas over the limits.
     """

@@ -82,8 +82,7 @@ def active_times(times_s: FloatArray, active: npt.NDArray[np.bool_]) -> FloatArr
     From a frame in which the clock runs, time counts up to the next frame, also over a gap. A frame
     that reports a stop of the clock comes a little late, and so does one that reports a start; on
     average the two delays cancel out. A time that is not finite, or not later than all previous
-    ones,
-    adds nothing.
+    ones, adds nothing.
 
     Args:
         times_s: (N,) on one clock, in the order in which the frames were made; any values are

@@ -35,7 +35,7 @@ from app.science.skeleton import JOINT_COUNT, JOINT_NAMES
 
 #: The joints that have an error, in order: all but the hips.
 ERROR_JOINTS: tuple[str, ...] = JOINT_NAMES[1:]
-# : What is summarised for each joint: the angle and the components of the rotation vector.
+#: What is summarised for each joint: the angle and the components of the rotation vector.
 ERROR_AXES: tuple[str, ...] = ("angle", "x", "y", "z")
 _P95 = 95.0
 _Bools = npt.NDArray[np.bool_]
@@ -63,8 +63,7 @@ class Clipping:
     """Where the limits of an avatar's hinges reduced the target rotation, for N frames.
 
     A hinge belongs to the axis along which it lies in the T-pose. Only the first hinge of a joint
-    stays
-    on the parent's axis in every pose; the others turn with it.
+    stays on the parent's axis in every pose; the others turn with it.
 
     Attributes:
         clipped: (N, 21, 3) whether the hinge along x, y and z reached its limit.
@@ -199,7 +198,6 @@ def joint_error_summary(
     """Return the error summary of a target and an actual recording.
 
     See `joint_errors` for shapes and `summarise_joint_errors` for the clipping, and both for the
-    errors
-    raised.
+    errors raised.
     """
     return summarise_joint_errors(joint_errors(target, actual), clipping)

@@ -1,4 +1,4 @@
-"""Where a movement to a goal really goes: way-points through the open side, scatter, overshoot."""
+"""Plan the path of a movement to a goal: way-points through the open side, scatter, overshoot."""
 
 import math
 from dataclasses import dataclass
@@ -18,13 +18,13 @@ _CARE, _FURTHER_M = 0.5, 0.02
 
 @dataclass(frozen=True)
 class Aim:
-    """A person aiming with one limb.
+    """Plans the movements of one limb of a person.
 
     Attributes:
         traits: how the person moves.
-        latency_s: delay the person sees at present, which slows movements.
+        latency_s: delay that the person sees at present, which slows movements.
         tempo: factor on movement times, larger for a foot.
-        press_m: how far an end point goes on past a surface, against the approach.
+        press_m: how far an end point lies beyond a surface, against the approach.
     """
 
     traits: MovementTraits
@@ -41,9 +41,9 @@ class Aim:
         rng: np.random.Generator,
         misses: int = 0,
     ) -> SmoothPath:
-        """Plan from `here`, out by `way_out`, to in front of the goal, and in.
+        """Plan a path from `here`, out by `way_out`, to in front of the goal, and in.
 
-        After each miss the person looks more closely, and goes further in.
+        After each miss the person aims more carefully and reaches further in.
         """
         target = goal.target_m or here
         care = _CARE**misses
@@ -65,14 +65,14 @@ class Aim:
         return path_through([*points, end], start_s, lasts_s)
 
     def _press(self, goal: Goal, rng: np.random.Generator) -> float:
-        """Return the press as a share of the approach."""
+        """Return how far to press beyond the surface, as a share of the approach."""
         depth = self.press_m * (1.0 + 0.5 * abs(rng.standard_normal()))
         return depth / v_length(goal.approach_m)
 
     def _scattered(
         self, point: Vector, goal: Goal, factor: float, rng: np.random.Generator
     ) -> Vector:
-        """Scatter a point across the approach, or on the floor plane where there is none."""
+        """Scatter a point across the approach, or in the floor plane if there is no approach."""
         sigma = factor * self.traits.scatter_m(goal.near_m)
         dx, dy, dz = (sigma * rng.standard_normal(3)).tolist()
         axis = goal.approach_m if v_length(goal.approach_m) > 1e-9 else (0.0, 1.0, 0.0)
@@ -87,13 +87,14 @@ class Aim:
         lasts_s: float,
         rng: np.random.Generator,
     ) -> SmoothPath:
-        """Go too far along the longest leg, and correct after a moment."""
+        """Plan a path that goes too far along its longest leg and is corrected shortly after."""
         legs = [v_subtract(b, a) for a, b in zip(points, [*points[1:], end], strict=True)]
         longest = max(range(len(legs)), key=lambda leg: v_length(legs[leg]))
         share = rng.uniform(_LEAST_OVERSHOOT, _MOST_OVERSHOOT)
         too_far = v_scale(legs[longest], share)
         stops = [*points, end]
-        # What follows the longest leg is carried along, as the error is not seen yet.
+        # The points after the longest leg shift as well, as the person has not noticed the error
+        # yet.
         carried = [v_add(p, too_far) if i > longest else p for i, p in enumerate(stops)]
         path = path_through(carried, start_s, lasts_s)
         back = v_scale(too_far, -1.0)

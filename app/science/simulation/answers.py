@@ -1,4 +1,4 @@
-"""Simulated answers to a questionnaire: stand-ins for trying the product out, never data.
+"""Simulated answers to a questionnaire: placeholders for trying the product out, never data.
 
 Agreement falls with latency along published means (Waltemate et al. 2016, "The impact of latency on
 perceptual judgments and motor performance in closed-loop interaction in virtual reality", N = 10),
@@ -12,9 +12,9 @@ by the end-to-end delay of a base of 45 ms plus what was added:
 | 210 | 86.5 | 90 | 49.25 |
 | 350 | 71.5 | 62 | 12.25 |
 
-Between these values it is interpolated, beyond the last one held. An item is answered with the
-agreement of its aspect, mirrored where its wording is reverse. Person and item spread (0.5 and
-0.7 scale points of 7) and two per cent less agreement for the foot are assumed by us.
+Between these values it is interpolated, beyond the last one constant. An item is answered with the
+agreement of its aspect, mirrored if its wording is reversed. The spread of persons and items (0.5
+and 0.7 scale points of 7) and two per cent less agreement for the foot are our own assumptions.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,7 +32,7 @@ _FOOT_SHARE = 0.98
 
 
 class Aspect(StrEnum):
-    """What an item asks about; it chooses the curve."""
+    """The aspect of embodiment that an item asks about; it selects the curve of agreement."""
 
     AGENCY = "agency"
     OWNERSHIP = "ownership"
@@ -48,7 +48,7 @@ _AGREEMENT = {
 
 @dataclass(frozen=True)
 class SimulatedItem:
-    """An item as far as answering needs it: its key, the ends of its scale, and its aspect."""
+    """The properties of an item needed to answer it: its key, the ends of its scale, its aspect."""
 
     key: str
     minimum: int
@@ -60,7 +60,7 @@ def agreement(aspect: Aspect, latency_ms: float) -> float:
     """Return the published mean agreement, 0 to 1, at an added latency.
 
     Raises:
-        SimulationError: a latency below zero or not finite.
+        SimulationError: the latency is below zero or not finite.
     """
     if not 0.0 <= latency_ms < float("inf"):
         raise SimulationError(f"A latency of {latency_ms} ms is not valid: zero or more is.")
@@ -79,14 +79,15 @@ def simulated_answers(
     Args:
         items: the items to answer, in order.
         direction: item key -> +1 where agreement speaks for embodiment, -1 where it speaks against
-            it (reverse wording), 0 where it is unrelated (answered about the middle). Items that
-            are not named count as +1.
+            it (reverse wording), 0 where it is unrelated (answered near the middle). Items that
+            are not listed count as +1.
         latency_ms: added latency of the phase.
         limb: "hand" or "foot".
-        rng: source of the person's and the items' spread.
+        rng: random generator of the spread between persons and items.
 
     Raises:
-        SimulationError: an unknown limb, direction or latency, or a scale without room.
+        SimulationError: the limb, direction or latency is invalid, or the minimum of a scale is not
+            below its maximum.
     """
     if limb not in {"hand", "foot"}:
         raise SimulationError(f"Limb {limb!r} is not valid: use 'hand' or 'foot'.")

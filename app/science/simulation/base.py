@@ -1,4 +1,4 @@
-"""The movement a person makes anyway, under whatever the task asks for."""
+"""The background movement of a person, which continues while the limbs do a task."""
 
 from typing import cast
 
@@ -8,8 +8,9 @@ from app.science.rotations import FloatArray, Quaternion, Vector
 from app.science.simulation.goal import SimulationError
 from app.science.skeleton import JOINT_COUNT, JOINT_INDEX, Movement, mean_rotations
 
-# How much of the base movement remains around its mean while a task is done. A walk must not stride
-# in front of the boxes, yet a body does not freeze: legs are placed by the steps instead.
+# The share of the base movement, around its mean, that remains during a task. A walk must not
+# stride
+# in front of the boxes, but the body must not freeze either; the steps place the legs.
 _TASK_GAIN = {"Hips": 0.25, "Neck": 0.6, "Head": 0.6}
 _TASK_GAIN_ELSE = 0.35
 _LEG_JOINTS = range(JOINT_INDEX["LeftUpperLeg"], JOINT_COUNT)
@@ -17,7 +18,7 @@ _SWAY_GAIN = 0.25
 
 
 class BaseMovement:
-    """Plays a looping movement at any time, whole or damped for a task."""
+    """Plays back a looping movement at any time, in full or damped for a task."""
 
     def __init__(self, movement: Movement, offset_s: float) -> None:
         if not movement.loops:
@@ -26,9 +27,10 @@ class BaseMovement:
         self._rate_hz, self._frames, self._offset_s = movement.rate_hz, q.shape[0], offset_s
         mean = mean_rotations(q)
         q = q * np.where(np.einsum("ji,ji->j", q[0], mean) < 0.0, -1.0, 1.0)[:, np.newaxis]
-        # The first frame once more, in the last one's hemisphere, makes the seam like any frame.
-        again = q[0] * np.where(np.einsum("ji,ji->j", q[0], q[-1]) < 0.0, -1.0, 1.0)[:, np.newaxis]
-        self._rotations = np.concatenate((q, again[np.newaxis]))
+        # Appending the first frame, in the last one's hemisphere, lets the seam be blended like any
+        # pair.
+        seam = q[0] * np.where(np.einsum("ji,ji->j", q[0], q[-1]) < 0.0, -1.0, 1.0)[:, np.newaxis]
+        self._rotations = np.concatenate((q, seam[np.newaxis]))
         self._roots = np.concatenate((root, root[:1]))
         gains = np.full((JOINT_COUNT, 1), _TASK_GAIN_ELSE)
         for name, gain in _TASK_GAIN.items():
@@ -37,25 +39,25 @@ class BaseMovement:
         self._gains, self._rest = gains, (1.0 - gains) * mean
         self._middle = root.mean(axis=0)
 
-    def _where(self, time_s: float) -> tuple[int, float]:
+    def _frame_at(self, time_s: float) -> tuple[int, float]:
         place = ((time_s + self._offset_s) * self._rate_hz) % self._frames
         frame = min(int(place), self._frames - 1)
         return frame, place - frame
 
     def _blend(self, time_s: float) -> FloatArray:
-        frame, share = self._where(time_s)
+        frame, share = self._frame_at(time_s)
         rows = self._rotations
         blended: FloatArray = rows[frame] * (1.0 - share) + rows[frame + 1] * share
         return blended
 
     def root(self, time_s: float) -> Vector:
-        """Return the hips' place, x and z around the origin, as recorded."""
-        frame, share = self._where(time_s)
+        """Return the position of the hips, x and z around the origin, as recorded."""
+        frame, share = self._frame_at(time_s)
         here, after = self._roots[frame], self._roots[frame + 1]
         return cast("Vector", tuple((here * (1.0 - share) + after * share).tolist()))
 
     def sway(self, time_s: float) -> tuple[float, float]:
-        """Return the damped sway of the hips while a task is done: x and z in metres."""
+        """Return the damped sway of the hips during a task: x and z in metres."""
         x, _, z = self.root(time_s)
         return _SWAY_GAIN * (x - float(self._middle[0])), _SWAY_GAIN * (z - float(self._middle[2]))
 
@@ -64,7 +66,7 @@ class BaseMovement:
         return _unit_rows(self._blend(time_s))
 
     def damped(self, time_s: float) -> list[Quaternion]:
-        """Return the 22 local rotations drawn to their mean; the legs rest at theirs."""
+        """Return the 22 local rotations, damped towards their mean; the legs are at their mean."""
         return _unit_rows(self._rest + self._gains * self._blend(time_s))
 
 

@@ -1,4 +1,4 @@
-"""What the task asks the simulated participant to do next."""
+"""The next thing that the task requires of the simulated participant."""
 
 import math
 from dataclasses import dataclass
@@ -11,11 +11,11 @@ _FEET = ("LeftFoot", "RightFoot")
 
 
 class SimulationError(ValueError):
-    """The simulated participant was asked for something impossible."""
+    """An argument of the simulation is not valid."""
 
 
 class GoalKind(StrEnum):
-    """Touch with a hand, step with a foot, walk the whole body somewhere, or stand at rest."""
+    """The kinds of goal: touch with a hand, step with a foot, walk to a place, or stand at rest."""
 
     REACH = "reach"
     STEP = "step"
@@ -25,14 +25,14 @@ class GoalKind(StrEnum):
 
 @dataclass(frozen=True)
 class Goal:
-    """One goal; a goal that is equal to the one before is the same goal.
+    """One goal of the simulated participant; a goal equal to the previous one is the same goal.
 
     Attributes:
-        kind: what to do.
+        kind: the kind of action.
         effector: "LeftHand" or "RightHand" to reach, "LeftFoot" or "RightFoot" to step; else None.
         target_m: world point for the finger tip, for the middle of the sole, or on the floor for
             the middle of the body; None to rest.
-        near_m: half width of what has to be met: it sets pace and scatter.
+        near_m: half width of the object to hit: it determines pace and scatter.
         approach_m: from the target out through the open side, as long as the way out is: +z out of
             a hand box, +y out of a foot box. It is the way in and, at the next goal, the way out.
             For walking only its height is used, to lift the feet over edges.
@@ -45,7 +45,7 @@ class Goal:
     approach_m: Vector = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        """Refuse goals that cannot be followed."""
+        """Raise SimulationError for a goal whose attributes do not fit together."""
         valid = {GoalKind.REACH: _HANDS, GoalKind.STEP: _FEET}.get(self.kind, (None,))
         if self.effector not in valid:
             raise SimulationError(

@@ -1,4 +1,4 @@
-"""One hand on its way to its goals: react, leave, go, enter, hold; and try again."""
+"""The movement of one hand towards its goals: react, withdraw, reach, enter, wait, and retry."""
 
 from math import inf
 
@@ -18,12 +18,12 @@ _TURN_RATE = 6.0
 
 
 class Hand:
-    """Where the finger tip should be, and how much the hand is at work at all.
+    """The position of one finger tip over time, and how far the arm has left its base movement.
 
-    A hand that is not asked for hangs with the base movement (work 0); asked for, it takes
-    `_ENGAGE_S` to leave it (work 1). A touch counts only when it begins anew, so a hand whose goal
-    has not changed after the person's patience backs off and touches once more. If that was not it
-    either, as when the body that follows hangs at an edge, it leaves altogether and comes in anew.
+    A hand without a goal hangs with the base movement (work 0); with a goal, it takes `_ENGAGE_S`
+    to leave it (work 1). Only a new touch counts, so a hand whose goal has not changed after the
+    person's patience backs off and touches once more. If that has no effect either, as when the
+    following body is caught at an edge, the hand withdraws completely and enters from outside.
     """
 
     def __init__(self) -> None:
@@ -32,31 +32,31 @@ class Hand:
         self.fingers: Vector = _FORWARD
         self.aimed_m: Vector | None = None
         self._path: SmoothPath | None = None
-        self._wanted: Goal | None = None
+        self._pending: Goal | None = None
         self._react_s = self._settle_s = 0.0
         self._work = 0.0
         self._misses = 0
-        #: When the hand is (or was) out of what it was in; endless while that is not known.
+        #: When the hand is (or was) out of its previous box; infinite while that is unknown.
         self.out_s = inf
 
     @property
     def work(self) -> float:
-        """Share of the arm that follows the goal, 0 to 1, smooth."""
+        """Share of the arm's pose that follows the goal, 0 to 1, changing smoothly."""
         return minimum_jerk(self._work)
 
     @property
     def idle(self) -> bool:
-        """Whether the arm hangs and nothing has to be planned from where it is."""
-        return self._work == 0.0 and self._wanted is None
+        """Whether the arm hangs and has no goal to act on."""
+        return self._work == 0.0 and self._pending is None
 
-    def ask(
+    def set_goal(
         self, goal: Goal | None, time_s: float, reaction_s: float, settle_s: float = 0.0
     ) -> None:
-        """Take a new goal, or None to let the arm hang again; it is acted on after reacting.
+        """Set a new goal, or None to let the arm hang; the hand acts on it after the reaction time.
 
         The hand waits in front of the goal until the body has had `settle_s` to follow.
         """
-        self._wanted, self._react_s, self._settle_s = goal, time_s + reaction_s, settle_s
+        self._pending, self._react_s, self._settle_s = goal, time_s + reaction_s, settle_s
         self.out_s = inf
         if goal is None:
             self.goal = None
@@ -69,8 +69,11 @@ class Hand:
         aim: Aim,
         rng: np.random.Generator,
     ) -> None:
-        """Go on by one frame; `tip_now_m` is where the tip is, needed when the arm was hanging."""
-        if self._wanted is not None and time_s >= self._react_s:
+        """Advance by one frame.
+
+        `tip_now_m` is the present position of the finger tip, needed if the arm was hanging.
+        """
+        if self._pending is not None and time_s >= self._react_s:
             self._set_off(time_s, tip_now_m, aim, rng)
         elif self.goal is not None and self._path is not None:
             patience_s = aim.traits.patience_s + aim.latency_s
@@ -85,7 +88,7 @@ class Hand:
     def _set_off(
         self, time_s: float, tip_now_m: Vector | None, aim: Aim, rng: np.random.Generator
     ) -> None:
-        goal, self._wanted = self._wanted, None
+        goal, self._pending = self._pending, None
         if goal is None:
             return
         way_out: Vector = (0.0, 0.0, 0.0)
@@ -94,13 +97,13 @@ class Hand:
         elif self.goal is not None:
             way_out = self.goal.approach_m
         self._misses = 0
-        self._plan(goal, way_out, time_s, aim, rng, again=goal == self.goal)
+        self._plan(goal, way_out, time_s, aim, rng, retry=goal == self.goal)
 
     def _try_again(self, goal: Goal, time_s: float, aim: Aim, rng: np.random.Generator) -> None:
         self._misses += 1
-        again = self._misses == 1
-        way_out = self._back_off(goal) if again else goal.approach_m
-        self._plan(goal, way_out, time_s, aim, rng, again=again)
+        retry = self._misses == 1
+        way_out = self._back_off(goal) if retry else goal.approach_m
+        self._plan(goal, way_out, time_s, aim, rng, retry=retry)
 
     def _plan(
         self,
@@ -110,22 +113,22 @@ class Hand:
         aim: Aim,
         rng: np.random.Generator,
         *,
-        again: bool,
+        retry: bool,
     ) -> None:
-        # A second touch goes straight back in: the hand is in front of its surface already.
+        # A second touch goes straight back in, because the hand is still in front of the surface.
         inside = Goal(goal.kind, goal.effector, goal.target_m, goal.near_m, way_out)
         path = aim.path(
             self.tip_m,
-            (0.0, 0.0, 0.0) if again else way_out,
-            inside if again else goal,
+            (0.0, 0.0, 0.0) if retry else way_out,
+            inside if retry else goal,
             time_s,
             rng,
             self._misses,
         )
-        left = v_length(way_out) > 0.0 and not again
+        left = v_length(way_out) > 0.0 and not retry
         self.out_s = path.moves[0][0] + (_OUT_SHARE * path.moves[0][1] if left else 0.0)
         entering = (2 if left else 1) if v_length(goal.approach_m) > 0.0 else None
-        if entering is not None and not again and entering < len(path.moves):
+        if entering is not None and not retry and entering < len(path.moves):
             path = path.waiting_to_enter(entering, self.out_s + self._settle_s)
         self._path, self.goal, self.aimed_m = path, goal, path.at(path.end_s)
 
@@ -136,11 +139,11 @@ class Hand:
         return v_scale(goal.approach_m, min(1.0, _BACK_OFF_M / length))
 
     def _turn(self, step_s: float) -> None:
-        """Let the fingers point into the goal's opening."""
-        wanted = _FORWARD
+        """Turn the fingers towards the goal's opening."""
+        direction = _FORWARD
         if self.goal is not None and (length := v_length(self.goal.approach_m)) > 1e-6:
-            wanted = v_scale(self.goal.approach_m, -1.0 / length)
+            direction = v_scale(self.goal.approach_m, -1.0 / length)
         share = min(1.0, _TURN_RATE * step_s)
-        mixed = v_add(v_scale(self.fingers, 1.0 - share), v_scale(wanted, share))
+        mixed = v_add(v_scale(self.fingers, 1.0 - share), v_scale(direction, share))
         length = v_length(mixed)
-        self.fingers = v_scale(mixed, 1.0 / length) if length > 1e-3 else wanted
+        self.fingers = v_scale(mixed, 1.0 / length) if length > 1e-3 else direction

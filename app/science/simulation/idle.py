@@ -1,9 +1,9 @@
-"""Standing about: a movement the product makes itself, for when no capture is at hand.
+"""Generate the movement of a person standing idle, used when there is no capture.
 
 Each joint swings about a relaxed pose by a few slow sinusoids of seeded phase: breathing in the
 chest at about 0.25 Hz, sway of the hips below 0.5 Hz, small movements of head and arms. Frequencies
-are whole multiples of 1 / duration, so the movement repeats without a seam. The amplitudes are
-ours: small enough to look alive, no model of balance.
+are whole multiples of 1 / duration, so the movement loops seamlessly. The amplitudes are our own
+assumption: small enough to look alive, not a model of balance.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ _SWAY_HZ = (0.11, 0.23, 0.41)
 _BREATH_HZ = 0.25
 _BREATH_RAD = 0.012
 _SWAY_M = 0.006
-# Standard deviation of each joint's swing in degrees; joints that are not named stay still.
+# Standard deviation of each joint's swing in degrees; joints that are not listed stay still.
 _SWING_DEG = {
     "Hips": 0.6,
     "Spine": 0.5,
@@ -35,7 +35,7 @@ _SWING_DEG = {
 def idle_movement(
     skeleton: Skeleton, rng: np.random.Generator, *, duration_s: float = 30.0, rate_hz: float = 90.0
 ) -> Movement:
-    """Make a looping movement of a person who stands and waits, facing -z at the origin."""
+    """Generate a looping movement of a person who stands and waits, facing -z at the origin."""
     frames = max(2, round(duration_s * rate_hz))
     phase = 2.0 * np.pi * np.arange(frames) / frames
     vectors = np.zeros((frames, JOINT_COUNT, 3))

@@ -1,21 +1,21 @@
-"""A simulated participant: a body that moves like a person and does what the task asks.
+"""A simulated participant: a body that moves like a person and carries out the task.
 
-What one sees of it, frame by frame:
+Its visible behaviour, frame by frame:
 
-- without a goal (free roam) the base movement, a looped capture or an idle one, in place;
+- without a goal (free movement) the base movement, a looped capture or an idle one, in place;
 - with a goal the body stands. Trunk, head and the free arm keep a damped share of the base
   movement; the legs do not stride but stand and step (inverse kinematics to flat feet), so a
-  walking capture cannot walk through the boxes; the asked hand or foot goes to the goal;
-- the body leans and side-steps as far as a reach needs it, and no further;
-- no joint turns and no body sinks more quickly than a person's can;
-- to walk somewhere it steps there facing ahead, backwards if need be. Obstacles are not seen: give
-  way-points as goals, one after the other, to go round something.
+  walking capture cannot walk through the boxes; the hand or foot in use moves to the goal;
+- the body leans and side-steps only as far as a reach requires;
+- no joint turns and no body sinks faster than a person's can;
+- to walk somewhere it steps there facing ahead, backwards if need be. It does not see obstacles:
+  to go round something, give way-points as goals, one after the other.
 
-The loop is closed from outside: the task rules judge the delayed avatar, and the goal changes when
-they say so. Until then the limb stays where it arrived. A touch that had no effect for longer than
-the person's patience plus the delay is made once more.
+The caller closes the loop: the task rules judge the delayed avatar, and the caller changes the goal
+accordingly. Until then the limb stays where it arrived. If a touch has no effect for longer than
+the person's patience plus the delay, the person touches once more.
 
-All chance comes from `rng`: the same seed, times and goals give the same movement.
+All randomness comes from `rng`: the same seed, times and goals give the same movement.
 """
 
 from typing import cast
@@ -27,11 +27,11 @@ from app.science.simulation.aiming import Aim
 from app.science.simulation.base import BaseMovement
 from app.science.simulation.goal import Goal, GoalKind, SimulationError
 from app.science.simulation.hands import Hand
-from app.science.simulation.paths import minimum_jerk, no_quicker
+from app.science.simulation.paths import limit_turn_rate, minimum_jerk
 from app.science.simulation.placement import Placement, ReachPlan
 from app.science.simulation.posture import SIDE_NAMES, Posture
 from app.science.simulation.stance import Stance
-from app.science.simulation.traits import MovementTraits, drawn_traits
+from app.science.simulation.traits import MovementTraits, draw_traits
 from app.science.skeleton import JOINT_INDEX, Movement, Pose, Skeleton, forward_kinematics
 
 _TO_TASK_S = 0.8
@@ -40,14 +40,14 @@ _PRESS_M = 0.012
 
 
 class SimulatedParticipant:
-    """One person in one session.
+    """The body of one simulated person in one session.
 
     Args:
         skeleton: the person's body.
-        base: looping movement underneath everything: `loop(resample(retarget(...), 90.0))` or
+        base: looping background movement: `loop(resample(retarget(...), 90.0))` or
             `idle_movement(...)`.
-        rng: source of all chance; seed it and keep the seed.
-        traits: how the person moves; drawn from rng where left out.
+        rng: source of all randomness; seed it and keep the seed.
+        traits: how the person moves; drawn from rng if None.
         home_m: (x, z) where the person stands at first and for hand tasks.
 
     Raises:
@@ -63,7 +63,7 @@ class SimulatedParticipant:
         traits: MovementTraits | None = None,
         home_m: tuple[float, float] = (0.0, 0.0),
     ) -> None:
-        self.traits = traits or drawn_traits(rng)
+        self.traits = traits or draw_traits(rng)
         self.latency_s = 0.0
         self._rng, self._skeleton = rng, skeleton
         self._base = BaseMovement(base, rng.uniform(0.0, base.duration_s))
@@ -79,7 +79,7 @@ class SimulatedParticipant:
 
     @property
     def aimed_m(self) -> Vector | None:
-        """Where the present goal's limb will end, scatter included; None before it has set off."""
+        """The end point of the present goal's movement, with scatter; None before it starts."""
         if self._goal is None or self._goal.effector is None:
             return None
         for limb in (*self._hands, self._stance):
@@ -88,7 +88,7 @@ class SimulatedParticipant:
         return None
 
     def set_latency(self, latency_s: float) -> None:
-        """Tell the delay the person now sees: delayed feedback slows movements (see `traits`).
+        """Set the delay that the person sees: delayed feedback slows movements (see `traits`).
 
         Raises:
             SimulationError: below zero or not finite.
@@ -98,19 +98,19 @@ class SimulatedParticipant:
         self.latency_s = latency_s
 
     def pose(self, time_s: float, goal: Goal | None) -> Pose:
-        """Return the body at a time, pursuing a goal; call once a frame, in order of time.
+        """Return the body's pose at a time, pursuing a goal; call once per frame, in order of time.
 
         Raises:
-            SimulationError: time goes back, or a goal cannot be walked to.
+            SimulationError: the time goes back, or the goal is too far away to walk to.
         """
         before = time_s if self._time_s is None else self._time_s
         if not before <= time_s < float("inf"):
             raise SimulationError(f"Time went from {before} s to {time_s} s: poses go in order.")
-        # After a pause the springs need not race through the gap.
+        # After a pause the springs must not advance through the whole gap in one step.
         step_s = min(time_s - before, _LONGEST_FRAME_S)
         self._time_s = time_s
         if goal != self._goal:
-            self._take(goal, time_s)
+            self._assign_goal(goal, time_s)
         change = step_s / _TO_TASK_S
         self._task = min(1.0, self._task + change) if goal else max(0.0, self._task - change)
         if self._task == 0.0 and not goal:
@@ -118,35 +118,35 @@ class SimulatedParticipant:
         else:
             root, local = self._at_task(time_s, step_s)
         if self._local is not None:
-            local = no_quicker(self._local, local, time_s - before)
+            local = limit_turn_rate(self._local, local, time_s - before)
         self._local = local
         self._pose = Pose(np.array(root), np.array(local))
         return self._pose
 
-    def _take(self, goal: Goal | None, time_s: float) -> None:
-        """Pass a new goal to the limbs it concerns, and let the others rest."""
+    def _assign_goal(self, goal: Goal | None, time_s: float) -> None:
+        """Pass a new goal to the limbs that it concerns, and let the others rest."""
         if self._task == 0.0:
             x, y, z = self._roaming(time_s)[0]
             self._stance.place_at(self._stance.centre_m)
-            self._placement.put((x, z), y)
+            self._placement.reset((x, z), y)
         self._goal, self._plan = goal, None
         reaction_s = self.traits.reaction(self._rng)
         reaching = goal is not None and goal.kind is GoalKind.REACH
         for side, hand in enumerate(self._hands):
-            asked = reaching and goal is not None and goal.effector == f"{SIDE_NAMES[side]}Hand"
-            if asked and goal is not None:
+            selected = reaching and goal is not None and goal.effector == f"{SIDE_NAMES[side]}Hand"
+            if selected and goal is not None:
                 plan = self._placement.plan_reach(goal, side, hand.fingers)
-                hand.ask(goal, time_s, reaction_s, plan.settle_s)
+                hand.set_goal(goal, time_s, reaction_s, plan.settle_s)
                 self._plan = (hand, plan)
             elif hand.goal is not None or not hand.idle:
-                hand.ask(None, time_s, 0.0)
+                hand.set_goal(None, time_s, 0.0)
         stepping = goal is not None and goal.kind in {GoalKind.STEP, GoalKind.WALK_TO}
-        self._stance.ask(goal if stepping else None, time_s, reaction_s)
+        self._stance.set_goal(goal if stepping else None, time_s, reaction_s)
         if not reaching:
-            self._placement.stay()
+            self._placement.stand_upright()
 
     def _roaming(self, time_s: float) -> tuple[Vector, list[Quaternion]]:
-        """Return the base movement, in place over the feet's middle."""
+        """Return the base movement, in place above the midpoint of the feet."""
         x, y, z = self._base.root(time_s)
         cx, cz = self._stance.centre_m
         return (x + cx, y, z + cz), self._base.whole(time_s)
@@ -173,13 +173,14 @@ class SimulatedParticipant:
         return cast("Vector", tuple(blended)), mixed
 
     def _stand(self, local: list[Quaternion], time_s: float, step_s: float) -> Vector:
-        """Place feet, hips and trunk; return the hips' place."""
+        """Place feet, hips and trunk; return the position of the hips."""
         posture, stance, placement = self._posture, self._stance, self._placement
         aim = Aim(self.traits, self.latency_s, self.traits.foot_tempo, 0.0)
         stance.follow(time_s, aim, self._rng)
-        # The hips are seen at once and the arm late, so they wait until the arm is seen to be out.
+        # The avatar's hips follow without delay but its arm late: wait until its arm is out as
+        # well.
         if self._plan and time_s >= self._plan[0].out_s + self.latency_s:
-            placement.go(self._plan[1])
+            placement.start(self._plan[1])
             self._plan = None
         reaching = self._goal is not None and self._goal.kind is GoalKind.REACH
         x, z = placement.follow(stance, step_s, reaching=reaching)

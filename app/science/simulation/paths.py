@@ -8,10 +8,10 @@ J. Neuroscience 5:1688-1703)
 Several movements overlap a little and add up, which rounds the corners at the way-points
 (superposition of submovements: Flash and Henis 1991, J. Cognitive Neuroscience 3:220-230).
 
-Joints turn no quicker than muscles can (`no_quicker`), whatever is asked of the limbs. Inverse
-kinematics has places where a small change of what is asked turns a joint by any angle at once: an
-elbow or a knee that becomes straight, fingers along the arm's own axis. Muscles do not: a joint
-turns there as quickly as a person's can, and is where it should be some frames later.
+Joints turn no faster than muscles can turn them (`limit_turn_rate`). Inverse kinematics has
+singular poses, in which a small change of the goal turns a joint by any angle within one frame: an
+elbow or a knee that becomes straight, fingers along the arm's own axis. There a joint turns as
+quickly as a person's can, and reaches its rotation some frames later.
 """
 
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ _OVERLAP = 0.25
 
 
 def minimum_jerk(progress: float) -> float:
-    """Return the travelled share, 0 to 1, at a share of the time; held outside 0 to 1."""
+    """Return the share of the way covered after a share of the time, both 0 to 1 (clamped)."""
     if progress <= 0.0:
         return 0.0
     if progress >= 1.0:
@@ -35,7 +35,7 @@ def minimum_jerk(progress: float) -> float:
 
 @dataclass(frozen=True)
 class SmoothPath:
-    """A path in time: where it starts and the movements (start time, duration, displacement)."""
+    """A path in time: its start point and its movements (start time, duration, displacement)."""
 
     start_m: Vector
     moves: tuple[tuple[float, float, Vector], ...]
@@ -46,13 +46,13 @@ class SmoothPath:
         return max(start + duration for start, duration, _ in self.moves)
 
     def waiting_to_enter(self, leg: int, until_s: float) -> "SmoothPath":
-        """Return the path with everything from this leg on put off so that it begins then."""
+        """Return the path with movement `leg` and all later ones delayed until `until_s`."""
         delay_s = max(until_s - self.moves[leg][0], 0.0)
         later = tuple((begins + delay_s, lasts, way) for begins, lasts, way in self.moves[leg:])
         return SmoothPath(self.start_m, self.moves[:leg] + later)
 
     def at(self, time_s: float) -> Vector:
-        """Return the point at a time; held before the start and after the end."""
+        """Return the point at a time; constant before the start and after the end."""
         x, y, z = self.start_m
         for start, duration, (dx, dy, dz) in self.moves:
             share = minimum_jerk((time_s - start) / duration)
@@ -61,18 +61,19 @@ class SmoothPath:
 
 
 def path_length(points: list[Vector]) -> float:
-    """Return the length of straight lines through the points."""
+    """Return the total length of the straight lines through the points."""
     return sum(v_length(v_subtract(b, a)) for a, b in pairwise(points))
 
 
 def path_through(points: list[Vector], start_s: float, duration_s: float) -> SmoothPath:
-    """Make a path through two or more points that takes `duration_s` in all.
+    """Return a path through two or more points that takes `duration_s` in all.
 
-    A longer leg gets more time, by the square root of its length: legs of equal acceleration.
+    A longer leg gets more time, by the square root of its length, so that all have equal
+    acceleration.
     """
     legs = [v_subtract(b, a) for a, b in pairwise(points)]
     shares = [sqrt(v_length(leg)) + 1e-3 for leg in legs]
-    # Every leg but the last hands over before its end, so the legs together take less time.
+    # Every leg but the first starts before the previous one ends, which shortens the total time.
     stretch = duration_s / (sum(shares) - _OVERLAP * sum(shares[:-1]))
     moves, begins = [], start_s
     for leg, share in zip(legs, shares, strict=True):
@@ -88,18 +89,18 @@ MOST_SINK_M_PER_S = 2.5
 """Hips that sink freely for a third of a second fall 3 m/s."""
 
 
-def no_quicker(
-    before: Sequence[Quaternion], wanted: Sequence[Quaternion], step_s: float
+def limit_turn_rate(
+    previous: Sequence[Quaternion], rotations: Sequence[Quaternion], step_s: float
 ) -> list[Quaternion]:
-    """Return the wanted local rotations, each only as far from the one before as it can have come.
+    """Limit how far each local rotation turns from its previous one within a step.
 
-    All quaternions have length 1. The shorter way is taken.
+    All quaternions have length 1. Each turns the shorter way.
     """
     half_turn = 0.5 * MOST_TURN_RAD_PER_S * step_s
     near = cos(min(half_turn, 0.5 * pi))
     return [
         b if abs(cosine := _dot(a, b)) >= near else q_slerp(a, b, half_turn / acos(abs(cosine)))
-        for a, b in zip(before, wanted, strict=True)
+        for a, b in zip(previous, rotations, strict=True)
     ]
 
 

@@ -1,7 +1,7 @@
-"""From hips, feet and finger tip to joint rotations: the body's two-bone limbs on its trunk.
+"""Compute joint rotations from hips, feet and finger tip: two-bone limbs on a trunk.
 
-All functions work on a list of 22 local rotations and change the limb they are about. Single frames
-at 90 Hz call for plain floats: the same in arrays takes five times as long.
+All functions take a list of 22 local rotations and modify those of their limb. They process single
+frames at 90 Hz in plain floats: the same in arrays takes five times as long.
 """
 
 from math import exp, sqrt
@@ -36,7 +36,7 @@ _SOFT_FROM = 0.95
 
 
 class Posture:
-    """One skeleton's lengths as plain numbers, and the limbs placed with them."""
+    """The segment lengths of one skeleton as plain numbers, and the placing of its limbs."""
 
     def __init__(self, skeleton: Skeleton) -> None:
         self._offsets: list[Vector] = [(x, y, z) for x, y, z in skeleton.offsets_m.tolist()]
@@ -55,7 +55,7 @@ class Posture:
 
     def lean(self, local: list[Quaternion], shift_m: tuple[float, float]) -> None:
         """Bend the three spine joints so that the shoulders move by about (x, z) metres."""
-        # Each joint takes a third; half angles, so a sixth. Leaning to -z turns about -x.
+        # Each joint bends by a third; half angles, so a sixth. Leaning to -z turns about -x.
         x, z = shift_m[1] / self._trunk_m / 6.0, -shift_m[0] / self._trunk_m / 6.0
         scale = 1.0 / sqrt(1.0 + x * x + z * z)
         bend = (scale, scale * x, 0.0, scale * z)
@@ -75,7 +75,7 @@ class Posture:
         return height
 
     def legs(self, local: list[Quaternion], root_m: Vector, ankles: tuple[Vector, Vector]) -> None:
-        """Bring both ankles to their places, knees forward, feet flat and straight ahead."""
+        """Place both ankles, with knees forward and feet flat and straight ahead."""
         for name, ankle in zip(SIDE_NAMES, ankles, strict=True):
             first = JOINT_INDEX[f"{name}UpperLeg"]
             socket = v_add(root_m, q_rotate(local[0], self._offsets[first]))
@@ -96,9 +96,10 @@ class Posture:
         fingers: Vector,
         work: float,
     ) -> Vector:
-        """Bring a finger tip to its place, by the share `work`; the fingers point along a unit.
+        """Move a finger tip to `tip_m`, by the share `work`; `fingers` is their unit direction.
 
-        Returns the way from where the wrist comes to its place: zero where it is reached.
+        Returns the vector from the reached position of the wrist to its goal: zero if it is
+        reached.
         """
         sign, first = SIDE_SIGNS[side], JOINT_INDEX[f"{SIDE_NAMES[side]}UpperArm"]
         shoulder, turn = self._shoulder(local, root_m, first)
@@ -129,7 +130,7 @@ class Posture:
     def _shoulder(
         self, local: list[Quaternion], root_m: Vector, upper_arm: int
     ) -> tuple[Vector, Quaternion]:
-        """Return the shoulder joint's place and world_from_collar_bone."""
+        """Return the position of the shoulder joint and world_from_collar_bone."""
         place, turn = root_m, local[0]
         for joint in (*_TRUNK, upper_arm - 1):
             place = v_add(place, q_rotate(turn, self._offsets[joint]))
@@ -137,10 +138,11 @@ class Posture:
         return v_add(place, q_rotate(turn, self._offsets[upper_arm])), turn
 
     def _soft_reach(self, away_m: float) -> float:
-        """Return how far the arm stretches for a place this far away.
+        """Return how far the arm stretches towards a point at this distance.
 
-        Up to 95 % of its length exactly as far; beyond, it comes ever closer to full length, since
-        an elbow that has to become straight at once would have to turn infinitely fast.
+        Up to 95 % of its length it stretches exactly as far; beyond, it approaches full length
+        asymptotically, since an elbow that has to become straight abruptly would have to turn
+        infinitely fast.
         """
         soft_m, most_m = _SOFT_FROM * self.arm_m, self.arm_m
         if away_m <= soft_m:

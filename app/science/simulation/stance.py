@@ -1,4 +1,4 @@
-"""Two feet that stand or step, and the place of the body between them."""
+"""Two feet that stand or step, and the position of the body between them."""
 
 import numpy as np
 
@@ -23,39 +23,40 @@ _STILL: Vector = (0.0, 0.0, 0.0)
 
 
 class Stance:
-    """The feet by the middle of their soles, their steps, and the ankles' middle on the floor."""
+    """The positions of both feet over time: their soles, their steps, and the body above them."""
 
     def __init__(self, skeleton: Skeleton, centre_m: tuple[float, float]) -> None:
         stature = skeleton.stature_m
         self._half_width_m = 0.055 * stature
-        # The ankle is a quarter of the foot (.152 H) before the heel, so the middle is ahead of it.
+        # The ankle is a quarter of the foot's length (.152 H) from the heel, so the middle is ahead
+        # of it.
         self._sole_ahead_m = 0.038 * stature
         self._stride_m = 0.72 * skeleton.leg_length_m
         self.goal: Goal | None = None
         self.aimed_m: Vector | None = None
-        # Places once stepped into are known to be free of edges: the other foot may use them too.
+        # Places that a foot has stepped into are free of edges: the other foot may use them too.
         self._boxes: dict[Vector, Vector] = {}
         self.place_at(centre_m)
 
     def place_at(self, centre_m: tuple[float, float]) -> None:
-        """Put both feet on the floor under a body at (x, z), at once."""
+        """Put both feet on the floor under a body at (x, z), without stepping."""
         left, right = self._places((centre_m[0], 0.0, centre_m[1]))
         self.soles: list[Vector] = [left, right]
         self._edges: list[Vector] = [_STILL, _STILL]
         self._swing: tuple[int, SmoothPath] | None = None
         self._queue: list[Step] = []
-        self._wanted: Goal | None = None
+        self._pending: Goal | None = None
         self._react_s = 0.0
         self._since_s = 0.0
 
     @property
     def busy(self) -> bool:
-        """Whether a foot is in the air or will be without further asking."""
-        return self._swing is not None or bool(self._queue) or self._wanted is not None
+        """Whether a foot is in the air or a step is already planned or requested."""
+        return self._swing is not None or bool(self._queue) or self._pending is not None
 
     @property
     def bearing_foot(self) -> int | None:
-        """The foot with the weight: the one that stands, or has just stepped; None for both."""
+        """The foot that bears the weight: the standing or last moved one; None for both feet."""
         if self._swing is not None:
             return 1 - self._swing[0]
         if self.goal is None or self.goal.kind is not GoalKind.STEP:
@@ -64,40 +65,40 @@ class Stance:
 
     @property
     def centre_m(self) -> tuple[float, float]:
-        """The middle between the ankles, (x, z)."""
+        """The midpoint between the ankles, (x, z)."""
         left, right = self.soles
         return (left[0] + right[0]) / 2.0, (left[2] + right[2]) / 2.0 + self._sole_ahead_m
 
     def ankle(self, foot: int, ankle_height_m: float) -> Vector:
-        """Return the ankle of a flat foot."""
+        """Return the position of the ankle of a flat foot."""
         x, y, z = self.soles[foot]
         return (x, y + ankle_height_m, z + self._sole_ahead_m)
 
-    def ask(self, goal: Goal | None, time_s: float, reaction_s: float) -> None:
-        """Take a new goal to step or walk, or None to stay; it is acted on after reacting."""
-        self._wanted, self._react_s = goal, time_s + reaction_s
+    def set_goal(self, goal: Goal | None, time_s: float, reaction_s: float) -> None:
+        """Set a new goal to step or walk, or None to stay; it is acted on after a reaction time."""
+        self._pending, self._react_s = goal, time_s + reaction_s
         self._queue.clear()
         if goal is None:
             self.goal = None
 
     def side_step(self, centre_m: tuple[float, float]) -> None:
-        """Step so that the body stands at (x, z); ignored while steps are under way."""
+        """Step so that the body stands at (x, z); ignored while steps are in progress."""
         if not self.busy:
             places = self._places((centre_m[0], 0.0, centre_m[1]))
             self._queue = plan_to_stand(self._feet(), places, self._stride_m)
 
     def follow(self, time_s: float, aim: Aim, rng: np.random.Generator) -> None:
-        """Go on by one frame."""
+        """Advance by one frame."""
         if self._swing is not None:
             foot, path = self._swing
             self.soles[foot] = path.at(time_s)
             if time_s < path.end_s:
                 return
             self._swing, self._since_s = None, time_s
-        if self._wanted is not None and time_s >= self._react_s:
-            self.goal, self._wanted = self._wanted, None
+        if self._pending is not None and time_s >= self._react_s:
+            self.goal, self._pending = self._pending, None
             self._plan(self.goal)
-        elif self._wants_again(time_s, aim) and self.goal is not None:
+        elif self._retry_is_due(time_s, aim) and self.goal is not None:
             self._plan(self.goal)
         if self._queue:
             self._lift_off(time_s, aim, rng)
@@ -120,8 +121,8 @@ class Stance:
         else:
             self._queue = plan_to_stand(self._feet(), self._places(target), self._stride_m)
 
-    def _wants_again(self, time_s: float, aim: Aim) -> bool:
-        """Whether a step has stayed without effect for longer than the person's patience."""
+    def _retry_is_due(self, time_s: float, aim: Aim) -> bool:
+        """Return whether a step has had no effect for longer than the person's patience."""
         if self.goal is None or self.goal.kind is not GoalKind.STEP or self.busy:
             return False
         return time_s > self._since_s + aim.traits.patience_s + aim.latency_s

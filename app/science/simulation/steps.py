@@ -1,7 +1,7 @@
-"""Which foot goes where: a plan of single steps, and the swing of one foot.
+"""Plan which foot steps where.
 
-Feet are given by the middle of the sole. Both stay within a comfortable stride of each other: the
-foot that is behind follows until the goal is within a stride of the foot that stands.
+A foot's position is the middle of its sole. Both feet stay within a comfortable stride of each
+other: the rear foot follows until the goal is within a stride of the standing foot.
 """
 
 from math import hypot, sqrt
@@ -24,10 +24,10 @@ def distance_on_floor(a: Vector, b: Vector) -> float:
 
 
 def plan_to_stand(feet: Feet, places: Feet, stride_m: float) -> list[Step]:
-    """Plan steps until both feet stand at their places; the farther foot always goes next.
+    """Plan steps until both feet are at their places; the foot with the longer way goes next.
 
     Raises:
-        SimulationError: the places are so far away that the way would take more than 60 steps.
+        SimulationError: the way would take more than 60 steps.
     """
     now, steps = list(feet), list[Step]()
     while True:
@@ -45,12 +45,12 @@ def plan_to_step_on(
 ) -> list[Step]:
     """Plan steps of which the last one puts `foot` on the target.
 
-    The other foot comes only as near as it must. It side-steps before it advances, so it stays in
-    front of an edge where it can; where it must advance, or stands in one of the free `spots`, it
-    prefers these.
+    The other foot comes only as near as it must. It side-steps before it advances, so that it stays
+    in front of an edge if it can; if it must advance, or is in one of the free `spots`, it prefers
+    these.
 
     Raises:
-        SimulationError: as `plan_to_stand`.
+        SimulationError: the way would take more than 60 steps.
     """
     now, other, steps = list(feet), 1 - foot, list[Step]()
     while distance_on_floor(now[other], target) > stride_m:
@@ -95,7 +95,7 @@ def _check(steps: list[Step], target: Vector) -> None:
 
 
 def _towards(foot: Vector, place: Vector, standing: Vector, stride_m: float) -> Vector:
-    """Return the place, or the farthest point on the way there within a stride of the other."""
+    """Return the place, or the farthest point on the way to it within a stride of `standing`."""
     for share in (1.0, 0.8, 0.65, 0.5, 0.35, 0.2, 0.1):
         x = foot[0] + share * (place[0] - foot[0])
         z = foot[2] + share * (place[2] - foot[2])

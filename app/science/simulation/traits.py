@@ -1,6 +1,6 @@
-"""How one simulated person moves: drawn once, from published figures where there are any.
+"""How one simulated person moves: traits drawn once, from published data if available.
 
-| what | value | source |
+| quantity | value | source |
 |---|---|---|
 | reaction time | 0.27 s, SD 0.05 between, 15 % within | assumed, order as in Luce (1986) |
 | movement time | .230 + (.169 + 1.03 lag) ID, s | MacKenzie and Ware (1993), with a mouse |
@@ -12,8 +12,8 @@
 | foot slower than hand | factor 1.4 | assumed |
 | tempo and precision | factors between people, log-normal, SD 15 and 25 % | assumed |
 
-Everything assumed is ours: it makes rehearsals look alive and is no claim about people. Figures
-marked with a source were taken from the papers' well-known summaries.
+The assumed values are our own: they make rehearsals look alive and are no claim about people.
+Figures with a source were taken from the papers' well-known summaries.
 """
 
 import math
@@ -26,7 +26,7 @@ _FASTEST_MEAN_SPEED_M_S = 1.6
 
 @dataclass(frozen=True)
 class MovementTraits:
-    """One person's way of moving; times in seconds, the rest are factors and probabilities."""
+    """One person's way of moving; times are in seconds, the rest are factors and probabilities."""
 
     reaction_s: float = 0.27
     reaction_spread: float = 0.15
@@ -46,7 +46,7 @@ class MovementTraits:
     def movement_time(
         self, distance_m: float, near_m: float, latency_s: float, rng: np.random.Generator
     ) -> float:
-        """Draw a movement time for a way of this length to a target of this half width."""
+        """Draw the time of a movement over this distance to a target of this half width."""
         difficulty = math.log2(distance_m / (2.0 * near_m) + 1.0)
         mean_s = 0.230 + (0.169 + 1.03 * latency_s) * difficulty
         drawn = self.tempo * mean_s * math.exp(self.movement_spread * rng.standard_normal())
@@ -57,8 +57,8 @@ class MovementTraits:
         return self.precision * 2.0 * near_m / 4.133
 
 
-def drawn_traits(rng: np.random.Generator) -> MovementTraits:
-    """Draw one person."""
+def draw_traits(rng: np.random.Generator) -> MovementTraits:
+    """Draw the traits of one person."""
     return MovementTraits(
         reaction_s=max(0.15, 0.27 + 0.05 * rng.standard_normal()),
         tempo=math.exp(0.15 * rng.standard_normal()),

@@ -1,12 +1,12 @@
-"""Arms and legs by the law of cosines.
+"""Inverse kinematics of arms and legs by the law of cosines.
 
 Two bones of lengths a and b lead from a root to an end; the joint between them lies in the plane of
 the root, the end and a pole, on the pole's side. With d the distance from root to end,
 
     cos(alpha) = (a^2 + d^2 - b^2) / (2 a d)
 
-is the angle at the root between the way to the end and the first bone. An end out of reach is
-approached as far as the bones go: d is limited to |a - b| .. a + b, in the end's direction.
+is the angle at the root between the direction to the end and the first bone. An end out of reach is
+approached as far as possible: d is limited to |a - b| .. a + b, in the end's direction.
 """
 
 from dataclasses import dataclass
@@ -24,8 +24,8 @@ class TwoBone:
 
     Attributes:
         upper, lower: unit directions of the two bones.
-        normal: unit normal of their plane: the way to the end crossed with the pole's side.
-        short_m: by how much the end was out of reach; 0 where it is reached.
+        normal: unit normal of their plane: the direction to the end crossed with the pole's side.
+        short_m: by how much the end was out of reach; 0 if it is reached.
     """
 
     upper: Vector
@@ -59,7 +59,7 @@ def solve_two_bone(
 
 
 def _across(way: Vector, pole: Vector) -> Vector:
-    """Return the unit part of the pole across the way; another pole where it lies along it."""
+    """Return the unit component of the pole across `way`; of a spare pole if they are parallel."""
     for candidate in (pole, *_SPARE_POLES):
         along = v_dot(way, candidate)
         x = candidate[0] - along * way[0]
@@ -75,16 +75,16 @@ def arm_rotation(bone: Vector, normal: Vector, side: float) -> Quaternion:
     """Return world_from_joint of an arm bone that points along `bone`.
 
     In the T-pose the right arm (side +1) runs along +x and the left (-1) along -x, and both elbows
-    bend about y, forwards: so x goes to side * bone, and y to the axis the elbow bends about.
+    bend about y, forwards: so x is rotated to side * bone, and y to the bending axis of the elbow.
     """
     x_axis, y_axis = v_scale(bone, side), v_scale(normal, -side)
     return q_from_axes(x_axis, y_axis, v_cross(x_axis, y_axis))
 
 
 def hand_rotation(fingers: Vector, normal: Vector, side: float) -> Quaternion:
-    """Return world_from_hand for fingers along a unit direction, twisted as little as can be.
+    """Return world_from_hand for fingers along a unit direction, with the least possible twist.
 
-    `normal` is the arm's plane, as for `arm_rotation`.
+    `normal` is the normal of the arm's plane, as for `arm_rotation`.
     """
     along = v_dot(fingers, normal)
     flat = (

@@ -1,7 +1,7 @@
-"""The registry of the tests that a study can declare: what they are called, and what they need.
+"""The registry of the statistical tests that a study can declare: their names and requirements.
 
-`TESTS` loads no numpy and no scipy, because a study file is checked while the server starts.
-`StatisticalTest.load` imports the module that computes.
+`TESTS` loads no numpy and no scipy, because study files are checked while the server starts.
+`StatisticalTest.load` imports the module that computes the test.
 """
 
 from app.science.statistical_tests.registry import (

@@ -1,7 +1,7 @@
-"""The tests that can be declared, made: complete values in, an outcome as papers print it out.
+"""Run the declarable tests on complete values and report them in the style of a paper.
 
-The computations are those of `app.science.statistics`; what stands here is which of their figures a
-declared test reports, and how. Loads numpy and scipy.
+The computations are those of `app.science.statistics`; this module selects which of their results a
+declared test reports, and formats them. Loads numpy and scipy.
 """
 
 import math
@@ -26,40 +26,40 @@ _ALTERNATIVES: dict[Direction, Literal["two-sided", "greater", "less"]] = {
 
 
 def friedman_outcome(sample: Sample) -> Outcome:
-    """Friedman's test; raises StatisticsError."""
-    one = friedman(sample.values)
+    """Run Friedman's test; raises StatisticsError."""
+    found = friedman(sample.values)
     return Outcome(
-        n=one.n,
-        p=one.p,
-        sentence=f"χ²({one.df}) = {one.statistic:.2f}, {p_words(one.p)}, W = {one.kendall_w:.3f}, "
-        f"n = {one.n}",
+        n=found.n,
+        p=found.p,
+        sentence=f"χ²({found.df}) = {found.statistic:.2f}, {p_words(found.p)}, "
+        f"W = {found.kendall_w:.3f}, n = {found.n}",
         columns=("condition", "mean rank"),
-        rows=by_level(sample, one.mean_ranks),
-        method=f"Friedman's test, {one.method}. {one.note}".strip(),
+        rows=by_level(sample, found.mean_ranks),
+        method=f"Friedman's test, {found.method}. {found.note}".strip(),
     )
 
 
 def page_outcome(sample: Sample) -> Outcome:
-    """Page's trend test, one-sided in the declared direction; raises StatisticsError."""
+    """Run Page's trend test, one-sided in the declared direction; raises StatisticsError."""
     falls = sample.direction == "falls"
-    # The p given ties is of a rise; a fall is a rise of the reversed order.
-    one = page_trend(sample.values[:, ::-1] if falls else sample.values)
-    p = one.p_given_ties if math.isfinite(one.p_given_ties) else one.p
+    # `p_given_ties` tests for a rise; a fall is a rise of the reversed order.
+    found = page_trend(sample.values[:, ::-1] if falls else sample.values)
+    p = found.p_given_ties if math.isfinite(found.p_given_ties) else found.p
     return Outcome(
-        n=one.n,
+        n=found.n,
         p=p,
-        sentence=f"L = {one.statistic:g}, {p_words(p)}, one-sided ({sample.direction}), "
-        f"n = {one.n}",
+        sentence=f"L = {found.statistic:g}, {p_words(p)}, one-sided ({sample.direction}), "
+        f"n = {found.n}",
         columns=("condition", "median"),
         rows=by_level(sample, np.median(sample.values, axis=0).tolist()),
         method="Page's trend test; p by permutation of these ranks, ties included."
-        if math.isfinite(one.p_given_ties)
+        if math.isfinite(found.p_given_ties)
         else "Page's trend test; asymptotic p.",
     )
 
 
 def anova_outcome(sample: Sample) -> Outcome:
-    """Analysis of variance with repeated measures; raises StatisticsError."""
+    """Run an analysis of variance with repeated measures; raises StatisticsError."""
     whole = rm_anova(sample.values, ("latency",))
     effect = whole.effects[0]
     return Outcome(
@@ -75,22 +75,22 @@ def anova_outcome(sample: Sample) -> Outcome:
 
 
 def reference_outcome(sample: Sample) -> Outcome:
-    """Signed-rank tests of every level against the reference; raises StatisticsError."""
+    """Run signed-rank tests of every level against the reference; raises StatisticsError."""
     alternative = _ALTERNATIVES[sample.direction]
-    one = against_reference(
+    found = against_reference(
         sample.values,
         sample.levels,
         sample.reference or sample.levels[0],
         alternative=alternative,
         alpha=sample.alpha,
     )
-    p_values = [pair.p_holm if sample.holm else pair.test.p for pair in one.comparisons]
+    p_values = [pair.p_holm if sample.holm else pair.test.p for pair in found.comparisons]
     lowest = min(p_values)
     return Outcome(
         n=len(sample.values),
         p=lowest,
-        sentence=f"smallest {p_words(lowest)} of {len(p_values)} comparisons with {one.reference}, "
-        f"{alternative}, n = {len(sample.values)}",
+        sentence=f"smallest {p_words(lowest)} of {len(p_values)} comparisons with "
+        f"{found.reference}, {alternative}, n = {len(sample.values)}",
         columns=("comparison", "n", "median difference", "r (rank-biserial)", "p", "p declared"),
         rows=[
             (
@@ -101,7 +101,7 @@ def reference_outcome(sample: Sample) -> Outcome:
                 f"{pair.test.p:.3f}",
                 f"{p:.3f}",
             )
-            for pair, p in zip(one.comparisons, p_values, strict=True)
+            for pair, p in zip(found.comparisons, p_values, strict=True)
         ],
         method="Exact Wilcoxon signed-rank tests"
         + (", p adjusted by Holm's rule." if sample.holm else ", p not adjusted."),
@@ -109,17 +109,17 @@ def reference_outcome(sample: Sample) -> Outcome:
 
 
 def by_level(sample: Sample, figures: Sequence[float]) -> list[tuple[str, str]]:
-    """A row for each level with its figure, for tables of an outcome."""
+    """Return a table row for each level, with its value."""
     return [
         (level, two_decimals(figure)) for level, figure in zip(sample.levels, figures, strict=True)
     ]
 
 
 def two_decimals(value: float) -> str:
-    """Two decimals, and a minus as print has it."""
+    """Format a number with two decimals and a typographic minus sign."""
     return f"{value:.2f}".replace("-", "\u2212")
 
 
 def p_words(p: float) -> str:
-    """ "p = .012", "p < .001"."""
+    """Format a p value for a sentence: "p = .012" or "p < .001"."""
     return "p < .001" if p < 0.001 else f"p = {p:.3f}".replace("0.", ".", 1)

@@ -1,9 +1,8 @@
-"""The tests that a study can declare as its primary one, each an object that knows its words.
+"""The tests that a study can declare as its primary one, each with its names and descriptions.
 
-Whoever adds a test writes a module with its computation, a function from `Sample` to `Outcome`, and
-its entry in `TESTS`. A study can then declare it, the editor and the page of the preregistration
-name it in both languages, the page of results makes it for every measure, and `reembody analyse`
-for every table.
+To add a test, write a module with its computation, a function from `Sample` to `Outcome`, and its
+entry in `TESTS`. A study can then declare it, the editor and the preregistration page name it in
+both languages, the results page runs it for every measure, and `reembody analyse` for every table.
 """
 
 from collections.abc import Callable
@@ -17,21 +16,21 @@ from app.texts import Words
 
 @dataclass(frozen=True)
 class StatisticalTest:
-    """A test of one within-subject factor, the added latency.
+    """A test of one within-subjects factor, the added latency.
 
     Attributes:
         key: in study files, so it is never renamed.
         name: as lists and fields show it.
         phrase: in an English sentence, such as "Friedman's test of the score agency".
-        question: what it answers, as a heading.
+        question: the question that it answers, as a heading.
         directions: of the measure along the factor; what a study may declare.
-        fewest_conditions: levels of the factor that it needs.
-        needs_reference: whether it compares every level with one that is named.
-        assumptions: what must hold for its p value to be right.
-        effect_size: what its outcome gives beside p.
+        fewest_conditions: the number of levels of the factor that it needs at least.
+        needs_reference: whether it compares every level with a named reference level.
+        assumptions: what must hold for its p value to be valid.
+        effect_size: the effect size reported with p.
         source: where it was published.
-        outcome: "module.function" below `app.science.statistical_tests`, loaded when the test is
-            made.
+        outcome: "module.function" below `app.science.statistical_tests`, imported when the test is
+            run.
     """
 
     key: str
@@ -47,7 +46,7 @@ class StatisticalTest:
     outcome: str
 
     def load(self) -> Callable[[Sample], Outcome]:
-        """Import the function that makes the test; it raises StatisticsError where it cannot."""
+        """Import the function that runs the test; it raises StatisticsError for invalid data."""
         module, _, function = self.outcome.rpartition(".")
         found = getattr(import_module(f"app.science.statistical_tests.{module}"), function)
         return cast("Callable[[Sample], Outcome]", found)
@@ -124,10 +123,10 @@ TESTS: tuple[StatisticalTest, ...] = (FRIEDMAN, PAGE_TREND, RM_ANOVA, AGAINST_RE
 
 
 def statistical_test(key: str) -> StatisticalTest:
-    """The test with this key; raises KeyError where there is none."""
-    return {one.key: one for one in TESTS}[key]
+    """Return the test with this key; raises KeyError if there is none."""
+    return {test.key: test for test in TESTS}[key]
 
 
 def texts_of_tests() -> dict[str, Words]:
-    """The names of the tests, by their keys in the tables of the pages."""
-    return {f"value.{one.key}": one.name for one in TESTS}
+    """Return the names of the tests, by their keys in the text tables of the pages."""
+    return {f"value.{test.key}": test.name for test in TESTS}

@@ -1,4 +1,4 @@
-"""What a declared test gets and what it gives. Loads no numpy: the registry names these types."""
+"""Input and output of a declared test. Loads no numpy: the registry uses these types."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,15 +12,15 @@ Direction = Literal["two_sided", "rises", "falls"]
 
 @dataclass(frozen=True, eq=False)
 class Sample:
-    """What is tested, and how it was declared.
+    """The values to test, and the options that the study declares.
 
     Attributes:
         values: (n participants, k levels), complete; any unit.
         levels: names of the columns, in the order of the factor.
         direction: of the measure along the factor.
-        reference: the level that the others are compared with; None for the first.
+        reference: the level with which the others are compared; None for the first.
         holm: whether several comparisons are adjusted by Holm's rule.
-        alpha: what p is compared with.
+        alpha: significance level, with which p is compared.
     """
 
     values: "FloatArray"
@@ -33,11 +33,11 @@ class Sample:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a test gave.
+    """The result of a declared test.
 
     Attributes:
-        n: participants in it.
-        p: the one that decides, compared with alpha.
+        n: number of participants in it.
+        p: the decisive p value, to be compared with alpha.
         sentence: statistic, p, effect size and n, as papers print them.
         columns, rows: figures of each level or comparison, as text.
         method: how p was computed.

@@ -62,8 +62,7 @@ def touching_and_near(
     """Return which parts touch which surfaces in one frame, and which are near enough to go on.
 
     Both results are bool (S, P); near are those whose contact, once begun, would continue.
-    Arguments as
-    in `touching`; `release_margin_m` >= 0. Raises ValueError if the shapes do not fit.
+    Arguments as in `touching`; `release_margin_m` >= 0. Raises ValueError if the shapes do not fit.
     """
     n_parts = _check(segments_m, radii_m, release_margin_m, 3)
     is_touching = np.zeros((len(arrays.keys), n_parts), dtype=np.bool_)
@@ -106,10 +105,12 @@ def segment_box_distance_m(start: Floats, end: Floats, low: Floats, high: Floats
 
     Along the segment p(t) = start + t (end - start) the squared distance is convex and piecewise
     quadratic: its pieces meet where p crosses a face plane. So half its derivative,
-    s(t) = (p - clip(p)) . (end - start), increases monotonically and is linear between these
-    crossings: the last one with s <= 0 and the first one with s >= 0 enclose the minimum, which
-    linear
-    interpolation between them gives exactly.
+
+        s(t) = (p - clip(p)) . (end - start),
+
+    increases monotonically and is linear between these crossings: the last one with s <= 0 and the
+    first one with s >= 0 enclose the minimum, which linear interpolation between them gives
+    exactly.
     """
     along = end - start
     t = np.zeros((len(start), 8))

@@ -68,18 +68,15 @@ def build_layout(
     """Build the surfaces of a task, in a fixed order: box by box (panel, sides), target, start.
 
     Walls and panel lie outside the cavity and do not overlap each other. Walls extend over the edge
-    of
-    the panel, so a panel is touched from inside its box. With `Side.FRONT_RIM` (hand only) the last
-    `wall_thickness_m` of each wall before the opening become rim bars, which together form one
+    of the panel, so a panel is touched from inside its box. With `Side.FRONT_RIM` (hand only) the
+    last `wall_thickness_m` of each wall before the opening become rim bars, which together form one
     side.
 
     `sides`: None means all four walls and no rim. `start_square`: required for feet (the walk back
-    ends
-    there), not allowed for hands. `counting_foot`: None lets either foot count.
+    ends there), not allowed for hands. `counting_foot`: None lets either foot count.
 
     Raises LayoutError for sizes that are not positive, numbers that are not 1..n left to right,
-    sides
-    the limb does not have, overlapping boxes or blocks, and a foot box below the floor.
+    sides the limb does not have, overlapping boxes or blocks, and a foot box below the floor.
     """
     check_positive("wall_thickness_m", wall_thickness_m)
     check_positive("panel_thickness_m", panel_thickness_m)

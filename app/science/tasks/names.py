@@ -30,8 +30,7 @@ class Side(StrEnum):
     """A wall of a box, as seen by the participant (who faces -z).
 
     Hand boxes have left, right, top, bottom and, where configured, a front rim: the edges around
-    the
-    opening. Foot boxes have left, right, front (nearer to the participant, +z) and back (-z).
+    the opening. Foot boxes have left, right, front (nearer to the participant, +z) and back (-z).
     """
 
     LEFT = "left"

@@ -34,8 +34,7 @@ class TaskRun:
     """Applies the rules to one phase, input by input, and keeps its record.
 
     `state`: the present TaskState; `events`, `intervals`, `commands`: everything so far. Inputs
-    must
-    come in order of time; a rejected input (TaskRuleError) changes nothing.
+    must come in order of time; a rejected input (TaskRuleError) changes nothing.
     """
 
     def __init__(self, rules: TaskRules, parts: tuple[str, ...]) -> None:
@@ -88,8 +87,7 @@ def rederive(
     """Return the completions that follow from stored intervals and commands (in the order given).
 
     `initial` is the state from which to start, for a run that continues another; by default the
-    initial
-    state of the rules. Raises TaskRuleError if the record contradicts itself.
+    initial state of the rules. Raises TaskRuleError if the record contradicts itself.
     """
     return completions(replay(rules, intervals, commands, initial=initial)[1])
 

@@ -20,8 +20,7 @@ class Completion:
 
     `number`: 1 for the first. `completed_s`: monotonic clock; `completed_active_s`: active clock.
     `duration_s`: active time since the previous completion, or since the start. `order`: panel keys
-    as
-    they were touched. The counts are the mistakes made during this task.
+    as they were touched. The counts are the mistakes made during this task.
     """
 
     number: int

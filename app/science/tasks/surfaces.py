@@ -52,8 +52,7 @@ class Surface:
 
     `key`: "hand/2/panel", "hand/2/left", "hand/2/front_rim/top", "hand/target", "foot/start".
     `center_m`, `half_size_m`: world frame, metres. `box`: number of its box, None for target and
-    start.
-    `side`: set for kind SIDE only.
+    start. `side`: set for kind SIDE only.
     """
 
     key: str
@@ -80,8 +79,7 @@ class TaskLayout:
     """The validated surfaces of a task; the same for every participant of a study version.
 
     `reverse_after_task`: whether the order is reversed after each completion. `counting_foot`: the
-    foot
-    that counts in a foot task, None for either. `direction`: where the first order starts.
+    foot that counts in a foot task, None for either. `direction`: where the first order starts.
     """
 
     limb: Limb

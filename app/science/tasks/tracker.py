@@ -21,8 +21,7 @@ class ContactInterval:
     """An interval in which a part counted as touching a surface, in seconds.
 
     `begin_s`, `end_s`: monotonic clock. `begin_active_s`, `end_active_s`: active clock; the length
-    is
-    the same on both. The touch that stops the clock has length zero.
+    is the same on both. The touch that stops the clock has length zero.
     """
 
     surface: str
@@ -55,10 +54,8 @@ class ContactTracker:
         """Return the contacts that begin and end with this frame.
 
         `touching`: (S, P), surfaces and parts in the order given at construction. `near`: (S, P),
-        where an
-        existing contact continues although the part no longer touches (hysteresis); None for no
-        hysteresis.
-        Raises ValueError if the shapes do not fit.
+        where an existing contact continues although the part no longer touches (hysteresis); None
+        for no hysteresis. Raises ValueError if the shapes do not fit.
         """
         for name, array in (("touching", touching), ("near", near)):
             if array is not None and array.shape != self._touching.shape:

@@ -19,8 +19,7 @@ def current_goal(state: TaskState) -> str | None:
     """Return the key of the surface to touch next: a panel, the target, or the start square.
 
     The start square is the goal of a walk back. Before the start the goal is the first panel, and
-    in a
-    pause the goal of the moment when the phase resumes; None once frozen.
+    in a pause the goal of the moment when the phase resumes; None once frozen.
     """
     layout = state.rules.layout
     if state.frozen:
@@ -36,8 +35,7 @@ def surface_state(state: TaskState) -> dict[str, Colour]:
     """Return the colour of every surface.
 
     Panels are grey or green, sides white or red, the target green, the start square white. Sides
-    are
-    white while the clock is stopped: colours show what is being counted.
+    are white while the clock is stopped: colours show what is being counted.
     """
     layout, red = state.rules.layout, state.red_units()
     green = {layout.panel_key(box) for box in state.order[: state.n_green]}

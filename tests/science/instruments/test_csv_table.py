@@ -77,7 +77,7 @@ def test_a_header_alone_gives_a_header() -> None:
         (" \n\n", "empty"),
         ('"\n"', "empty"),
         ("id,age\n1,2\n", "No column is an item of karas2020"),
-        ("id,q1,Q1\n1,2,3\n", r"'q1' is there more than once \(columns 2, 3\)"),
+        ("id,q1,Q1\n1,2,3\n", r"'q1' occurs more than once \(columns 2, 3\)"),
         ("id,q1\n\np1,3\np2\n", "Line 4 has 1 cells, but the header has 2"),
         ("id,q1\np1,3,4\n", "Line 2 has 3 cells"),
         ("id,q1\np1,1\n\np2,8\n", r"Row 2 \(line 4\), column q1: the answer is '8'"),

@@ -25,13 +25,13 @@ def likert(key: str) -> Item:
 @pytest.mark.parametrize(
     ("changes", "path", "said"),
     [
-        ({"key": "Small"}, ("key",), "cannot be a key"),
+        ({"key": "Small"}, ("key",), "not a valid key"),
         ({"version": 0}, ("version",), "from 1"),
         ({"items": (), "scores": ()}, ("items",), "no item"),
         ({"languages": ()}, ("languages",), "No language"),
         ({"languages": ("en", "en")}, ("languages", 1), "twice"),
         ({"languages": ("en", "de")}, ("title", "de"), "'de'"),
-        ({"title": {"en": " "}}, ("title", "en"), "no wording"),
+        ({"title": {"en": " "}}, ("title", "en"), "missing in"),
         ({"items": (likert("q1"), likert("q1")), "scores": ()}, ("items", 1, "key"), "taken"),
         ({"items": (likert("mean"),), "scores": ()}, ("items", 0, "key"), "taken"),
         ({"scores": (Score("q1", ONE, "q2"),)}, ("scores", 0, "key"), "taken"),
@@ -63,7 +63,7 @@ def likert(key: str) -> Item:
         (
             {"items": (Item("q1", ONE, "likert", scale=Scale(1, 2, (ONE, {}))),), "scores": ()},
             ("items", 0, "scale", "labels", 1, "en"),
-            "no wording",
+            "missing in",
         ),
     ],
 )

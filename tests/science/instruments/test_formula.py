@@ -75,12 +75,12 @@ def test_zero_has_no_sign() -> None:
 @pytest.mark.parametrize(
     ("formula", "position", "said"),
     [
-        ("q1 + q9", 5, "'q9' is not known"),
+        ("q1 + q9", 5, "'q9' is unknown"),
         ("q1 + ", 4, "the formula ends"),
         ("", 0, "the formula ends"),
-        ("q1 q2", 3, "cannot go on"),
+        ("q1 q2", 3, "cannot follow"),
         ("(q1 + q2", 8, "not closed"),
-        ("q1)", 2, "cannot go on"),
+        ("q1)", 2, "cannot follow"),
         ("mean q1", 5, "in parentheses"),
         ("mean()", 5, "there is ')'"),
         ("q1 ** 2", 4, "there is '*'"),
@@ -88,10 +88,10 @@ def test_zero_has_no_sign() -> None:
         ("q1 % 2", 3, "'%' does not begin"),
         ("q1.real", 2, "'.' does not begin"),
         ("__import__('os')", 11, "does not begin"),
-        ("__import__(1)", 0, "'__import__' is not known"),
+        ("__import__(1)", 0, "'__import__' is unknown"),
         ("q1 + 1e5", 5, "'1' does not begin"),
-        ("q1 if q2 else q3", 3, "cannot go on"),
-        ("Q1", 0, "'Q1' is not known"),
+        ("q1 if q2 else q3", 3, "cannot follow"),
+        ("Q1", 0, "'Q1' is unknown"),
     ],
 )
 def test_a_formula_is_refused_at_the_right_character(
