@@ -1,1 +1,1 @@
-"""What keeps the record safe: backups, storage, opening the database, network, rights."""
+"""Protect the record: opening the database, backups, storage, network, participants' rights."""

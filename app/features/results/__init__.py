@@ -1,1 +1,1 @@
-"""What comes of the record: analyses, exports, replay, declared tests, imported answers."""
+"""Work with recorded data: analysis, exports, replay, preregistration and imported answers."""

@@ -1,19 +1,19 @@
-"""A copy of everything in one file, made and put back while the server runs.
+"""Back up everything to one file, and restore it, while the server runs.
 
 The file is a SQLite database with the product's own schema, whichever engine it came from, plus a
 manifest with a checksum of every table. So a backup of one engine can be restored on the other, it
-can be looked into with any SQLite tool, and damage is noticed before anything is replaced.
+can be inspected with any SQLite tool, and damage is detected before anything is replaced.
 
 shapes     the tables of a schema, as far as copying needs to know them
-rows       rows in one form that is the same on both engines
+rows       rows in a form that is the same on both engines
 digest     checksums over such rows
-readable   whether this program can read what rows mean
-content    whether rows and tables are ones that this program can have written
-manifest   what a backup says of itself
-writing    making the file
-reading    opening the file, whole and in the newest schema
-restoring  putting its rows in the place of a database's
-service    backing up and restoring, as others use them
+readable   whether this program can interpret the rows
+content    whether this program can have written the rows and tables
+manifest   the description of a backup inside its file
+writing    write the file
+reading    open the file, checked and in the newest schema
+restoring  replace the rows of a database by those of the file
+service    backing up and restoring, for use by other features
 """
 
 from app.features.care.backups.content import (

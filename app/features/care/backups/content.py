@@ -1,10 +1,10 @@
-"""Whether what a database holds is something that this program can have written.
+"""Check that a database contains only what this program can have written.
 
-Checksums show that a file is what was written, and SQLite's own check that its structure is whole.
-Neither says that the tables are ours, that a column of times holds times, or that an account has a
-role that there is: a damaged value, or a backup that somebody made up, would end the server where
-it reads it. `wrong_tables` and `wrong_rows` ask without a look at the bulk of long values;
-`RestoredContent` asks a database that rows were just put into, before they are committed.
+Checksums show that a file is what was written, and SQLite's own check that its structure is intact.
+Neither says that the tables are those of the product, that a column of times contains times, or
+that an account's role exists: a damaged value, or a forged backup, would crash the server where it
+is read. `wrong_tables` and `wrong_rows` check this without reading long values; `RestoredContent`
+checks rows that were just inserted into a database, before they are committed.
 """
 
 import json
@@ -31,15 +31,15 @@ _TYPES: dict[Kind, frozenset[type]] = {
     Kind.NUMBER: frozenset({int, float, NoneType}),
     Kind.TRUTH: frozenset({int, NoneType}),
     Kind.MOMENT: frozenset({str, NoneType}),
-    # SQLite makes a number of JSON that looks like one.
+    # SQLite converts JSON that looks like a number to a number.
     Kind.JSON: frozenset({str, int, float, NoneType}),
-    # Of these only the name of SQLite's type is asked for, not the bytes.
+    # Only the name of SQLite's type is queried, not the bytes.
     Kind.BYTES: frozenset({str}),
 }
 
 
 def columns_in(driver: sqlite3.Connection) -> dict[str, set[str]]:
-    """The tables of a SQLite file, each with the names of its columns."""
+    """Return the tables of a SQLite file, each with the names of its columns."""
     tables = driver.execute("SELECT name FROM sqlite_master WHERE type = 'table'").fetchall()
     columns = "SELECT name FROM pragma_table_info(?)"
     return {
@@ -50,7 +50,7 @@ def columns_in(driver: sqlite3.Connection) -> dict[str, set[str]]:
 def wrong_tables(
     found: Mapping[str, Collection[str]], ours: Sequence[TableShape], *, exactly: bool = False
 ) -> list[str]:
-    """Which tables and columns of `ours` are missing, in words; `exactly`: also any others."""
+    """Return sentences on missing tables and columns of `ours`; `exactly`: also on any others."""
     wrong = []
     for shape in ours:
         columns = [column.name for column in shape.columns]
@@ -66,15 +66,16 @@ def wrong_tables(
 
 
 def wrong_rows(driver: sqlite3.Connection, shapes: Iterable[TableShape]) -> Iterator[str]:
-    """Columns that hold something of another kind than theirs, each once, in words.
+    """Yield a sentence for each column with values of a wrong type.
 
-    No value is repeated: it may be somebody's answer. Raises what SQLite raises where a row cannot
-    be read at all; `app.platform.trouble.proves_damage` tells what that means.
+    No value is repeated: it may be a participant's answer. Raises what SQLite raises if a row
+    cannot
+    be read at all; `app.platform.trouble.proves_damage` says what that means.
     """
     for shape in shapes:
         wrong: set[str] = set()
         asked = ", ".join(_asked(one.name, one.kind) for one in shape.columns)
-        # The words are the schema's own, from our models or migrations.
+        # The names are those of the schema, from the models or migrations.
         rows = driver.execute(f'SELECT {asked} FROM "{shape.name}"')  # noqa: S608 - names of our schema
         while portion := rows.fetchmany(AT_ONCE):
             for one, values in zip(shape.columns, zip(*portion, strict=True), strict=True):
@@ -125,18 +126,19 @@ def _all_read(read: Callable[[str], object], values: Iterable[object]) -> bool:
 
 @dataclass
 class RestoredContent:
-    """What a restore asks of the rows it has just put in place, inside its transaction.
+    """The check of restored rows, inside the restore's transaction.
 
-    `even_though_altered`: take a record whose chains of hashes do not fit; somebody has decided so.
-    `lifetimes`: how long logins, pairing codes and invitations in it may still last, None for as
-    long as they say.
+    `even_though_altered`: accept a record whose hash chains do not verify, because a person decided
+    so.
+    `lifetimes`: how long logins, pairing codes and invitations in it may still last, None to leave
+    them unchanged.
     """
 
     even_though_altered: bool = False
     lifetimes: Lifetimes | None = None
 
     def __call__(self, db: Session) -> None:
-        """Raise InvalidInput for what cannot be read later, and for chains that do not verify."""
+        """Raise InvalidInput for rows that cannot be read later, and for chains that do not verify."""
         if not self.even_though_altered:
             _require_chains(db)
         require_readable(db, even_though_altered=self.even_though_altered)

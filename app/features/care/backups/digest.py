@@ -1,9 +1,9 @@
-"""Checksums over rows: equal exactly if the rows are, on whichever engine they are.
+"""Checksums over rows, equal if and only if the rows are, whichever engine they are on.
 
 A table's checksum is SHA-256 over lines of compact ASCII JSON, each with a line feed: first the
 names of its columns, then every row in the order of the primary key, with
-`{"sha256": "..."}` in the place of bytes. Numbers are written with as few digits as bring them back
-exactly. Everybody can compute it again with the tools of their choice.
+`{"sha256": "..."}` in the place of bytes. Numbers are written with the fewest digits that restore
+them exactly. Anybody can compute it again with other tools.
 """
 
 import hashlib
@@ -20,7 +20,7 @@ from app.features.care.backups.shapes import TableShape
 
 @dataclass(frozen=True)
 class TableDigest:
-    """How many rows a table has, and their checksum."""
+    """The number of rows of a table, and their checksum."""
 
     rows: int
     sha256: str
@@ -28,7 +28,7 @@ class TableDigest:
 
 @dataclass
 class Digester:
-    """Adds up the checksum of one table, portion by portion."""
+    """Compute the checksum of one table from its rows, a few at a time."""
 
     shape: TableShape
     rows: int = 0
@@ -38,21 +38,21 @@ class Digester:
         self._hash.update(_line([column.name for column in self.shape.columns]))
 
     def add(self, rows: Iterable[Row]) -> None:
-        """The next rows."""
+        """Add the next rows."""
         for row in rows:
             self._hash.update(_line(row))
             self.rows += 1
 
     @property
     def digest(self) -> TableDigest:
-        """The checksum of the rows so far."""
+        """Return the checksum of the rows so far."""
         return TableDigest(self.rows, self._hash.hexdigest())
 
 
 def digest_of(
     connection: Connection, shape: TableShape, progress: Progress = silent
 ) -> TableDigest:
-    """The checksum of a table as it is now."""
+    """Return the current checksum of a table."""
     digester = Digester(shape)
     for rows in read_rows(connection, shape):
         digester.add(rows)
@@ -61,7 +61,7 @@ def digest_of(
 
 
 def overall(revision: str, tables: Mapping[str, TableDigest]) -> str:
-    """One checksum over a whole database: its schema's revision and the checksum of each table."""
+    """Return one checksum over a whole database: its schema revision and all tables' checksums."""
     listed = {name: [one.rows, one.sha256] for name, one in sorted(tables.items())}
     return hashlib.sha256(_line([revision, listed])).hexdigest()
 

@@ -1,4 +1,4 @@
-"""What a backup says of itself, in a table of its own beside the product's."""
+"""The manifest of a backup, in a table of its own beside the product's."""
 
 import hashlib
 import json
@@ -16,9 +16,9 @@ FORMAT = "reembody-backup/1"
 
 @dataclass(frozen=True)
 class Manifest:
-    """When, from what and with what a backup was made, and the checksums of its tables.
+    """When, from which engine and by which version a backup was made, with its tables' checksums.
 
-    `revision`: of its schema. `engine`: sqlite or postgresql. `tables`: by name.
+    `revision`: that of its schema. `engine`: sqlite or postgresql. `tables`: by name.
     """
 
     made_at: datetime
@@ -29,21 +29,21 @@ class Manifest:
 
     @property
     def rows(self) -> int:
-        """How many rows there are in all."""
+        """Return the total number of rows."""
         return sum(table.rows for table in self.tables.values())
 
     @property
     def sha256(self) -> str:
-        """One checksum over everything in it: equal for equal content on either engine."""
+        """Return one checksum over all tables: equal for equal content on either engine."""
         return overall(self.revision, self.tables)
 
 
 class ManifestError(ValueError):
-    """There is no manifest, or not one that can be relied on."""
+    """The manifest of a backup is missing or invalid."""
 
 
 def write_manifest(connection: sqlite3.Connection, manifest: Manifest) -> None:
-    """Add the manifest to a backup under way."""
+    """Add the manifest to a backup that is being written."""
     tables = {
         name: {"rows": one.rows, "sha256": one.sha256}
         for name, one in sorted(manifest.tables.items())
@@ -65,7 +65,7 @@ def write_manifest(connection: sqlite3.Connection, manifest: Manifest) -> None:
 
 
 def read_manifest(connection: sqlite3.Connection) -> Manifest:
-    """The manifest of a backup; raises ManifestError, or sqlite3.Error where it is unreadable."""
+    """Return the manifest of a backup; raise ManifestError, or sqlite3.Error if it is unreadable."""
     try:
         rows = connection.execute(f"SELECT entry, value FROM {MANIFEST_TABLE}").fetchall()  # noqa: S608 - our own table
     except sqlite3.OperationalError as error:
@@ -93,5 +93,5 @@ def _parsed(entries: Mapping[str, str]) -> Manifest:
 
 
 def _seal(entries: Mapping[str, str]) -> str:
-    """A checksum over the entries: against damage, not against forgers."""
+    """Return a checksum over the entries, which protects against damage, not against forgery."""
     return hashlib.sha256(json.dumps(sorted(entries.items())).encode()).hexdigest()

@@ -1,12 +1,12 @@
-"""Whether this program can read what a database holds, asked the way it will read it later.
+"""Check that this program can read what a database contains, by the functions that read it later.
 
-A backup may be whole, of the right kinds of values and with checksums that fit, and still hold a
-snapshot that is no state, or an order of conditions that no study has: it would end the server at
-its next start, when nothing can be undone any more. So every text that is unpacked later is
-unpacked once before a restore is committed, by the functions that do it later.
+A backup may be complete, with the right types of values and with matching checksums, and still have
+a snapshot that is no valid state, or an order of conditions that no study has: it would crash the
+server at its next start, when the restore cannot be undone. So every text that is parsed later is
+parsed once before a restore is committed, by the same functions.
 
-`unfit_rows` looks at single values in a file of ours; `require_readable` at what rows mean, in a
-database that they were just put into.
+`unfit_rows` checks single values in a file; `require_readable` checks the meaning of rows in a
+database that they were just inserted into.
 """
 
 import sqlite3
@@ -92,7 +92,7 @@ _WORDS: Mapping[Any, Collection[str]] = {
 }
 """Columns without a check of the database that hold one of a few words."""
 _UNREADABLE = (
-    # Of which pydantic's, ConfigError and PlanError are.
+    # Includes pydantic's errors, ConfigError and PlanError.
     ValueError,
     TypeError,
     LookupError,
@@ -108,14 +108,14 @@ _UNREADABLE = (
 
 @dataclass(frozen=True)
 class Lifetimes:
-    """How long what opens the door may last from `now` on, by the settings of the installation."""
+    """How long restored credentials may last from `now` on, by the settings of the installation."""
 
     now: datetime
     login: timedelta
     pairing: timedelta
 
     def shorten(self, db: Session) -> None:
-        """End logins, pairing codes and invitations no later than if they were made now."""
+        """Limit the expiry of logins, pairing codes and invitations to that of new ones."""
         for row, lasts in (
             (LoginToken, self.login),
             (PairingCode, self.pairing),
@@ -126,16 +126,16 @@ class Lifetimes:
 
 
 def unfit_rows(driver: sqlite3.Connection) -> Iterator[str]:
-    """In each table of a file of ours, the first row with a value that its column cannot hold.
+    """Yield a sentence on the first row of each table with a value that its column cannot hold.
 
-    In words. Looked at are numbers beyond the column's, times of other centuries, NUL characters,
-    and what the checks of the schema ask for, which SQLite can be told to leave out.
+    Checked are numbers beyond the column's range, times of other centuries, NUL characters, and the
+    check constraints of the schema, which SQLite can be told to ignore.
     """
     for table in Base.metadata.sorted_tables:
         conditions = dict(_conditions(table))
         key = ", ".join(f'"{column.name}"' for column in table.primary_key)
         found = ", ".join(f"({one})" for one in conditions)
-        # The words are the schema's own, from our models.
+        # The names are those of the schema, from the models.
         query = f'SELECT {key}, {found} FROM "{table.name}" WHERE {" OR ".join(conditions)} LIMIT 1'  # noqa: S608 - names of our schema
         for row in driver.execute(query):
             length = len(table.primary_key)
@@ -146,7 +146,7 @@ def unfit_rows(driver: sqlite3.Connection) -> Iterator[str]:
 
 
 def _conditions(table: Table) -> Iterator[tuple[str, str]]:
-    """What must not be, in SQL, and in words."""
+    """Yield each forbidden condition of a table, in SQL and in words."""
     for column in table.columns:
         kind = column.type.impl_instance if isinstance(column.type, TypeDecorator) else column.type
         name = f'"{column.name}"'
@@ -160,7 +160,7 @@ def _conditions(table: Table) -> Iterator[tuple[str, str]]:
                 )
             case DateTime():
                 yield (
-                    # SQLite compares such a column as a number, its first letters as text.
+                    # SQLite compares such a column as a number, but its first characters as text.
                     f"substr({name}, 1, 4) NOT BETWEEN '{FIRST_YEAR}' AND '{LAST_YEAR}'",
                     f"{column.name} lies outside of {FIRST_YEAR} to {LAST_YEAR}",
                 )
@@ -174,8 +174,8 @@ def _conditions(table: Table) -> Iterator[tuple[str, str]]:
 def require_readable(db: Session, *, even_though_altered: bool = False) -> None:
     """Raise InvalidInput, naming table, row and value, for what this program cannot have written.
 
-    `even_though_altered`: texts may differ from their hashes, and sessions from their logs. All of
-    it must be readable all the same.
+    `even_though_altered`: texts may differ from their hashes, and sessions from their logs, but
+    everything must be readable.
     """
     _check_words(db)
     _check_json(db)
@@ -208,7 +208,7 @@ def _row_name(key: tuple[object, ...]) -> str:
 
 @contextmanager
 def _reading(row: object, key: object, column: str, value: object) -> Iterator[None]:
-    """Turn whatever unpacking a value raises into the refusal of that value."""
+    """Turn any error of parsing a value into InvalidInput for that value."""
     try:
         yield
     except _UNREADABLE as error:
@@ -228,7 +228,7 @@ def _check_words(db: Session) -> None:
 
 
 def _check_json(db: Session) -> None:
-    """A list where the models say list, an object where they say dict."""
+    """Require a list where the models declare a list, an object where they declare a dict."""
     for mapper in Base.registry.mappers:
         table = mapper.local_table
         hints = get_type_hints(mapper.class_)
@@ -260,7 +260,7 @@ def _check_people(db: Session) -> None:
         if not is_username(account.username):
             raise _refused(Account, account.id, "username", account.username, "no user name")
         if not is_hash(account.password_hash):
-            # Never the hash itself: somebody could try passwords on it.
+            # Do not show the hash itself: it could be used to guess the password.
             raise _refused(Account, account.id, "password_hash", "...", "no hash of a password")
     for key, code in db.execute(select(Participant.id, Participant.code)):
         if not is_code(code):
@@ -285,7 +285,7 @@ def _check_hash(row: InstrumentVersion | StudyVersion | AvatarVersion) -> None:
 
 
 def _checked_versions(db: Session, *, even_though_altered: bool) -> dict[str, StudyProtocol]:
-    """The protocol of every study version, by its id."""
+    """Return the protocol of every study version, by its id."""
     numbers: dict[str, list[int]] = {}
     protocols: dict[str, StudyProtocol] = {}
     wordings = {
@@ -323,7 +323,7 @@ def _check_avatars(db: Session) -> None:
 
 
 def _check_ledgers(db: Session, protocols: Mapping[str, StudyProtocol]) -> None:
-    """Every slot's order is one of the conditions of the design, and the blocks are whole."""
+    """Require every slot's order to have the design's conditions, and the blocks to be complete."""
     designs: dict[tuple[str, str], list[str]] = {}
     for version in db.scalars(select(StudyVersion)):
         conditions = sorted(one.key for one in protocols[version.id].conditions)

@@ -1,7 +1,7 @@
-"""Opening a backup without touching it, and checking that it is whole.
+"""Open a backup without modifying it, and check that it is complete.
 
-A backup of an earlier version is copied, and the copy brought to the newest schema; the file itself
-is never changed.
+A backup of an earlier version is copied, and the copy migrated to the newest schema; the file
+itself is never changed.
 """
 
 import shutil
@@ -29,10 +29,11 @@ from app.schema_revisions import known_revisions, migrate_file, newest_revision
 
 @dataclass(frozen=True)
 class Backup:
-    """A backup that is open for reading, and whose rows are what was written.
+    """A backup that is open for reading, and whose checksums match.
 
-    `path` is the file that was given. `shapes` are its tables, those that are referred to first,
-    `tables` their checksums, `connection` the way to their rows.
+    `path` is the file that was given. `shapes` are its tables, referenced ones first, `tables`
+    their
+    checksums, `connection` the connection to read their rows.
     """
 
     path: Path
@@ -44,10 +45,11 @@ class Backup:
 
 @contextmanager
 def opened_backup(path: Path, progress: Progress = silent) -> Iterator[Backup]:
-    """Open a file and compute every checksum in it again, before anything is done with it.
+    """Open a backup and verify every checksum in it.
 
-    Raises NotFound where there is no file, and InvalidInput for one that is damaged, cut off, or
-    not of ours. The file is neither changed nor locked.
+    Raises NotFound if there is no file, and InvalidInput if it is damaged, truncated or not a
+    Reembody
+    backup. The file is neither changed nor locked.
     """
     if not path.is_file():
         raise NotFound(missing_file(path), value=str(path))
@@ -66,11 +68,11 @@ def opened_backup(path: Path, progress: Progress = silent) -> Iterator[Backup]:
 
 
 def require_ours(backup: Backup) -> None:
-    """Refuse what no backup of this program holds, whatever its checksums say.
+    """Reject a backup that this program cannot have written, whatever its checksums say.
 
-    `backup` is in the newest schema. Raises InvalidInput for tables and columns that are missing or
-    too many, views and triggers, values of another kind or range than their column's, and rows that
-    refer to nothing.
+    `backup` is in the newest schema. Raises InvalidInput for missing or additional tables and
+    columns,
+    views and triggers, values of a wrong type or range, and rows that refer to missing rows.
     """
     driver: Any = backup.connection.connection.driver_connection
     found = {shape.name: [one.name for one in shape.columns] for shape in backup.shapes}
@@ -116,7 +118,7 @@ def _refused(path: Path, why: str) -> InvalidInput:
 
 @contextmanager
 def opened_copy(path: Path) -> Iterator[Connection]:
-    """A SQLite file that nobody writes, to be read."""
+    """Open a SQLite file that no process writes, for reading."""
     with (
         closing(sqlite3.connect(_address(path), uri=True, check_same_thread=False)) as driver,
         _through_sqlalchemy(driver) as connection,
@@ -127,17 +129,17 @@ def opened_copy(path: Path) -> Iterator[Connection]:
 def digests(
     connection: Connection, shapes: tuple[TableShape, ...], progress: Progress = silent
 ) -> dict[str, TableDigest]:
-    """The checksums of all tables, as they are."""
+    """Return the current checksums of all tables."""
     return {shape.name: digest_of(connection, shape, progress) for shape in shapes}
 
 
 def _address(path: Path) -> str:
-    # Immutable: SQLite makes no lock and no file beside it, so it may lie on a read-only medium.
+    # Immutable: SQLite creates no lock and no other file, so the medium may be read-only.
     return f"{path.absolute().as_uri()}?mode=ro&immutable=1"
 
 
 def _require_length(path: Path) -> None:
-    """SQLite itself does not miss a few last bytes."""
+    """Raise ManifestError if the file is truncated; SQLite does not notice a few missing bytes."""
     with path.open("rb") as file:
         start = file.read(32)
     page_size, pages = int.from_bytes(start[16:18], "big"), int.from_bytes(start[28:32], "big")
@@ -169,9 +171,9 @@ def _why(error: Exception) -> str:
 
 @contextmanager
 def as_newest(backup: Backup, workplace: Path) -> Iterator[Backup]:
-    """The same content in the newest schema; a copy is made in the folder `workplace` if need be.
+    """Yield the backup in the newest schema, from a migrated copy in `workplace` if necessary.
 
-    Raises InvalidInput for a backup of a newer program, NotDurable where there is no room.
+    Raises InvalidInput for a backup of a newer program, NotDurable if there is no space.
     """
     revision = backup.manifest.revision
     if revision == newest_revision():
@@ -195,7 +197,7 @@ def as_newest(backup: Backup, workplace: Path) -> Iterator[Backup]:
             migrate_file(copy)
         except (OSError, sqlite3.Error, DBAPIError, RuntimeError, ValueError) as error:
             if not isinstance(error, OSError) and explain(error) in (None, DAMAGED):
-                # Not the disk's fault: its tables are not those of the schema that it names.
+                # The disk is not the cause: the tables are not those of the schema in the manifest.
                 raise _refused(backup.path, _why(error)) from error
             raise NotDurable(
                 f"{backup.path} could not be brought to the newest schema in {workplace}: "

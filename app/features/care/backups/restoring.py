@@ -1,4 +1,4 @@
-"""Putting a backup's rows in the place of everything a database holds, in its one transaction."""
+"""Replace all rows of a database by those of a backup, in one transaction."""
 
 from collections.abc import Sequence
 
@@ -15,10 +15,10 @@ LOCK_TIMEOUT = "30s"
 
 
 def hold_still(target: Connection, shapes: Sequence[TableShape]) -> None:
-    """Keep every other writer out until this transaction ends; readers are not disturbed.
+    """Block all other writers until this transaction ends; readers continue.
 
-    On SQLite a writing transaction does that by itself. Raises NotDurable where somebody else does
-    not let go.
+    On SQLite a writing transaction does so by itself. Raises NotDurable if another writer does not
+    release its lock.
     """
     if target.dialect.name == "sqlite":
         return
@@ -34,7 +34,7 @@ def hold_still(target: Connection, shapes: Sequence[TableShape]) -> None:
 
 
 def is_empty(target: Connection, shapes: Sequence[TableShape]) -> bool:
-    """Whether there is no row in any table."""
+    """Return whether no table has a row."""
     return not any(
         target.execute(select(column(shape.key[0])).select_from(table(shape.name)).limit(1)).first()
         for shape in shapes
@@ -42,10 +42,10 @@ def is_empty(target: Connection, shapes: Sequence[TableShape]) -> bool:
 
 
 def replace_rows(target: Connection, backup: Backup, progress: Progress = silent) -> None:
-    """Delete every row, insert the backup's, and compute the checksums of what is then there.
+    """Delete every row, insert the backup's, and verify the checksums of the inserted rows.
 
-    `target` must have the backup's schema. Raises InvalidInput if it does not hold afterwards what
-    the backup holds; the caller's transaction must then be rolled back, as for any other error.
+    `target` must have the backup's schema. Raises InvalidInput if its content then differs from the
+    backup's; the caller's transaction must then be rolled back, as for any other error.
     """
     for shape in reversed(backup.shapes):
         target.execute(delete(table(shape.name)))

@@ -1,4 +1,4 @@
-"""Rows in one form that is the same on both engines, read and written a few at a time."""
+"""Read and write rows in a form that is the same on both engines, a few at a time."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
@@ -44,10 +44,10 @@ Progress = Callable[[str, int], None]
 
 
 def read_rows(connection: Connection, shape: TableShape) -> Iterator[list[Row]]:
-    """All rows in the order of the primary key, texts ordered by code point, in portions."""
+    """Yield all rows in the order of the primary key, in portions; texts are ordered by code point."""
     size = LONG_ROWS if shape.has_bytes else SHORT_ROWS
     if connection.dialect.name == "sqlite":
-        # Each file is an engine of its own, which would compile every one of these again.
+        # A driver-level query: each file has an engine of its own, which would compile it again.
         result: Result[Any] = connection.exec_driver_sql(_sqlite_query(shape))
     else:
         query = _postgresql_query(shape)
@@ -57,7 +57,7 @@ def read_rows(connection: Connection, shape: TableShape) -> Iterator[list[Row]]:
 
 
 def write_rows(connection: Connection, shape: TableShape, rows: Sequence[Row]) -> None:
-    """Insert rows that `read_rows` gave, on this engine or on the other."""
+    """Insert rows from `read_rows`, on the same or on the other engine."""
     if connection.dialect.name == "sqlite":
         connection.exec_driver_sql(sqlite_insert(shape), list(rows))
         return
@@ -71,7 +71,7 @@ def write_rows(connection: Connection, shape: TableShape, rows: Sequence[Row]) -
 
 
 def sqlite_insert(shape: TableShape) -> str:
-    """The statement that stores such a row in SQLite, with a `?` for each column."""
+    """Return the SQLite statement that inserts such a row, with a `?` for each column."""
     names = ", ".join(_quoted(one.name) for one in shape.columns)
     marks = ", ".join("?" * len(shape.columns))
     return f"INSERT INTO {_quoted(shape.name)} ({names}) VALUES ({marks})"  # noqa: S608 - names, quoted
@@ -79,7 +79,7 @@ def sqlite_insert(shape: TableShape) -> str:
 
 @lru_cache(maxsize=KEPT_QUERIES)
 def _sqlite_query(shape: TableShape) -> str:
-    # SQLite makes a number of JSON that looks like one.
+    # SQLite converts JSON that looks like a number to a number.
     selected = ", ".join(
         f"CAST({_quoted(one.name)} AS TEXT)" if one.kind is Kind.JSON else _quoted(one.name)
         for one in shape.columns
@@ -89,7 +89,7 @@ def _sqlite_query(shape: TableShape) -> str:
 
 
 def _quoted(name: str) -> str:
-    # Whoever made the file chose its names.
+    # The names come from the file, which may be malicious.
     return '"' + name.replace('"', '""') + '"'
 
 
@@ -104,7 +104,7 @@ def _postgresql_query(shape: TableShape) -> Select[Any]:
 
 
 def _ordered(one: ColumnShape) -> ColumnElement[Any]:
-    # PostgreSQL sorts texts as its locale likes; SQLite sorts their bytes.
+    # PostgreSQL sorts texts by its locale, SQLite by their bytes.
     if one.kind is Kind.TEXT:
         return column(one.name, String).collate("C")
     return column(one.name)
@@ -149,4 +149,4 @@ def _bare(shape: TableShape) -> Table:
 
 
 def silent(_table: str, _rows: int) -> None:
-    """The progress callback that reports nothing."""
+    """Ignore the progress (the default callback)."""

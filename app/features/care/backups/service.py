@@ -1,4 +1,4 @@
-"""Backing up and restoring, as the rest of the product asks for it."""
+"""Back up and restore a database, for use by other features."""
 
 import sqlite3
 from collections.abc import Callable, Iterator
@@ -40,7 +40,7 @@ _S_PER_NS = 1e-9
 
 @dataclass(frozen=True)
 class BackedUp:
-    """A backup that is on the disk. `sha256` is over its content: equal for equal content.
+    """A finished backup; `sha256` is over its content: equal for equal content.
 
     `audit_head`: the newest entry of the audit trail in it, as SEQ:HASH; None in a schema that had
     no trail yet.
@@ -58,11 +58,11 @@ class BackedUp:
 
 @dataclass(frozen=True)
 class Restored:
-    """A restore that is committed.
+    """A committed restore.
 
-    `made_at`: of the backup. `before`: where the rows that were replaced are kept, if there were
-    any. `unpaired`: headsets that have to be paired again. `erasures_reapplied`: participants in
-    the backup whose data had been erased since, and were erased again.
+    `made_at`: that of the backup. `before`: the backup of the replaced rows, if there were any.
+    `unpaired`: number of headsets that must be paired again. `erasures_reapplied`: number of
+    participants in the backup whose data had been erased since, and were erased again.
     """
 
     path: Path
@@ -76,13 +76,13 @@ class Restored:
 
 
 class Outliving(Protocol):
-    """What a restore must not undo; called inside its transaction."""
+    """Changes that a restore must not undo; called inside its transaction."""
 
     def snapshot(self, db: Session) -> None:
-        """The rows are still those that will be replaced."""
+        """Read the changes while the rows to be replaced are still there."""
 
     def reapply(self, db: Session) -> int:
-        """The backup's rows are there; how many changes were made to them."""
+        """Apply the changes to the backup's rows, and return how many there were."""
 
 
 def back_up(
@@ -93,12 +93,13 @@ def back_up(
     notes: Notes | None = None,
     progress: Progress = silent,
 ) -> BackedUp:
-    """Copy everything, as it is at this moment, into the new file `to`; nobody waits for it.
+    """Copy everything in the database, as of this moment, to the new file `to`, blocking nobody.
 
-    `notes` keep a note of it while it is made, for a place outside of the data folder.
+    `notes` record the temporary file while it is written, for a place outside of the data folder.
 
-    On SQLite the log cannot be emptied before the copy is finished: it grows meanwhile. Raises
-    Conflict, NotFound or NotDurable; then nothing is left of the file.
+    On SQLite the write-ahead log cannot be emptied before the copy is finished, and grows
+    meanwhile.
+    Raises Conflict, NotFound or NotDurable; then nothing is left of the file.
     """
     began_ns = clock.monotonic_ns()
     with database.reading() as db:
@@ -120,11 +121,12 @@ def back_up(
 
 @contextmanager
 def checked_backup(path: Path, workplace: Path, progress: Progress = silent) -> Iterator[Backup]:
-    """A backup whose checksums all fit, in the newest schema; nothing else is touched yet.
+    """Open a backup in the newest schema, with all checks passed; the database is not touched.
 
     One of an earlier version is copied into the folder `workplace` and migrated there. Raises
-    NotFound or InvalidInput for a file that is missing, damaged, not ours, or a newer program's,
-    and for one whose tables and values are not what this program writes.
+    NotFound or InvalidInput for a file that is missing, damaged, not a Reembody backup, or of a
+    newer
+    program, and for one whose tables and values this program cannot have written.
     """
     with opened_backup(path, progress) as given, as_newest(given, workplace) as backup:
         require_ours(backup)
@@ -132,7 +134,7 @@ def checked_backup(path: Path, workplace: Path, progress: Progress = silent) -> 
 
 
 def holds_people(backup: Backup) -> bool:
-    """Whether there are participants in it who are people, neither simulated nor a test."""
+    """Return whether the backup has participants of the kind people."""
     people: Select[tuple[Any]] = (
         select(column("id")).select_from(table("participants")).where(column("kind") == "people")
     )
@@ -151,22 +153,25 @@ def restore(
     content: Callable[[Session], None] | None = None,
     progress: Progress = silent,
 ) -> Restored:
-    """Put the backup in the place of everything in `database`, whose schema must be the newest.
+    """Replace everything in `database`, whose schema must be the newest, by the backup.
 
-    All in one transaction: others see what was there before, or the whole backup. Rows that are
-    replaced are backed up into the folder `keep_in` first, inside the same transaction, so that
+    All in one transaction: other readers see either the previous content or the whole backup. Rows
+    to
+    be replaced are backed up into the folder `keep_in` first, inside the same transaction, so that
     nothing can be written in between.
 
-    A headset of a session that is not over has forgotten what was acknowledged to it after the
-    backup, so what it sends next would not follow on: it has to be paired again, which begins a new
-    run.
+    The headset of an open session has discarded what was acknowledged to it after the backup, so
+    the
+    data that it sends next would have a gap: it has to be paired again, which begins a new run.
 
-    Raises Conflict where sessions are active or rows would be replaced and the caller did not
-    allow it, NotDurable where there is no room; then nothing has changed.
+    Raises Conflict if sessions are active or rows would be replaced and the caller did not
+    allow it, NotDurable if there is no space; then nothing has changed.
 
-    `erasures` and `content` are what every command that restores must give. The first makes
-    erasures again that are newer than the backup: nobody ever sees the data come back. The second
-    looks at the rows before they are committed, and refuses them by raising ReembodyError.
+    Every command that restores must pass `erasures` and `content`. The first repeats erasures that
+    are
+    newer than the backup, so that nobody ever sees erased data again. The second checks the rows
+    before
+    they are committed, and rejects them by raising ReembodyError.
     """
     began_ns = clock.monotonic_ns()
     with _Before(database) as kept, database.writing() as db:
@@ -199,10 +204,13 @@ def restore(
 
 @dataclass
 class _Before:
-    """The backup of what a restore replaces; it goes if the restore fails.
+    """The backup of what a restore replaces; deleted if the restore fails.
 
-    What was to be replaced is still there then, and the backup would be one copy of people's data
-    more. But a commit that fails may have happened all the same: so it is looked at again.
+    After a failure the rows are still in the database, and the backup would be an unnecessary copy
+    of
+    people's data. But a commit that reported an error may have succeeded, so the content is
+    compared
+    first.
     """
 
     database: Database
@@ -225,7 +233,7 @@ class _Before:
                 self.path.unlink(missing_ok=True)
 
     def _is_still_there(self) -> bool:
-        """Whether the database holds what it held, seen with a new connection."""
+        """Return whether the database still has its previous content, using a new connection."""
         if self.path is None or self.manifest is None:
             return False
         self.database.engine.dispose()
@@ -234,7 +242,7 @@ class _Before:
 
 
 def stamped(folder: Path, name: str, now: datetime) -> Path:
-    """Where a backup made on our own account goes: its name says why and when."""
+    """Return the path of an automatic backup, whose name has its reason and time."""
     return folder / f"{name}-{now:%Y%m%dT%H%M%S.%fZ}{ENDING}"
 
 

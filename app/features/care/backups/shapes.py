@@ -34,7 +34,7 @@ MANIFEST_TABLE = "backup_manifest"
 
 
 class Kind(StrEnum):
-    """What a column holds."""
+    """The type of a column's values."""
 
     TEXT = "text"
     INTEGER = "integer"
@@ -58,7 +58,7 @@ _KINDS: tuple[tuple[type[TypeEngine[Any]], Kind], ...] = (
 
 @dataclass(frozen=True)
 class ColumnShape:
-    """A column and what it holds."""
+    """A column with its type of values."""
 
     name: str
     kind: Kind
@@ -66,7 +66,7 @@ class ColumnShape:
 
 @dataclass(frozen=True)
 class TableShape:
-    """A table: its columns in the schema's order, and the names of its primary key's."""
+    """A table: its columns in the schema's order, and the column names of its primary key."""
 
     name: str
     columns: tuple[ColumnShape, ...]
@@ -74,16 +74,16 @@ class TableShape:
 
     @property
     def has_bytes(self) -> bool:
-        """Whether its rows may be long."""
+        """Return whether the table has a column of bytes, and so may have long rows."""
         return any(column.kind is Kind.BYTES for column in self.columns)
 
 
 def shapes_of(connection: Connection) -> tuple[TableShape, ...]:
-    """The product's tables in a SQLite file, those that are referred to first.
+    """Return the product's tables in a SQLite file, referenced ones first.
 
-    Raises ValueError for a column of a kind that cannot be copied exactly.
+    Raises ValueError for a column of a type that cannot be copied exactly.
     """
-    # A backup asks several times for one schema, and the words that made it tell all of it.
+    # A backup needs one schema several times; it is cached by the SQL that created it.
     words = tuple(connection.scalars(text("SELECT sql FROM sqlite_master ORDER BY type, name")))
     if words not in _known:
         _known[words] = _read(connection)
@@ -94,7 +94,7 @@ def shapes_of(connection: Connection) -> tuple[TableShape, ...]:
 
 @lru_cache(maxsize=1)
 def shapes_of_models() -> tuple[TableShape, ...]:
-    """The tables as this program has them, those that are referred to first."""
+    """Return the tables of this program's models, referenced ones first."""
     return tuple(_shape(table) for table in Base.metadata.sorted_tables)
 
 

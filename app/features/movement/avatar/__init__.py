@@ -1,6 +1,6 @@
 """Configurations of avatars: named, versioned, imported and exported.
 
-Each content is a version that is never edited; sessions name it by its hash.
+Each content is a version that is never edited; sessions refer to it by its hash.
 """
 
 from app.features.movement.avatar.schemas import AvatarKey, NewAvatar, NewAvatarVersion

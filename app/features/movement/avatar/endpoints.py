@@ -1,4 +1,4 @@
-"""Avatars' configurations over HTTP: listing, saving versions, and files to keep or bring in."""
+"""HTTP endpoints of avatar configurations: list, save versions, import, export and build models."""
 
 from typing import Annotated
 
@@ -37,7 +37,7 @@ Number = Annotated[int, Path(ge=1, le=MAX_VERSION)]
 
 @router.get("")
 def get_avatars(db: Reading, caller: SignedIn) -> list[AvatarSummary]:
-    """Every avatar's configuration, as its newest version is."""
+    """Return every avatar's configuration in its newest version."""
     return avatar_list(db, caller)
 
 
@@ -50,13 +50,13 @@ def post_avatar(wish: NewAvatar, db: Writing, context: Context, caller: SignedIn
 
 @router.post("/check")
 def post_avatar_check(file: AvatarText, db: Reading, _: SignedIn) -> AvatarCheck:
-    """Read a file without storing it: its configuration, or every problem with its place."""
+    """Parse a file without storing it; return its configuration, or every problem with its place."""
     return check_text(db, file.text)
 
 
 @router.get("/{key}")
 def get_avatar(key: str, db: Reading, caller: SignedIn) -> AvatarView:
-    """One avatar with all its versions, and the newest in full."""
+    """Return one avatar with all its versions, the newest one complete."""
     return avatar_view(db, caller, key)
 
 
@@ -64,7 +64,7 @@ def get_avatar(key: str, db: Reading, caller: SignedIn) -> AvatarView:
 def post_avatar_version(
     key: str, wish: NewAvatarVersion, db: Writing, context: Context, caller: SignedIn
 ) -> AvatarView:
-    """Append a version; the content of the newest gives the newest."""
+    """Append a version, unless its content is the same as the newest version's."""
     add_avatar_version(db, caller.actor, key, wish, context.clock.utc_now())
     return avatar_view(db, caller, key)
 
@@ -73,7 +73,7 @@ def post_avatar_version(
 def get_avatar_version(
     key: str, number: Number, db: Reading, caller: SignedIn
 ) -> AvatarVersionDetail:
-    """One version in full."""
+    """Return one complete version."""
     return version_detail(db, caller, key, number)
 
 
@@ -83,7 +83,7 @@ def get_avatar_version(
     responses={200: {"content": {"application/json": {}}, "description": "The file."}},
 )
 def get_avatar_file(key: str, number: Number, db: Reading, _: SignedIn) -> Response:
-    """A version as a JSON file to keep, which can be brought in again."""
+    """Download a version as a JSON file that can be imported again."""
     version = version_of(db, key, number)
     name = f"{version.key}-v{version.number}.json"
     return Response(
@@ -112,7 +112,7 @@ def get_avatar_model(
     version: Annotated[int | None, Query(ge=1, le=MAX_VERSION)] = None,
     if_none_match: Annotated[str | None, Header(max_length=1_000)] = None,
 ) -> Response:
-    """The avatar of a stature as a MuJoCo model, the newest version if none is named."""
+    """Return the avatar at a stature as a MuJoCo model; without `version`, the newest version."""
     model = model_of(db, key, version, stature_m)
     tag = f'"{model.content_hash}"'
     headers = {"etag": tag, "cache-control": "private, no-cache"}

@@ -1,4 +1,4 @@
-"""Avatars' configurations as pages see them; the configuration itself as in its file."""
+"""Request and response models of avatar configurations; the configuration itself is as in its file."""
 
 from datetime import datetime
 from typing import Annotated, Any, Literal
@@ -26,7 +26,7 @@ Note = Annotated[
 
 
 class NewAvatarVersion(BaseModel):
-    """A configuration to append; `based_on` is the version that was on the page, 0 for none."""
+    """A configuration to append; `based_on` is the version that it was edited from, 0 for none."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -37,7 +37,7 @@ class NewAvatarVersion(BaseModel):
 
 
 class NewAvatar(BaseModel):
-    """A configuration under a new key; `title` is what people call it."""
+    """A configuration to save under a new key; `title` is its display name."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -49,7 +49,7 @@ class NewAvatar(BaseModel):
 
 
 class AvatarText(BaseModel):
-    """A configuration file as text."""
+    """The text of a configuration file."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -68,10 +68,11 @@ class AvatarVersionView(BaseModel):
 
 
 class AvatarSummary(BaseModel):
-    """A configuration in the list, as its newest version is.
+    """A configuration in a list, in its newest version.
 
-    `axes` counts its driven axes, `locked_axes` those that cannot move; `sessions` the sessions
-    of the reader's studies that used any of its versions' contents.
+    `axes` counts its driven axes, `locked_axes` those that cannot move; `sessions` counts the
+    sessions
+    of the reader's studies that used any of its versions.
     """
 
     key: str
@@ -84,7 +85,7 @@ class AvatarSummary(BaseModel):
 
 
 class AvatarVersionDetail(AvatarVersionView):
-    """A version in full. `report`: what tuning measured and with which settings, if it was tuned.
+    """A complete version; `report`: the measurements and settings of its tuning, if it was tuned.
 
     `sessions` counts the sessions of the reader's studies that used this content.
     """
@@ -97,7 +98,7 @@ class AvatarVersionDetail(AvatarVersionView):
 
 
 class AvatarView(BaseModel):
-    """A configuration with all its versions, newest first, and the newest in full."""
+    """A configuration with all its versions, newest first, and the complete newest version."""
 
     key: str
     title: str
@@ -108,7 +109,7 @@ class AvatarView(BaseModel):
 
 
 class AvatarCheck(BaseModel):
-    """Whether a file can be used; `known` are the (key, version) that have its content already."""
+    """Whether a file can be used; `known` lists each (key, version) with the same content."""
 
     ok: bool
     problems: list[ProblemView] = []

@@ -1,7 +1,7 @@
-"""Avatars' configurations: named for a lab, each content a version that is never edited.
+"""Store avatar configurations, named by a key, as versions that are never edited.
 
-They belong to the lab, like captures, not to a study. A session names the content it used by its
-hash, so what a participant met stays known whatever is tuned later.
+Like captures, they belong to the lab, not to a study. A session refers to the configuration it
+used by its hash, so it can be looked up however the avatar is tuned later.
 """
 
 from collections.abc import Iterator, Mapping
@@ -43,9 +43,9 @@ def create_avatar(
     *,
     report: Mapping[str, Any] | None = None,
 ) -> AvatarVersion:
-    """A configuration under a new key.
+    """Save a configuration under a new key.
 
-    Raises Conflict where the key is taken, InvalidConfig with every problem of the configuration.
+    Raises Conflict if the key is taken, InvalidConfig with every problem of the configuration.
     """
     content = checked(db, wish.configuration)
     if db.get(Avatar, wish.key) is not None:
@@ -70,9 +70,9 @@ def add_avatar_version(
     *,
     report: Mapping[str, Any] | None = None,
 ) -> AvatarVersion:
-    """Append a version; the content of the newest gives the newest.
+    """Append a version, or return the newest one if its content is the same.
 
-    Raises StaleVersion where somebody saved meanwhile, InvalidConfig, NotFound.
+    Raises StaleVersion if somebody saved a version meanwhile, InvalidConfig, NotFound.
     """
     content = checked(db, wish.configuration)
     avatar = avatar_by_key(db, key, lock=True)
@@ -93,7 +93,7 @@ def add_avatar_version(
 
 
 def add_shipped_avatar(db: Session, now: datetime) -> None:
-    """Store the product's own configuration, unless the lab has made the key its own."""
+    """Store the shipped configuration, unless the lab has saved its own version under its key."""
     content = loaded(default_configuration())
     avatar = db.get(Avatar, SHIPPED)
     if avatar is None:
@@ -107,7 +107,10 @@ def add_shipped_avatar(db: Session, now: datetime) -> None:
 
 
 def avatar_by_key(db: Session, key: str, *, lock: bool = False) -> Avatar:
-    """The avatar of that key; `lock` makes those who save queue. Raises NotFound."""
+    """Return the avatar with this key; raise NotFound if there is none.
+
+    `lock` locks its row, so that concurrent writers wait.
+    """
     query = select(Avatar).where(Avatar.key == key)
     avatar = db.scalar(query.with_for_update() if lock else query)
     if avatar is None:
@@ -117,7 +120,7 @@ def avatar_by_key(db: Session, key: str, *, lock: bool = False) -> Avatar:
 
 
 def newest_numbers(db: Session) -> dict[str, int]:
-    """Key -> number of the newest version, of every avatar."""
+    """Return the number of the newest version of every avatar, by key."""
     rows = db.execute(
         select(AvatarVersion.key, func.max(AvatarVersion.number)).group_by(AvatarVersion.key)
     )
@@ -125,7 +128,7 @@ def newest_numbers(db: Session) -> dict[str, int]:
 
 
 def newest_version(db: Session, avatar: Avatar) -> AvatarVersion:
-    """The version that was saved last."""
+    """Return the newest version of an avatar."""
     return db.scalars(
         select(AvatarVersion)
         .where(AvatarVersion.key == avatar.key)
@@ -135,7 +138,7 @@ def newest_version(db: Session, avatar: Avatar) -> AvatarVersion:
 
 
 def version_of(db: Session, key: str, number: int | None) -> AvatarVersion:
-    """A version by its number, the newest for None; raises NotFound."""
+    """Return a version by its number, or the newest for None; raise NotFound if there is none."""
     avatar = avatar_by_key(db, key)
     if number is None:
         return newest_version(db, avatar)
@@ -150,7 +153,7 @@ def version_of(db: Session, key: str, number: int | None) -> AvatarVersion:
 
 
 def configuration_by_hash(db: Session, content_hash: str) -> Configuration:
-    """The configuration that a session names; raises NotFound."""
+    """Return the configuration with this hash; raise NotFound if there is none."""
     query = select(AvatarVersion).where(AvatarVersion.content_hash == content_hash).limit(1)
     row = db.scalar(query)
     if row is None:
@@ -159,7 +162,7 @@ def configuration_by_hash(db: Session, content_hash: str) -> Configuration:
 
 
 def typed(version: AvatarVersion) -> Configuration:
-    """The configuration of a version."""
+    """Return the parsed configuration of a version."""
     return _parsed(version.content_hash, version.canonical_json)
 
 
@@ -170,7 +173,7 @@ def _parsed(content_hash: str, canonical_json: str) -> Configuration:
 
 
 def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
-    """The configuration of a file; InvalidConfig has every problem."""
+    """Return the validated configuration of a file; raise InvalidConfig with every problem."""
     try:
         configuration = configuration_of(file)
         check_pieces(configuration)
@@ -196,7 +199,7 @@ def checked(db: Session, file: AvatarFile) -> LoadedAvatar:
 
 
 def unknown_humanoid(db: Session, configuration: Configuration) -> Iterator[AvatarProblem]:
-    """The problem of a configuration whose model nobody has uploaded here."""
+    """Yield a problem if the configuration refers to a humanoid model that was not uploaded."""
     content_hash = configuration.humanoid
     if content_hash is not None and not is_known(db, content_hash):
         yield AvatarProblem(

@@ -1,4 +1,4 @@
-"""From stored configurations of avatars to what pages show: lists, checks, and the model."""
+"""Convert stored avatar configurations to views: lists, checks and models."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -36,7 +36,7 @@ MEDIA_TYPE = "application/xml"
 
 
 def avatar_list(db: Session, caller: Caller) -> list[AvatarSummary]:
-    """Every avatar of the lab, by key."""
+    """Return every avatar of the lab, by key."""
     rows = db.scalars(select(AvatarVersion).order_by(AvatarVersion.key, AvatarVersion.number))
     titles = {avatar.key: avatar.title for avatar in db.scalars(select(Avatar))}
     used = _sessions_by_hash(db, caller)
@@ -47,7 +47,7 @@ def avatar_list(db: Session, caller: Caller) -> list[AvatarSummary]:
 
 
 def avatar_view(db: Session, caller: Caller, key: str) -> AvatarView:
-    """One avatar with its versions; raises NotFound."""
+    """Return one avatar with its versions; raise NotFound if there is none with this key."""
     avatar = avatar_by_key(db, key)
     rows = db.scalars(
         select(AvatarVersion).where(AvatarVersion.key == key).order_by(AvatarVersion.number.desc())
@@ -65,17 +65,17 @@ def avatar_view(db: Session, caller: Caller, key: str) -> AvatarView:
 def version_detail(
     db: Session, caller: Caller, key: str, number: int | None
 ) -> AvatarVersionDetail:
-    """One version in full, the newest for None; raises NotFound."""
+    """Return one complete version, or the newest for None; raise NotFound if there is none."""
     return _detail(db, caller, avatar_by_key(db, key), version_of(db, key, number))
 
 
 def version_view(row: AvatarVersion) -> AvatarVersionView:
-    """One version in a list."""
+    """Return one version as an entry of a list."""
     return AvatarVersionView.model_validate(row, from_attributes=True)
 
 
 def check_text(db: Session, text: str) -> AvatarCheck:
-    """What a file holds, or every problem of it with its place."""
+    """Return the configuration in a file, or every problem of the file with its place."""
     try:
         content = load_avatar(text)
         _check_humanoid(db, content.configuration)
@@ -130,7 +130,7 @@ def _detail(db: Session, caller: Caller, avatar: Avatar, row: AvatarVersion) -> 
 def _sessions_by_hash(
     db: Session, caller: Caller, content_hash: str | None = None
 ) -> dict[str, int]:
-    """Sessions of the caller's studies."""
+    """Return the number of sessions in the caller's studies by configuration hash."""
     column = StudySession.avatar_configuration_hash
     wanted = column.is_not(None) if content_hash is None else column == content_hash
     rows = db.execute(
@@ -143,10 +143,11 @@ def _sessions_by_hash(
 
 
 def model_of(db: Session, key: str, number: int | None, stature_m: float) -> AvatarModel:
-    """The model of a version, the newest for None, without a scene but the floor.
+    """Return the MuJoCo model of a version, or of the newest for None, on a floor.
 
-    The stature counts to the millimetre. Raises NotFound, and Conflict where the configuration
-    lacks a part without which there is no body.
+    The stature is rounded to the millimetre. Raises NotFound, and Conflict if the configuration
+    lacks
+    a part that the body needs.
     """
     version = version_of(db, key, number)
     humanoid = typed(version).humanoid

@@ -1,6 +1,6 @@
-"""Captures of movement: stored once, read, mapped, retargeted and verified.
+"""Captures of movement: stored once, parsed, mapped, retargeted and verified.
 
-Whatever computes runs on the `Workbench`, in a process of its own within limits of time and memory.
+All computing runs on the `Workbench`, in a worker process with limits of time and memory.
 """
 
 from app.features.movement.captures.service import source_of_capture

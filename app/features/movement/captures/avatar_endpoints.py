@@ -1,4 +1,4 @@
-"""Joint maps, and captures on avatars, over HTTP."""
+"""HTTP endpoints of joint maps and of captures retargeted to avatars."""
 
 import os
 import tempfile
@@ -43,7 +43,7 @@ WRITTEN = " or ".join(one.name.en for one in WRITERS)
 
 @router.get("/{capture_id}/joint-map")
 def get_joint_map(capture_id: str, db: Reading, _: SignedIn) -> JointMapView:
-    """The joint map of the capture's skeleton: what was saved, else what is proposed."""
+    """Return the joint map of the capture's skeleton: the saved one, else the proposal."""
     return joint_map_view(db, capture_id)
 
 
@@ -64,7 +64,7 @@ def delete_joint_map(
     caller: SignedIn,
     version: Annotated[int, Query(ge=0, le=2**31 - 1)],
 ) -> JointMapView:
-    """Go back to the proposal, as a new version."""
+    """Reset the joint map to the proposal, as a new version."""
     reset_map(db, context, caller, capture_id, version)
     return joint_map_view(db, capture_id)
 
@@ -78,7 +78,7 @@ async def get_verification(
     avatars: Annotated[list[Avatar], Query(min_length=1, max_length=MAX_AVATARS)],
     lock_feet: bool = False,
 ) -> Response:
-    """Whether the movement keeps its characteristics on avatars of these statures."""
+    """Return whether the movement keeps its characteristics on avatars of these statures."""
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     wanted = tuple(dict.fromkeys(avatars))
     return Response(
@@ -108,7 +108,7 @@ async def get_retargeted(
     format: ExportFormat = WRITERS[0].key,  # noqa: A002 - the word of the address
     lock_feet: bool = False,
 ) -> FileResponse:
-    """The movement on an avatar, to keep."""
+    """Download the movement on an avatar as a file."""
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     path = await _retargeted_file(context, mapped, avatar, format, lock_feet=lock_feet)
     return FileResponse(
@@ -127,7 +127,7 @@ async def get_retargeted(
 async def get_retargeted_motion(
     capture_id: str, context: Context, _: SignedIn, *, avatar: Avatar, lock_feet: bool = False
 ) -> Response:
-    """Positions over time of an avatar's joints, for a preview."""
+    """Return the positions of an avatar's joints over time, for a preview."""
     mapped = await run_in_threadpool(mapped_capture, context, capture_id)
     return Response(
         await context.part(Workbench).computed(
@@ -140,7 +140,7 @@ async def get_retargeted_motion(
 async def _retargeted_file(
     context: AppContext, mapped: Mapped, avatar: str, format_: ExportFormat, *, lock_feet: bool
 ) -> Path:
-    """A file of the movement on an avatar, which the caller removes; raises InvalidInput."""
+    """Write the movement on an avatar to a file that the caller removes; raise InvalidInput."""
     path = await run_in_threadpool(_new_file, context)
     try:
         await context.part(Workbench).run(

@@ -1,4 +1,4 @@
-"""Captures over HTTP."""
+"""HTTP endpoints of captures."""
 
 from typing import Annotated
 
@@ -53,8 +53,8 @@ async def post_capture(
 ) -> CaptureView:
     """Store a capture file, which is the body of the request.
 
-    Where one file is not enough (an AMC needs its ASF) the body goes on with the other one: its
-    name is `companion`, and `companion_bytes` tells how many of the last bytes are it.
+    If a second file is needed (an AMC needs its ASF), it follows in the same body: its name is
+    `companion`, and `companion_bytes` is its size in bytes.
     """
     wish = Wish(
         name, companion, companion_bytes, ReadingChoice(metres_per_unit=metres_per_unit, up=up)
@@ -72,13 +72,13 @@ def get_captures(
     limit: Annotated[int, Query(ge=1, le=1000)] = 200,
     offset: Annotated[int, Query(ge=0, le=2**31 - 1)] = 0,
 ) -> CapturePage:
-    """The captures of the lab, the newest first."""
+    """Return the captures of the lab, newest first."""
     return capture_page(db, limit=limit, offset=offset)
 
 
 @router.get("/{capture_id}")
 def get_capture(capture_id: str, db: Reading, _: SignedIn) -> CaptureView:
-    """One capture and what reading it found."""
+    """Return one capture with its summary."""
     return capture_view(db, capture_id)
 
 
@@ -86,7 +86,7 @@ def get_capture(capture_id: str, db: Reading, _: SignedIn) -> CaptureView:
 async def patch_capture(
     capture_id: str, wish: CaptureChange, context: Context, caller: SignedIn
 ) -> CaptureView:
-    """Change the title, or read the file by other conventions."""
+    """Change the title, or parse the file again with other conventions."""
     await change_capture(context, caller, capture_id, wish)
     return await run_in_threadpool(_view, context, capture_id)
 
@@ -105,7 +105,7 @@ def delete_capture(capture_id: str, db: Writing, context: Context, caller: Signe
 def get_file(
     capture_id: str, context: Context, _: SignedIn, *, companion: bool = False
 ) -> StreamingResponse:
-    """The file, or its companion, as it was uploaded."""
+    """Download the file, or its companion, as it was uploaded."""
     name, content_hash = stored_file(context, capture_id, companion=companion)
     return StreamingResponse(
         sent(context, content_hash), media_type=BYTES, headers=attachment(name)
@@ -120,7 +120,7 @@ def get_file(
 async def get_motion(
     capture_id: str, context: Context, _: SignedIn, shown: Shown = "recorded"
 ) -> Response:
-    """Positions over time for a preview: as recorded, or of the capture's skeleton."""
+    """Return positions over time for a preview, as recorded or of the capture's skeleton."""
     source = await run_in_threadpool(source_of_capture, context, capture_id)
     return Response(
         await context.part(Workbench).computed(

@@ -1,4 +1,4 @@
-"""In the process for captures: what a file holds, for the list and the page."""
+"""Summarise what a capture file contains; runs in the worker process for captures."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,7 +27,7 @@ KIND: dict[type, Literal["skeleton", "markers", "bodies"]] = {
 
 @dataclass(frozen=True)
 class Inspected:
-    """What the table `captures` keeps of a reading."""
+    """The summary of a parsed capture, as stored in the table `captures`."""
 
     format: str
     kind: Literal["skeleton", "markers", "bodies"]
@@ -40,7 +40,7 @@ class Inspected:
 
 
 def inspect_upload(max_bytes: int, source: Source, paths: tuple[Path, ...]) -> Inspected:
-    """Read files that were just uploaded, and compress each beside itself; raises Cannot."""
+    """Parse newly uploaded files and write a compressed copy beside each; raise Cannot."""
     inspected = _inspected(open_files(max_bytes, source, paths))
     for path in paths:
         compress(path, compressed_beside(path))
@@ -48,7 +48,7 @@ def inspect_upload(max_bytes: int, source: Source, paths: tuple[Path, ...]) -> I
 
 
 def inspect_stored(store: Store, source: Source) -> Inspected:
-    """Read a stored capture by other conventions; raises Cannot."""
+    """Parse a stored capture again with other conventions; raise Cannot."""
     return _inspected(open_stored(store, source))
 
 
@@ -119,5 +119,5 @@ def _skeleton(opened: Opened) -> SkeletonView | None:
 
 
 def _number(value: float) -> float | None:
-    """No database keeps what is not a number as JSON."""
+    """Return the value, or None if it is not finite, because JSON in databases cannot store it."""
     return float(value) if np.isfinite(value) else None

@@ -1,7 +1,7 @@
-"""Joint maps: proposed from names and hierarchy, changed by hand, kept for each skeleton.
+"""Joint maps of skeletons: proposed from names and hierarchy, edited by hand, stored as versions.
 
-Whoever saves one appends a version, for all captures of that skeleton. Going back to what is
-proposed is a version, too, so that a better proposal of a later program is taken.
+A saved map applies to all captures with the same skeleton. Resetting to the proposal is a version,
+too, so that a better proposal of a later release is used.
 """
 
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ from app.science.skeleton import JOINT_NAMES
 
 @dataclass(frozen=True)
 class CurrentMap:
-    """The map that holds for a skeleton: the newest that was saved, else what is proposed."""
+    """The current map of a skeleton: the newest saved version, else the proposal."""
 
     rig: Rig
     proposal: Proposal
@@ -48,19 +48,19 @@ class CurrentMap:
 
     @property
     def chosen(self) -> bool:
-        """Whether somebody chose it."""
+        """Return whether a person chose the map."""
         return self.saved is not None and self.saved.chosen
 
     @property
     def joint_map(self) -> dict[str, str]:
-        """Body joint -> joint of the skeleton, in the order of the body."""
+        """Return body joint -> joint of the skeleton, in the order of the body's joints."""
         chosen = self.saved.joint_map if self.saved is not None and self.saved.chosen else None
         told = dict(self.proposal.joint_map) if chosen is None else chosen
         return {joint: str(told[joint]) for joint in JOINT_NAMES if joint in told}
 
     @property
     def problems(self) -> tuple[tuple[str, str], ...]:
-        """(body joint, what is wrong) as long as it cannot be used."""
+        """Return each (body joint, problem) that makes the map unusable."""
         try:
             check_joint_map(self.rig, self.joint_map)
         except JointMapError as error:
@@ -69,7 +69,7 @@ class CurrentMap:
 
 
 def current_map(db: Session, capture: CaptureRow) -> CurrentMap:
-    """The joint map of the capture's skeleton; raises Conflict where it has none."""
+    """Return the joint map of the capture's skeleton; raise Conflict if it has no skeleton."""
     summary = CaptureSummary.model_validate(capture.summary)
     if summary.skeleton is None:
         raise Conflict(
@@ -88,7 +88,7 @@ def current_map(db: Session, capture: CaptureRow) -> CurrentMap:
 
 
 def mapped_capture(context: AppContext, capture_id: str) -> Mapped:
-    """A capture that can go onto avatars; raises NotFound, and Conflict where it cannot."""
+    """Return a capture that can be retargeted; raise NotFound, or Conflict if it cannot."""
     with context.database.reading() as db:
         row = capture_by_id(db, capture_id)
         current = current_map(db, row)
@@ -103,7 +103,7 @@ def mapped_capture(context: AppContext, capture_id: str) -> Mapped:
 
 
 def joint_map_view(db: Session, capture_id: str) -> JointMapView:
-    """The map as a page sees it; raises NotFound, Conflict."""
+    """Return the map as a response model; raise NotFound or Conflict."""
     current = current_map(db, capture_by_id(db, capture_id))
     joint_map, saved = current.joint_map, current.saved
     sources: dict[str, JointSource] = (
@@ -135,7 +135,7 @@ def save_map(
 ) -> None:
     """Save a map as a new version.
 
-    Raises InvalidInput with every problem of the map, StaleVersion where somebody saved meanwhile,
+    Raises InvalidInput with every problem of the map, StaleVersion if somebody saved one meanwhile,
     NotFound, Conflict.
     """
     capture = capture_by_id(db, capture_id)
@@ -156,7 +156,7 @@ def save_map(
 def reset_map(
     db: Session, context: AppContext, caller: Caller, capture_id: str, version: int
 ) -> None:
-    """Go back to the proposal, as a new version. Raises StaleVersion, NotFound, Conflict."""
+    """Reset the map to the proposal, as a new version; raise StaleVersion, NotFound or Conflict."""
     capture = capture_by_id(db, capture_id)
     proposed = JointMapWish(joint_map={}, version=version)
     current = current_map(db, capture)
@@ -187,7 +187,7 @@ def _append(
         SavedJointMap(
             fingerprint=fingerprint,
             version=newest + 1,
-            # A map without the hips is never saved, so an empty one can only be the proposal.
+            # A map without the hips cannot be saved, so an empty one means the proposal.
             chosen=bool(wish.joint_map),
             joint_map=wish.joint_map,
             by=caller.actor,
@@ -206,7 +206,7 @@ def _append(
 
 
 def _rig(skeleton: SkeletonView) -> Rig:
-    """Names and hierarchy, which is all that a map is about."""
+    """Return a rig with only names and hierarchy, which is all that a map needs."""
     count = len(skeleton.joints)
     return Rig(
         names=tuple(skeleton.joints),

@@ -1,7 +1,7 @@
-"""In the process for captures: files become movement, on a reference avatar where that is asked.
+"""Open captures, and retarget them to avatars; runs in the worker process for captures.
 
-The last file stays open. Runs under a memory limit, so that a file made to hurt fails here and
-nowhere else.
+The last capture stays open. The process has a memory limit, so that a malicious file fails here
+without harming the server.
 """
 
 from collections.abc import Iterable, Mapping
@@ -43,14 +43,14 @@ class Opened:
 
     @property
     def moving(self) -> RigMotion:
-        """The skeleton's movement; raises Cannot where there is none."""
+        """Return the skeleton's movement; raise Cannot if there is no skeleton."""
         if self.skeleton is None:
             raise Cannot(f"the capture has no skeleton: {self.no_skeleton}")
         return self.skeleton
 
     @property
     def start_s(self) -> float:
-        """How long after the recording's first frame the skeleton's movement begins."""
+        """Return the time from the recording's first frame to the start of the skeleton's movement."""
         if self.fitted is None or isinstance(self.capture.motion, RigMotion):
             return 0.0
         motion, first = self.capture.motion, self.fitted.first_frame
@@ -61,7 +61,7 @@ class Opened:
 
 @dataclass(frozen=True)
 class Store:
-    """Where contents are: the address of the database, and the largest file to be read."""
+    """Where file contents are read from: the database's URL, and the largest file size."""
 
     url: str
     max_bytes: int
@@ -71,7 +71,7 @@ _last: dict[Source, Opened] = {}
 
 
 def open_stored(store: Store, source: Source) -> Opened:
-    """The capture of these contents in the database; raises Cannot."""
+    """Return the capture with these contents, read from the database; raise Cannot."""
     if source in _last:
         return _last[source]
     pooled = make_url(store.url).get_backend_name() != "sqlite"
@@ -87,7 +87,7 @@ def open_stored(store: Store, source: Source) -> Opened:
 
 
 def open_files(max_bytes: int, source: Source, paths: Iterable[Path]) -> Opened:
-    """The capture of these files on disk, in the order of `source.hashes`; raises Cannot."""
+    """Return the capture in these files, in the order of `source.hashes`; raise Cannot."""
     files = {one: path.read_bytes() for one, path in zip(source.hashes, paths, strict=True)}
     return _open(max_bytes, source, files)
 
@@ -112,7 +112,7 @@ def _open(max_bytes: int, source: Source, files: Mapping[str, bytes]) -> Opened:
 def _with_skeleton(capture: Capture) -> Opened:
     if isinstance(capture.motion, RigMotion):
         return Opened(capture, capture.motion, None, None)
-    # Slow to load, and the server itself only names what is to be done here.
+    # Imported here because it is slow to load; the server's process imports this module, too.
     from app.science.fitting import FitError, fit_skeleton
 
     try:
@@ -131,7 +131,7 @@ def _joined(pieces: Iterable[bytes]) -> bytes:
 
 @dataclass(frozen=True)
 class Mapped:
-    """A stored capture, how it is read, and the map of its joints."""
+    """A stored capture, its conventions and its joint map."""
 
     store: Store
     source: Source
@@ -139,12 +139,12 @@ class Mapped:
 
     @property
     def moving(self) -> RigMotion:
-        """The skeleton's movement; raises Cannot."""
+        """Return the skeleton's movement; raise Cannot if there is no skeleton."""
         return open_stored(self.store, self.source).moving
 
 
 def on_avatar(mapped: Mapped, avatar: str, *, lock_feet: bool) -> Retargeted:
-    """The movement on the avatar of a stature, such as "165cm"; raises Cannot."""
+    """Return the movement on the avatar of a stature, such as "165cm"; raise Cannot."""
     try:
         return retarget_motion(
             mapped.moving,

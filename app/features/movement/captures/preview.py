@@ -1,13 +1,14 @@
-"""Positions for a preview, in a form that a page can draw without looking at every number.
+"""Encode positions for a preview as bytes that a page can draw without parsing every number.
 
-    bytes 0-3    length L of the header, unsigned, little-endian
-    bytes 4-     header: JSON in UTF-8, filled up with spaces so that 4 + L is a multiple of 4
-    then         float32, little-endian: x, y, z in metres of every point of every frame,
-                 [frame][point][axis]; y is up, the world right-handed; NaN where nothing was seen
+  bytes 0-3    length L of the header, unsigned, little-endian
+  bytes 4-     header: JSON in UTF-8, padded with spaces so that 4 + L is a multiple of 4
+  then         float32, little-endian: x, y, z in metres of every point of every frame,
+               [frame][point][axis]; y is up, the world right-handed; NaN where nothing was seen
 
-The header holds `kind` ("skeleton", "markers" or "bodies"), `names` and `parents` of the J points
-(-1 where there is none above), `frames` N, `rate_hz` of these frames, `recorded_rate_hz`, and
-`start_s`, how long after the recording's first frame these begin.
+The header has `kind` ("skeleton", "markers" or "bodies"), `names` and `parents` of the J points
+(-1 for no parent), `frames` N, `rate_hz` of these frames, `recorded_rate_hz`, and `start_s`, the
+time from the recording's first frame to these.
+
 Frames are left out to stay below `MOST_HZ` and `MOST_NUMBERS`: rate_hz = recorded_rate_hz / step.
 """
 
@@ -30,9 +31,9 @@ GAP_STEPS = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """Positions (N, J, 3) in metres at a constant rate, from `start_s` of the recording on.
+    """Positions (N, J, 3) in metres at a constant rate, starting `start_s` into the recording.
 
-    `parents` are as in a rig, -1 for none.
+    `parents` are indices as in a rig, -1 for none.
     """
 
     kind: str
@@ -44,7 +45,7 @@ class Points:
 
 
 def points_of(motion: RigMotion | MarkerMotion | BodyMotion) -> Points:
-    """The points of a recorded movement."""
+    """Return the points of a recorded movement."""
     if isinstance(motion, RigMotion):
         return skeleton_points(motion)
     alone = (-1,) * len(motion.names)
@@ -55,7 +56,7 @@ def points_of(motion: RigMotion | MarkerMotion | BodyMotion) -> Points:
 
 
 def skeleton_points(motion: RigMotion, *, start_s: float = 0.0) -> Points:
-    """The joints of a skeleton."""
+    """Return the joint positions of a skeleton's movement."""
     positions_m, _ = motion.world()
     positions_m[~motion.observed] = np.nan
     rig = motion.rig
@@ -63,7 +64,7 @@ def skeleton_points(motion: RigMotion, *, start_s: float = 0.0) -> Points:
 
 
 def encode(points: Points) -> bytes:
-    """The bytes that a page gets."""
+    """Return the points in the binary form of this module."""
     step = step_for(points.positions_m.shape[0], points.rate_hz, 3 * len(points.names))
     kept = np.ascontiguousarray(points.positions_m[::step], dtype="<f4")
     header = json.dumps(
@@ -82,13 +83,13 @@ def encode(points: Points) -> bytes:
 
 
 def step_for(frames: int, rate_hz: float, numbers_a_frame: int, most: int = MOST_NUMBERS) -> int:
-    """Every how manieth frame is kept, to stay below `MOST_HZ` and so many numbers."""
+    """Return n such that keeping every nth frame stays below `MOST_HZ` and `most` numbers."""
     for_rate = math.ceil(rate_hz / MOST_HZ - 1e-6)
     return max(1, for_rate, math.ceil(frames * numbers_a_frame / most))
 
 
 def _evenly(motion: BodyMotion) -> tuple[float, FloatArray]:
-    """At a constant rate, each moment as the nearest sample says: loggers keep none themselves."""
+    """Resample to a constant rate with the nearest samples, because loggers sample unevenly."""
     rate_hz = min(motion.rate_hz, MOST_HZ)
     if motion.frame_count < 2 or rate_hz <= 0.0:
         return 1.0, motion.positions_m

@@ -1,9 +1,9 @@
-"""Captures and their verification as they travel to a page.
+"""Request and response models of captures and their verification.
 
-Lengths are metres unless a name says otherwise. The verification is the paper's, of one movement on
-avatars of several statures: Degen et al. (2022) show that a walk keeps its characteristics whatever
-the avatar's dimensions: the toe's path over the ground, its lifts, and steps that grow with the
-legs. Its series are thinned for drawing and share `times_s`.
+Lengths are in metres unless a name says otherwise. The verification is that of the paper, of one
+movement on avatars of several statures: Degen et al. (2022) show that a walk keeps its
+characteristics whatever the avatar's dimensions: the toe's path over the ground, its lifts, and
+steps that grow with the legs. Its series are thinned for drawing and share `times_s`.
 """
 
 from datetime import datetime
@@ -35,10 +35,10 @@ else:
 
 
 class ReadingChoice(BaseModel):
-    """What somebody says about a file where the file does not, or says it wrongly.
+    """Conventions that a person gives for a file, where the file has none or wrong ones.
 
-    `metres_per_unit`: the length of the file's unit; null to take the file's or a plausible one.
-    `up`: the file's upward axis; null to take the file's or its format's.
+    `metres_per_unit`: the length of the file's unit; null to use the file's or a plausible one.
+    `up`: the file's upward axis; null to use the file's or its format's.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -48,7 +48,7 @@ class ReadingChoice(BaseModel):
 
 
 class CaptureChange(BaseModel):
-    """What is to change; what is left out stays. Another reading reads the file anew."""
+    """Changes of a capture; missing fields stay. A new `reading` parses the file again."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -57,14 +57,14 @@ class CaptureChange(BaseModel):
 
 
 class ConventionView(BaseModel):
-    """One thing that had to be known to read the file, and who says so."""
+    """One convention by which the file was parsed, and where it comes from."""
 
     value: str
     origin: Origin
 
 
 class ConventionsView(BaseModel):
-    """By which conventions a file was read; everything after is y up, right-handed, SI."""
+    """The conventions of the file; parsed data are y up, right-handed and in SI units."""
 
     length: ConventionView
     axes: ConventionView
@@ -76,8 +76,8 @@ class SkeletonView(BaseModel):
     """The skeleton of a capture: its file's own, or one that was fitted to markers or bodies.
 
     `parents` are indices into `joints`, -1 for the root. `unfitted` are joints that the markers do
-    not show; `residual_m` tells how far the fitted skeleton is from what was recorded (root mean
-    square), null for a skeleton of the file; `notes` what was trimmed, bridged or left out.
+    not show; `residual_m` is the distance of the fitted skeleton from the recording (root mean
+    square), null for a skeleton of the file; `notes` say what was trimmed, bridged or left out.
     """
 
     fingerprint: str
@@ -90,10 +90,10 @@ class SkeletonView(BaseModel):
 
 
 class CaptureSummary(BaseModel):
-    """What reading a capture found.
+    """The summary of a parsed capture.
 
-    `names` are the joints, markers or rigid bodies of the file. `skeleton` is null where none could
-    be fitted; `no_skeleton` then says why. `observed` is the share of values that were seen.
+    `names` are the joints, markers or rigid bodies of the file. `skeleton` is null if none could be
+    fitted; `no_skeleton` then says why. `observed` is the share of values that were seen.
     """
 
     names: list[str]
@@ -105,10 +105,10 @@ class CaptureSummary(BaseModel):
 
 
 class CaptureListed(BaseModel):
-    """A capture in the list.
+    """A capture in a list.
 
     `format` is a key such as "bvh" or "motive-csv". `tracks` counts its joints, markers or bodies.
-    `has_skeleton`: it can be brought onto avatars. `size_bytes` is that of the file.
+    `has_skeleton`: it can be retargeted to avatars. `size_bytes` is that of the file.
     """
 
     id: str
@@ -128,7 +128,7 @@ class CaptureListed(BaseModel):
 
 
 class CaptureView(CaptureListed):
-    """A capture with what reading it found. `content_hash` is the SHA-256 of the file."""
+    """A capture with its summary; `content_hash` is the SHA-256 of the file."""
 
     content_hash: str
     reading: ReadingChoice
@@ -136,14 +136,14 @@ class CaptureView(CaptureListed):
 
 
 class CapturePage(BaseModel):
-    """Captures, the newest first, and how many there are in all."""
+    """A page of captures, newest first, and the total number of captures."""
 
     captures: list[CaptureListed]
     total: int
 
 
 class JointMapWish(BaseModel):
-    """A joint map to save: body joint -> joint of the skeleton, decided on `version`."""
+    """A joint map to save, body joint -> joint of the skeleton, edited from `version`."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -152,12 +152,13 @@ class JointMapWish(BaseModel):
 
 
 class JointMapView(BaseModel):
-    """Which joint of a skeleton plays which part of the body, for every capture of this skeleton.
+    """Which joint of a skeleton is which joint of the body, for every capture with this skeleton.
 
-    `version` counts what was saved, 0 before; `chosen` is false while the map is the proposal.
-    `sources` tells of each mapped body joint whether its name, its place in the hierarchy, or
-    somebody chose it. `usable` is false where too little is mapped to bring it onto an avatar, and
-    `missing` says what.
+    `version` counts the saved maps, from 0; `chosen` is false while the map is the proposal.
+    `sources` says for each mapped body joint whether its name, its place in the hierarchy, or a
+    person decided. `usable` is false if too few joints are mapped for retargeting, and `missing`
+    says
+    which are needed.
     """
 
     fingerprint: str
@@ -191,7 +192,7 @@ class LegAnglesView(BaseModel):
 
 
 class ToePathView(BaseModel):
-    """The way of one foot's ball (the toe joint) in metres; figure 9 of the paper.
+    """The path of the ball of one foot (the toe joint) in metres; figure 9 of the paper.
 
     `forward_m` is along the walk, `height_m` above the ground; `start_height_m` in the first frame.
     """
@@ -205,8 +206,9 @@ class ToePathView(BaseModel):
 class WalkStepView(BaseModel):
     """One lift of a foot, from leaving the ground to the next contact.
 
-    `length_m` is the ball's way forward, `height_m` from its lowest to its highest place,
-    `contact_height_m` above the ground as it comes down.
+    `length_m` is how far the ball moves forward, `height_m` from its lowest to its highest
+    position,
+    `contact_height_m` its height above the ground at the contact.
     """
 
     side: Side
@@ -218,11 +220,11 @@ class WalkStepView(BaseModel):
 
 
 class WalkerView(BaseModel):
-    """How one body, the source or an avatar, does the movement.
+    """The walk of one body, the source or an avatar.
 
     `leg_length_m` is thigh plus shin, `thigh_share` the thigh's part of it. Means are null without
-    a whole step. `foot_slide_m_s` is the mean speed of its feet over the ground while they are
-    down, null where none is.
+    a complete step. `foot_slide_m_s` is the mean speed of its feet over the ground while they are
+    down, null if none is.
     """
 
     name: str
@@ -236,14 +238,14 @@ class WalkerView(BaseModel):
 
 
 class AvatarWalkerView(WalkerView):
-    """How an avatar does it, beside the source.
+    """The walk of an avatar, compared with the source.
 
     `leg_ratio` is its leg length over the source's, `length_ratio` and `height_ratio` the same of
     mean steps (null without steps). `lifts_agree`: it lifts each foot as often as the source.
     Slides are speeds of its feet while the *source's* are down: `slide_m_s` as shown here,
-    `slide_before_m_s` before the feet were locked, null where they are not. With locked feet
-    `lowered_m` is by how much the hips came down at most, and `out_of_reach` counts frames in which
-    a foot could not be held.
+    `slide_before_m_s` before the feet were locked, null if they are not. With locked feet,
+    `lowered_m` is how far the hips came down at most, and `out_of_reach` counts frames in which
+    a foot could not be held in place.
     """
 
     stature_m: float
@@ -258,11 +260,11 @@ class AvatarWalkerView(WalkerView):
 
 
 class VerificationView(BaseModel):
-    """The source and every avatar.
+    """The verification of a movement: the source and every avatar.
 
     `lifts_agree`: every avatar lifts each foot as often as the source.
-    `largest_timing_difference_s`: between the same lift or contact of any two bodies; null where
-    they do not agree. `unmapped_body_joints` keep their T-pose on every avatar.
+    `largest_timing_difference_s`: between the same lift or contact of any two bodies; null if the
+    lifts do not agree. `unmapped_body_joints` keep their T-pose on every avatar.
     """
 
     frames: int

@@ -1,4 +1,4 @@
-"""The captures of the lab: taking in, listing, changing, deleting."""
+"""Add, change and delete the captures of the lab."""
 
 from collections.abc import AsyncIterator
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ from app.platform.context import AppContext
 
 @dataclass(frozen=True)
 class Wish:
-    """What comes with an upload: the names of its files, and how to read them."""
+    """The parameters of an upload: the names of its files, and the conventions to parse them with."""
 
     name: str
     companion: str | None
@@ -37,7 +37,7 @@ class Wish:
 
 
 def capture_by_id(db: Session, capture_id: str, *, lock: bool = False) -> CaptureRow:
-    """The capture; raises NotFound."""
+    """Return the capture with this id; raise NotFound if there is none."""
     row = db.get(CaptureRow, capture_id, with_for_update=lock)
     if row is None:
         raise NotFound("there is no such capture", value=capture_id)
@@ -45,7 +45,7 @@ def capture_by_id(db: Session, capture_id: str, *, lock: bool = False) -> Captur
 
 
 def store_of(context: AppContext) -> Store:
-    """Where the process finds contents."""
+    """Return the store from which the worker process reads contents."""
     settings = context.settings
     return Store(settings.resolved_database_url, settings.max_capture_bytes)
 
@@ -53,7 +53,7 @@ def store_of(context: AppContext) -> Store:
 def source_of_capture(
     context: AppContext, capture_id: str, reading: ReadingChoice | None = None
 ) -> Source:
-    """What the process needs to know of a stored capture; raises NotFound."""
+    """Return the source of a stored capture, for the worker process; raise NotFound."""
     with context.database.reading() as db:
         return source_of(capture_by_id(db, capture_id), reading)
 
@@ -61,9 +61,9 @@ def source_of_capture(
 async def add_capture(
     context: AppContext, caller: Caller, wish: Wish, body: AsyncIterator[bytes]
 ) -> tuple[str, bool]:
-    """Read and keep an upload; the capture's id, and whether it is new.
+    """Parse and store an upload; return the capture's id, and whether it is new.
 
-    Raises InvalidInput where it cannot be read: then nothing is kept.
+    Raises InvalidInput if it cannot be parsed; nothing is stored then.
     """
     if (wish.companion is None) != (wish.companion_bytes is None):
         raise InvalidInput(
@@ -86,7 +86,7 @@ async def add_capture(
 async def change_capture(
     context: AppContext, caller: Caller, capture_id: str, wish: CaptureChange
 ) -> None:
-    """Change the title, or read by other conventions; raises NotFound, InvalidInput."""
+    """Change the title or the conventions; raise NotFound or InvalidInput."""
     inspected: Inspected | None = None
     if wish.reading is not None:
         source = await run_sync(source_of_capture, context, capture_id, wish.reading)
@@ -96,7 +96,7 @@ async def change_capture(
 
 
 def remove_capture(db: Session, context: AppContext, caller: Caller, capture_id: str) -> None:
-    """Delete a capture; its contents go when nobody else uses them. Raises NotFound."""
+    """Delete a capture, and its contents if they are not used elsewhere; raise NotFound."""
     row = capture_by_id(db, capture_id, lock=True)
     hashes = [one for one in (row.content_hash, row.companion_hash) if one is not None]
     db.delete(row)
@@ -196,7 +196,7 @@ def _record(
     action: str,
     **more: object,
 ) -> None:
-    # By id: a name somebody gave a file may be a person's, and the trail cannot be erased.
+    # The id, not the file's name, which may be a person's: the audit trail cannot be erased.
     record(
         db,
         actor=caller.actor,
@@ -208,7 +208,7 @@ def _record(
 
 
 def stored_file(context: AppContext, capture_id: str, *, companion: bool) -> tuple[str, str]:
-    """Name and content hash of a capture's file; raises NotFound."""
+    """Return the name and content hash of a capture's file; raise NotFound if there is none."""
     with context.database.reading() as db:
         row = capture_by_id(db, capture_id)
     if not companion:

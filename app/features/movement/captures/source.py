@@ -1,4 +1,4 @@
-"""Which files make a capture, and by which conventions they are to be read."""
+"""The files of a capture and the conventions to parse them with, as one hashable key."""
 
 import hashlib
 from collections.abc import Iterator
@@ -11,7 +11,7 @@ from app.models import CaptureRow
 
 @dataclass(frozen=True)
 class Source:
-    """Names one reading of one capture; whoever has read it need not read it again.
+    """The files and conventions of a capture; the key under which a parsed capture is cached.
 
     `hash` and `companion_hash` are SHA-256 of the files' bytes.
     """
@@ -25,21 +25,21 @@ class Source:
 
     @property
     def identity(self) -> str:
-        """The same for the same files, whatever they are called and however they are read."""
+        """Return a hash of the files' contents, independent of names and conventions."""
         if self.companion_hash is None:
             return self.hash
         return hashlib.sha256(f"{self.hash} {self.companion_hash}".encode()).hexdigest()
 
     @property
     def hashes(self) -> Iterator[str]:
-        """Of the file and of its companion, if there is one."""
+        """Yield the hash of the file and that of its companion, if there is one."""
         yield self.hash
         if self.companion_hash is not None:
             yield self.companion_hash
 
 
 def source_of(row: CaptureRow, reading: ReadingChoice | None = None) -> Source:
-    """How a stored capture is read, or how it would be by other conventions."""
+    """Return the source of a stored capture, with its own or with other conventions."""
     chosen = reading or ReadingChoice.model_validate(row.reading)
     return Source(
         name=row.file_name,
@@ -51,13 +51,13 @@ def source_of(row: CaptureRow, reading: ReadingChoice | None = None) -> Source:
     )
 
 
-class Cannot(Exception):  # an error is named after what happened
-    """A capture cannot be read, or cannot be brought onto an avatar: the process tells the server.
+class Cannot(Exception):  # the name reads as a sentence with its reason
+    """A capture cannot be parsed or retargeted; raised in the worker process, passed to the server.
 
-    `file_name` and `line` are where, if that is known; line 0 is the whole file.
+    `file_name` and `line` locate the problem, if that is known; line 0 is the whole file.
     """
 
     def __init__(self, reason: str, file_name: str = "", line: int = 0) -> None:
-        # All of them as they came: errors travel between processes by their arguments.
+        # All arguments are passed on, because errors are pickled by their arguments.
         super().__init__(reason, file_name, line)
         self.reason, self.file_name, self.line = reason, file_name, line

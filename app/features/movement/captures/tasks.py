@@ -1,6 +1,6 @@
-"""In the process for captures: what a page or a download asks for, as bytes.
+"""The tasks of the worker process for captures: previews, verifications and retargeted files.
 
-Everything that a task needs is in its arguments, which are hashable: the same call gives the same
+Everything that a task needs is in its arguments, which are hashable: the same call returns the same
 bytes. The verification of a walk is JSON, thinned for drawing.
 """
 
@@ -42,7 +42,7 @@ _METRE_DIGITS, _DEGREE_DIGITS = 5, 3
 
 
 def verification_json(mapped: Mapped, avatars: tuple[str, ...], *, lock_feet: bool) -> bytes:
-    """The verification on avatars such as "165cm", as a `VerificationView`; raises Cannot."""
+    """Return the verification on avatars such as "165cm", as a `VerificationView`; raise Cannot."""
     source, joint_map = mapped.moving, dict(mapped.joint_map)
     moved = {name: on_avatar(mapped, name, lock_feet=lock_feet) for name in avatars}
     try:
@@ -108,7 +108,7 @@ def _avatar(
     before = None if walks is None or locked is None else walks.slide_before_m_s
     length_ratio = height_ratio = None
     if walks is not None:
-        # Over the same stretches of time, so that step by step the same is compared.
+        # Over the same spans of time, so that corresponding steps are compared.
         avatar, source = walks.avatar, walks.source
         length_ratio = _ratio(avatar.mean_step_length_m, source.mean_step_length_m)
         height_ratio = _ratio(avatar.mean_step_height_m, source.mean_step_height_m)
@@ -153,7 +153,7 @@ def _thinned(values: FloatArray, step: int, digits: int = _METRE_DIGITS) -> list
 
 
 def recorded_positions(store: Store, source: Source, shown: Shown) -> bytes:
-    """Positions for a preview, as recorded or of the skeleton; raises Cannot."""
+    """Return positions for a preview, as recorded or of the skeleton; raise Cannot."""
     opened = open_stored(store, source)
     if shown == "recorded":
         return encode(points_of(opened.capture.motion))
@@ -161,14 +161,14 @@ def recorded_positions(store: Store, source: Source, shown: Shown) -> bytes:
 
 
 def retargeted_positions(mapped: Mapped, avatar: str, *, lock_feet: bool) -> bytes:
-    """Positions of an avatar's joints for a preview; raises Cannot."""
+    """Return positions of an avatar's joints for a preview; raise Cannot."""
     return encode(skeleton_points(on_avatar(mapped, avatar, lock_feet=lock_feet).motion))
 
 
 def write_retargeted(
     mapped: Mapped, avatar: str, format_: ExportFormat, to: Path, *, lock_feet: bool
 ) -> None:
-    """The movement on an avatar as a file of that format; raises Cannot."""
+    """Write the movement on an avatar to a file in this format; raise Cannot."""
     motion = on_avatar(mapped, avatar, lock_feet=lock_feet).motion
     with to.open("w", encoding="utf-8", newline="\n") as file:
         file.writelines(writer_of(format_).write(motion))

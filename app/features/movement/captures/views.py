@@ -1,4 +1,4 @@
-"""Captures as a page sees them."""
+"""Convert stored captures to response models."""
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
@@ -24,7 +24,7 @@ _COLUMNS = (
 
 
 def capture_page(db: Session, *, limit: int, offset: int) -> CapturePage:
-    """A part of the list, the newest first; summaries are left out, they may be long."""
+    """Return a page of the list, newest first, without summaries, which may be long."""
     rows = (
         select(*_COLUMNS)
         .join(CaptureContent, CaptureContent.hash == CaptureRow.content_hash)
@@ -38,7 +38,7 @@ def capture_page(db: Session, *, limit: int, offset: int) -> CapturePage:
 
 
 def capture_view(db: Session, capture_id: str) -> CaptureView:
-    """One capture in full; raises NotFound."""
+    """Return one complete capture; raise NotFound if there is none with this id."""
     row = capture_by_id(db, capture_id)
     return CaptureView(
         id=row.id,

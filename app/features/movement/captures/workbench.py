@@ -1,8 +1,8 @@
-"""Captures are read and computed in a process of their own, one at a time, within limits.
+"""Parse captures and compute with them in a worker process, one at a time, within limits.
 
-A text file of an hour of movement takes Python many seconds, and a file may be made to take for
-ever or to fill the memory. The process has an end to both; running sessions do not notice. What was
-computed is kept for a while, so that a page which asks again gets it at once.
+A text file of an hour of movement takes Python many seconds, and a malicious file could take
+forever or fill the memory. The process limits both, without an effect on running sessions. Results
+are cached, so that a page that repeats its request gets them immediately.
 """
 
 import sys
@@ -25,7 +25,7 @@ KEPT_BYTES = 64 * 1024**2
 
 
 def limit_memory() -> None:
-    """In the process: load what is needed anyway, then let it grow by so much and no more."""
+    """Load the modules that are needed anyway, then limit the memory; runs in the worker process."""
     import_module("app.features.movement.captures.tasks")
     if sys.platform == "linux":
         import resource
@@ -36,7 +36,7 @@ def limit_memory() -> None:
 
 @dataclass
 class Workbench(WorkingLine):
-    """Has one thing done after the other; what is kept of it is bytes."""
+    """Run the tasks of captures one after the other, and cache their results (bytes)."""
 
     words: ClassVar[Words] = Words(
         busy="the server is busy with other captures",
@@ -46,7 +46,7 @@ class Workbench(WorkingLine):
         otherwise="Check the file with the program that made it; the server's log has more.",
         log="a capture could not be processed",
     )
-    # What it had taken by then is not given back for certain.
+    # The process may not have released the memory that it had allocated.
     fill_the_process: ClassVar[tuple[type[Exception], ...]] = (MemoryError,)
     within_s: float = WITHIN_S
     _worker: Worker = field(default_factory=lambda: Worker(limit_memory))

@@ -1,6 +1,6 @@
-"""Uploaded files, kept once by their content: on their way in, stored, on their way out.
+"""Uploaded files, stored once by their content: upload, storage and download.
 
-No file is ever whole in memory; one that nothing uses any more is dropped.
+No file is ever completely in memory; one that is not used any more is deleted.
 """
 
 from app.features.movement.files.contents import (

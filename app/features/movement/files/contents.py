@@ -1,4 +1,4 @@
-"""Files in the database: compressed, in pieces, once by the hash of what they hold."""
+"""Store files in the database: compressed, in pieces, and once per content hash."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,18 +23,18 @@ LEVEL = 6
 
 
 def compress(file: Path, to: Path) -> None:
-    """Make the stream that `store` takes."""
+    """Compress a file to the format that `store` reads."""
     with file.open("rb") as plain, to.open("wb") as compressed:
         zstandard.ZstdCompressor(level=LEVEL).copy_stream(plain, compressed)
 
 
 def compressed_beside(path: Path) -> Path:
-    """Where the compressed form of an uploaded file is put."""
+    """Return the path for the compressed form of an uploaded file."""
     return path.with_name(f"{path.name}.zst")
 
 
 def store(db: Session, content_hash: str, size: int, compressed: Path) -> None:
-    """Keep a content, unless it is here already."""
+    """Store a compressed content, unless it is in the database already."""
     insert = (postgresql if db.get_bind().dialect.name == "postgresql" else sqlite).insert
     new = insert(CaptureContent).values(hash=content_hash, size=size)
     if db.execute(new.on_conflict_do_nothing().returning(CaptureContent.hash)).first() is None:
@@ -47,10 +47,10 @@ def store(db: Session, content_hash: str, size: int, compressed: Path) -> None:
 
 
 def plain_pieces(db: Session, content_hash: str) -> Iterator[bytes]:
-    """The file as it was uploaded, piece by piece."""
+    """Yield the file as it was uploaded, in pieces."""
     decompressor = zstandard.ZstdDecompressor().decompressobj()
     query = select(CapturePiece.data).where(CapturePiece.hash == content_hash)
-    # One after the other: all of them at once would be the whole file in memory.
+    # Fetched in small batches, so that the file is never completely in memory.
     for data in db.scalars(query.order_by(CapturePiece.number).execution_options(yield_per=4)):
         plain = decompressor.decompress(data)
         if plain:
@@ -58,12 +58,12 @@ def plain_pieces(db: Session, content_hash: str) -> Iterator[bytes]:
 
 
 def size_of(db: Session, content_hash: str) -> int:
-    """Bytes of the file as it was uploaded."""
+    """Return the size in bytes of the file as it was uploaded."""
     return db.scalars(select(CaptureContent.size).where(CaptureContent.hash == content_hash)).one()
 
 
 def drop_unused(db: Session, content_hash: str) -> None:
-    """Delete a content that no capture, humanoid model or model of walking uses any more."""
+    """Delete a content that no capture, humanoid model, set of walks or walking model uses."""
     captures = select(CaptureRow.id).where(
         or_(CaptureRow.content_hash == content_hash, CaptureRow.companion_hash == content_hash)
     )

@@ -1,6 +1,6 @@
-"""Files on their way: an upload is hashed as it comes, onto the disk; a download leaves in pieces.
+"""Receive uploads onto the disk while hashing them, and send downloads in pieces.
 
-Neither is ever whole in memory.
+Neither is ever completely in memory.
 """
 
 import hashlib
@@ -35,7 +35,7 @@ BODY: dict[str, Any] = {"requestBody": {"required": True, "content": {BYTES: BIN
 
 @dataclass(frozen=True)
 class Uploaded:
-    """A file on disk, its SHA-256 and its size in bytes."""
+    """An uploaded file on disk, with its SHA-256 and its size in bytes."""
 
     path: Path
     hash: str
@@ -46,10 +46,11 @@ class Uploaded:
 async def uploaded(
     context: AppContext, body: AsyncIterator[bytes], companion_bytes: int | None
 ) -> AsyncIterator[tuple[Uploaded, ...]]:
-    """The files of a request's body, in a folder of the data folder that is gone afterwards.
+    """Yield the files of a request's body, in a temporary folder of the data folder.
 
-    The last `companion_bytes` are a file of their own. Raises InvalidInput where a file is empty or
-    the sender goes away, NotDurable where there is no room for it.
+    The last `companion_bytes` are a file of their own. Raises InvalidInput if a file is empty or
+    the
+    connection breaks off, NotDurable if there is no space for it.
     """
     folder = await run_sync(_new_folder, context)
     try:
@@ -123,27 +124,27 @@ def _measured(path: Path) -> Uploaded:
 
 
 def binary(description: str) -> dict[str, Any]:
-    """How the interface's document describes an answer of bytes."""
+    """Return the OpenAPI description of a response of bytes."""
     return {"content": {BYTES: BINARY}, "description": description}
 
 
 def attachment(name: str) -> dict[str, str]:
-    """The header that makes a browser keep an answer as a file of this name."""
+    """Return the header that makes a browser save a response as a file of this name."""
     return {"content-disposition": f"attachment; filename*=UTF-8''{quote(name, safe='')}"}
 
 
 def sent(context: AppContext, content_hash: str) -> AsyncIterator[bytes]:
-    """The content, piece by piece as the reader takes it."""
+    """Return the pieces of a stored content, read from the database as they are sent."""
     return streamed(_pieces(context, content_hash))
 
 
 async def streamed(pieces: Generator[bytes, None, None]) -> AsyncIterator[bytes]:
-    """The pieces as the reader takes them, each made in a thread."""
+    """Yield the pieces as they are sent, each made in a thread."""
     try:
         async for piece in iterate_in_threadpool(pieces):
             yield piece
     finally:
-        # Also when the reader has gone away: the look at the database must end.
+        # The database transaction must end even if the client has disconnected.
         await run_in_threadpool(pieces.close)
 
 

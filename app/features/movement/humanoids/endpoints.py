@@ -1,4 +1,4 @@
-"""Humanoid models over HTTP."""
+"""HTTP endpoints of humanoid models."""
 
 from typing import Annotated
 
@@ -40,13 +40,13 @@ def get_humanoids(
     limit: Annotated[int, Query(ge=1, le=1000)] = 200,
     offset: Annotated[int, Query(ge=0, le=2**31 - 1)] = 0,
 ) -> HumanoidPage:
-    """The humanoid models of the lab, the newest first."""
+    """Return the humanoid models of the lab, newest first."""
     return humanoid_page(db, limit=limit, offset=offset)
 
 
 @router.get("/{content_hash}")
 def get_humanoid(content_hash: ContentHash, db: Reading, _: SignedIn) -> HumanoidView:
-    """One model: the body parts it has and lacks, its lengths and convex pieces."""
+    """Return one model: the body parts it has and lacks, its lengths and convex pieces."""
     return humanoid_view(db, content_hash)
 
 
@@ -58,7 +58,7 @@ def get_humanoid(content_hash: ContentHash, db: Reading, _: SignedIn) -> Humanoi
 def get_humanoid_file(
     content_hash: ContentHash, context: Context, _: SignedIn
 ) -> StreamingResponse:
-    """The model's file as it was uploaded."""
+    """Download the model's file as it was uploaded."""
     with context.database.reading() as db:
         name = humanoid_by_hash(db, content_hash).file_name
     return StreamingResponse(

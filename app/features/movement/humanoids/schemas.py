@@ -1,4 +1,4 @@
-"""Humanoid models as pages see them; lengths in metres."""
+"""Response models of humanoid models; lengths are in metres."""
 
 from datetime import datetime
 from typing import Literal
@@ -9,11 +9,14 @@ BonesBy = Literal["vrm", "names"]
 
 
 class HumanoidListed(BaseModel):
-    """A model in the list.
+    """A humanoid model in a list.
 
-    `content_hash` is the SHA-256 of its file, by which configurations name it. `stature_m` is its
-    own; an avatar has its participant's. `bones_by`: whether VRM's map or the bones' names told
-    which is which. Counts are of body parts that the model has, and of those with a convex piece.
+    `content_hash` is the SHA-256 of its file, by which configurations refer to it. `stature_m` is
+    its
+    own; an avatar has that of its participant. `bones_by`: whether bones were identified by VRM's
+    map
+    or by their names. Counts are of body parts that the model has, and of those with a convex
+    piece.
     """
 
     content_hash: str
@@ -30,7 +33,7 @@ class HumanoidListed(BaseModel):
 
 
 class PieceView(BaseModel):
-    """The convex piece of one part: its corners, and how far skin is outside of it at most."""
+    """The convex piece of one body part: its corners, and how far skin is outside it at most."""
 
     part: str
     corners: int
@@ -38,11 +41,13 @@ class PieceView(BaseModel):
 
 
 class HumanoidView(HumanoidListed):
-    """A model in full.
+    """A complete humanoid model.
 
-    `present` and `absent` are the body parts it has and lacks; `simple` has too little skin for a
-    piece, so those keep capsules and boxes. `segments_m` are its lengths. `notes` are sentences on
-    what was found odd while reading.
+    `present` and `absent` are the body parts it has and lacks; those in `simple` have too little
+    skin
+    for a convex piece and keep capsules and boxes. `segments_m` are its lengths. `notes` are
+    sentences
+    on anything unusual in the file.
     """
 
     present: list[str]
@@ -54,7 +59,7 @@ class HumanoidView(HumanoidListed):
 
 
 class HumanoidPage(BaseModel):
-    """Models, the newest first, and how many there are in all."""
+    """A page of humanoid models, newest first, and the total number of models."""
 
     humanoids: list[HumanoidListed]
     total: int

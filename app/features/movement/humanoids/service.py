@@ -1,4 +1,4 @@
-"""The humanoid models of the lab: listed, shown, and as the figure of an avatar's body."""
+"""Query the humanoid models of the lab: lists, single models and figures for avatars."""
 
 from functools import lru_cache
 
@@ -26,7 +26,7 @@ _COLUMNS = (
 
 
 def humanoid_by_hash(db: Session, content_hash: str) -> HumanoidRow:
-    """The model; raises NotFound."""
+    """Return the model with this hash; raise NotFound if there is none."""
     row = db.get(HumanoidRow, content_hash)
     if row is None:
         raise NotFound(
@@ -38,26 +38,26 @@ def humanoid_by_hash(db: Session, content_hash: str) -> HumanoidRow:
 
 
 def figure_by_hash(db: Session, content_hash: str | None) -> Figure | None:
-    """The figure that a configuration names, None where it names none; raises NotFound."""
+    """Return the figure with this hash, None for None; raise NotFound if there is none."""
     if content_hash is None:
         return None
     return parsed_figure(humanoid_by_hash(db, content_hash).figure)
 
 
 def is_known(db: Session, content_hash: str) -> bool:
-    """Whether there is such a model."""
+    """Return whether a model with this hash is stored."""
     found = select(HumanoidRow.hash).where(HumanoidRow.hash == content_hash)
     return db.scalar(found) is not None
 
 
 @lru_cache(maxsize=16)
 def parsed_figure(text: str) -> Figure:
-    """A stored figure."""
+    """Return the figure parsed from its stored text."""
     return parse_figure(text)
 
 
 def humanoid_page(db: Session, *, limit: int, offset: int) -> HumanoidPage:
-    """A part of the list, the newest first; figures are left out, they are long."""
+    """Return a page of the list, newest first, without figures, which are long."""
     rows = (
         select(*_COLUMNS)
         .join(CaptureContent, CaptureContent.hash == HumanoidRow.hash)
@@ -73,7 +73,7 @@ def humanoid_page(db: Session, *, limit: int, offset: int) -> HumanoidPage:
 
 
 def humanoid_view(db: Session, content_hash: str) -> HumanoidView:
-    """One model in full; raises NotFound."""
+    """Return one complete model; raise NotFound if there is none with this hash."""
     row = humanoid_by_hash(db, content_hash)
     figure = parsed_figure(row.figure)
     return HumanoidView.model_validate(

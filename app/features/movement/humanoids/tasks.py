@@ -1,4 +1,4 @@
-"""In the process for captures: a model's file is read and measured, within its limits."""
+"""Parse and measure a model's file, in the worker process for captures and within its limits."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +11,7 @@ from app.science.avatar.body import Figure, HumanoidError, figure_of
 
 @dataclass(frozen=True)
 class Measured:
-    """What the table `humanoids` keeps of a file."""
+    """The measurements of a model's file, as stored in the table `humanoids`."""
 
     figure: str
     bones_by: str
@@ -23,7 +23,7 @@ class Measured:
 
 
 def measured(figure: Figure, bones_by: str) -> Measured:
-    """A figure as it is kept."""
+    """Return the measurements of a figure."""
     return Measured(
         figure=figure_json(figure),
         bones_by=bones_by,
@@ -37,14 +37,14 @@ def measured(figure: Figure, bones_by: str) -> Measured:
 
 @dataclass(frozen=True)
 class Refused:
-    """Why a file is no model, and where in it."""
+    """The reason why a file is not a valid model, and the place in the file."""
 
     reason: str
     place: str
 
 
 def measure(max_bytes: int, path: Path) -> Measured | Refused:
-    """Read a file that was just uploaded, and compress it beside itself."""
+    """Parse and measure a newly uploaded file, and write a compressed copy beside it."""
     try:
         read = read_humanoid(path.read_bytes(), Limits(bytes=max_bytes))
         figure = figure_of(read.humanoid)

@@ -1,4 +1,4 @@
-"""Taking in humanoid models: read in the process for captures, kept once by their content."""
+"""Upload humanoid models: parsed in the worker process for captures, stored once by their content."""
 
 from collections.abc import AsyncIterator
 from dataclasses import asdict
@@ -26,9 +26,9 @@ _REMEDY = (
 async def add_humanoid(
     context: AppContext, caller: Caller, name: str, body: AsyncIterator[bytes]
 ) -> tuple[str, bool]:
-    """Read and keep an upload; its content hash, and whether it is new.
+    """Parse and store an upload; return its content hash, and whether it is new.
 
-    Raises InvalidInput where it is no humanoid: then nothing is kept.
+    Raises InvalidInput if it is not a humanoid model; nothing is stored then.
     """
     async with uploaded(context, body, None) as files:
         file = files[0]
@@ -45,7 +45,7 @@ async def _measured(context: AppContext, name: str, file: Uploaded) -> Measured:
         most = context.settings.max_capture_bytes
         found = await context.part(Workbench).run(measure, most, file.path)
     except InvalidInput as error:
-        # Too much of something: the words of captures do not help here.
+        # A limit was exceeded; the message for captures does not apply to models.
         raise InvalidInput(
             "the model cannot be read: it takes too much time or memory",
             value=name,

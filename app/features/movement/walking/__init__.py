@@ -1,7 +1,7 @@
-"""How people walk, predicted: scenes, sets of walks, models fitted on them, and their answers.
+"""Predict how people walk: scenes, sets of walks, models fitted to them, and predictions.
 
-Fits and questions run in two processes (`FittingDesk`, `Bench`), so that a page is answered while a
-fit goes on.
+Fits and predictions run in two worker processes (`FittingDesk`, `Bench`), so that pages get answers
+during a fit.
 """
 
 from app.features.movement.walking.bench import Bench

@@ -1,7 +1,6 @@
-"""Questions are answered in a process of their own, one at a time, within a time.
+"""Compute predictions of walking in a worker process, one at a time, within a time limit.
 
-It is not the one that fits models, so that a page is answered while a fit goes on. What was
-answered is kept for a while.
+It is not the process that fits models, so that pages get answers during a fit. Results are cached.
 """
 
 from dataclasses import dataclass, field
@@ -19,13 +18,13 @@ KEPT = 64
 
 
 def load() -> None:
-    """In the process: load what every question needs."""
+    """Import the modules that every prediction needs; runs in the worker process."""
     import_module("app.features.movement.walking.predicting")
 
 
 @dataclass
 class Bench(WorkingLine):
-    """Has one question answered after the other."""
+    """Compute predictions one after the other, and cache their results."""
 
     words: ClassVar[Words] = Words(
         busy="the server is busy with other questions about walking",

@@ -1,8 +1,8 @@
-"""Where models are fitted, one after the other, in a process of its own that can be stopped.
+"""Fit models of walking one after the other, in a worker process that can be stopped.
 
 Each fit has a folder beside the database for its finished maps. Stopping kills the process, and
-resuming goes on behind the last finished map, also after the server was started again. Only a model
-that is whole gets into the database.
+resuming continues after the last finished map, also after a restart of the server. Only complete
+models are stored in the database.
 """
 
 import hashlib
@@ -37,7 +37,7 @@ BROKE = "the process that fitted it ended: resume it, and if that fails too, loo
 
 
 def new_worker() -> Worker:
-    """A process for one fit, which can be ended alone."""
+    """Create a worker process for one fit, which can be ended separately."""
     return Worker()
 
 
@@ -53,7 +53,7 @@ class _Fit:
 
 @dataclass(eq=False)
 class FittingDesk(Part):
-    """Safe from any thread."""
+    """The queue of a server's fits, with the thread that runs them; thread-safe."""
 
     folder: Path
     url: str
@@ -68,7 +68,7 @@ class FittingDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The fits of a server, in its data folder."""
+        """Create the fits of a server, in its data folder."""
         settings = context.settings
         return cls(
             settings.data_dir.resolve() / "walking",
@@ -79,7 +79,7 @@ class FittingDesk(Part):
         )
 
     def start(self) -> None:
-        """Fits that the last run of the server left are stopped; their maps are kept."""
+        """Mark fits that an earlier run of the server left as stopped; their maps are kept."""
         with self.database.reading() as db:
             fitting = select(WalkingModelRow.id).where(WalkingModelRow.state == "fitting")
             left = db.scalars(fitting).all()
@@ -92,7 +92,7 @@ class FittingDesk(Part):
                 )
 
     def stop(self) -> None:
-        """Stop whatever is fitted; what is finished of it is kept."""
+        """Stop all fits; their finished maps are kept."""
         with self._lock:
             fits = list(self._fits.values())
         for fit in fits:
@@ -100,7 +100,7 @@ class FittingDesk(Part):
         self._maker.shutdown(wait=True, cancel_futures=True)
 
     def order(self, model_id: str, order: FitOrder) -> None:
-        """Have a model fitted, or go on with it."""
+        """Queue the fit of a model, or resume it."""
         files = FitFolder(self.folder / model_id)
         files.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         fit = _Fit(model_id, order, files)
@@ -110,7 +110,7 @@ class FittingDesk(Part):
         done.add_done_callback(lambda one: self.background.watched(QUEUE, one))
 
     def halt(self, model_id: str) -> None:
-        """End the process of a fit, or take it out of the queue."""
+        """End the process of a fit, or remove it from the queue."""
         with self._lock:
             fit = self._fits.pop(model_id, None)
             if fit is None:
@@ -119,12 +119,12 @@ class FittingDesk(Part):
         fit.worker.end()
 
     def forget(self, model_id: str) -> None:
-        """Stop it and remove what is finished."""
+        """Stop a fit and delete its finished maps."""
         self.halt(model_id)
         shutil.rmtree(self.folder / model_id, ignore_errors=True)
 
     def progress(self, model_id: str) -> Progress | None:
-        """How far a fit is, or was when it was stopped; None where nothing was begun."""
+        """Return the progress of a running or stopped fit, None if it has no files."""
         with self._lock:
             fit = self._fits.get(model_id)
             if fit is not None and not fit.begun:
@@ -137,7 +137,7 @@ class FittingDesk(Part):
         return told
 
     def _make_or_fail(self, fit: _Fit) -> None:
-        """Whatever happens, nobody waits for ever; the error is the queue's to be noticed."""
+        """Run a fit; an unexpected error marks it as failed and is raised for the background queue."""
         try:
             self._make(fit)
         except Exception:
@@ -163,7 +163,7 @@ class FittingDesk(Part):
     def _settle(self, fit: _Fit, summary: dict[str, Any] | None, trouble: str | None) -> None:
         keep = None if summary is None else _storing(fit.files.model)
         with self.database.writing() as db:
-            # Contents first: storing one lets go of every row that the session knows.
+            # Store the content first, because `store` expunges every row from the session.
             content_hash = None if keep is None else keep(db)
             row = db.get(WalkingModelRow, fit.model_id, with_for_update=True)
             if row is None or row.state != "fitting" or fit.given_up:

@@ -1,4 +1,4 @@
-"""Scenes and sets of walks over HTTP."""
+"""HTTP endpoints of scenes and sets of walks."""
 
 from typing import Annotated
 
@@ -41,25 +41,25 @@ StatureText = Annotated[str, Query(min_length=3, max_length=90, pattern=r"^[^=]+
 
 @router.get("/scenes")
 def get_scenes(db: Reading, _: SignedIn) -> list[SceneListed]:
-    """The scenes: the lab's own and those that come with the product."""
+    """Return the scenes: the lab's own and those that come with the product."""
     return scene_list(db)
 
 
 @router.post("/scenes", status_code=201)
 def post_scene(wish: NewScene, db: Writing, context: Context, caller: SignedIn) -> SceneView:
-    """Store a scene file; every problem of it is answered with its line."""
+    """Store a scene file; every problem of it is reported with its line."""
     return add_scene(db, context, caller, wish)
 
 
 @router.get("/scenes/{scene_key}")
 def get_scene(scene_key: str, db: Reading, _: SignedIn) -> SceneView:
-    """One scene: floor, obstacles, places and paths, in metres seen from above."""
+    """Return one scene: floor, obstacles, places and paths, in metres seen from above."""
     return scene_view(db, scene_key)
 
 
 @router.delete("/scenes/{scene_key}", status_code=204)
 def delete_scene(scene_key: str, db: Writing, context: Context, caller: SignedIn) -> None:
-    """Delete a scene that the lab brought in."""
+    """Delete a scene that the lab uploaded."""
     remove_scene(db, context, caller, scene_key)
 
 
@@ -69,15 +69,15 @@ def delete_scene(scene_key: str, db: Writing, context: Context, caller: SignedIn
     responses={200: binary("The scene's file, YAML or JSON.")},
 )
 def get_scene_file(scene_key: str, db: Reading, _: SignedIn) -> Response:
-    """The scene's file, to begin another one with."""
+    """Download the scene's file, for example as a template for another scene."""
     text = scene_text(db, scene_key)
     return Response(text, media_type=BYTES, headers=attachment(f"{scene_key}.yaml"))
 
 
 @router.get("/populations")
 def get_populations(_: SignedIn) -> list[PopulationView]:
-    """The documented populations of made-up walkers."""
-    # Slow to load, and hardly ever asked for.
+    """Return the documented populations of synthetic walkers."""
+    # Imported here because it is slow to load and rarely needed.
     from app.science.walking.synthetic import POPULATIONS
 
     return [PopulationView(name=one.name, about=one.about) for one in POPULATIONS]
@@ -85,13 +85,13 @@ def get_populations(_: SignedIn) -> list[PopulationView]:
 
 @router.get("/walk-sets")
 def get_walk_sets(db: Reading, _: SignedIn) -> list[WalkSetView]:
-    """The sets of walks, the newest first."""
+    """Return the sets of walks, newest first."""
     return walk_set_list(db)
 
 
 @router.post("/walk-sets", status_code=201)
 async def post_walk_set(wish: NewWalkSet, context: Context, caller: SignedIn) -> WalkSetView:
-    """Make walkers up, which is said everywhere, or cut walks from stored captures."""
+    """Create a set of synthetic walks, which are marked as such, or of walks from stored captures."""
     return await add_walk_set(context, caller, wish)
 
 
@@ -109,7 +109,7 @@ async def post_tracks(
 ) -> WalkSetView:
     """Store a table of tracks (id, time, x, y), which is the body of the request.
 
-    `stature` may come once for each person, as `A=1.78`: metres.
+    `stature` may be given once for each person, as `A=1.78`, in metres.
     """
     origin = TracksOrigin(
         file_name=name,
@@ -122,13 +122,13 @@ async def post_tracks(
 
 @router.get("/walk-sets/{set_id}")
 def get_walk_set(set_id: str, db: Reading, _: SignedIn) -> WalkSetView:
-    """One set of walks: who, how many, how long."""
+    """Return one set of walks: its people, number of walks and durations."""
     return walk_set_view(walk_set_by_id(db, set_id))
 
 
 @router.delete("/walk-sets/{set_id}", status_code=204)
 def delete_walk_set(set_id: str, db: Writing, context: Context, caller: SignedIn) -> None:
-    """Delete a set of walks; models that were fitted on it stay."""
+    """Delete a set of walks; models that were fitted to it stay."""
     remove_walk_set(db, context, caller, set_id)
 
 

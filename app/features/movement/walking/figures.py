@@ -1,4 +1,4 @@
-"""In a process of its own: what is told of a set of walks and of a fitted model."""
+"""Summarise a set of walks and a fitted model; runs in the worker process."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -20,7 +20,7 @@ Json = dict[str, Any]
 
 
 def walks_told(entries: Sequence[PlannedWalk]) -> Json:
-    """A `WalksSummary` of walks."""
+    """Return a `WalksSummary` of walks."""
     walks = [entry.walk for entry in entries]
     names = sorted({name for entry in entries for name in entry.dependencies})
     everywhere = [name for name in names if all(name in entry.dependencies for entry in entries)]
@@ -38,7 +38,7 @@ def walks_told(entries: Sequence[PlannedWalk]) -> Json:
 
 
 def model_told(fit: FittedWalking, digest: str) -> Json:
-    """A `ModelSummary`."""
+    """Return a `ModelSummary` of a fitted model."""
     base, static = fit.database, fit.static
     seeds = np.random.default_rng(fit.options.seed).spawn(2)
     people = people_left_out(

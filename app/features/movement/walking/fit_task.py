@@ -1,6 +1,6 @@
-"""In a process of its own: fitting a model, map by map, so that it can be stopped and resumed.
+"""Fit a model map by map in a worker process, so that it can be stopped and resumed.
 
-An order and the walks it names never change, so maps that were finished before belong to it.
+A fit order and the walks that it refers to never change, so maps finished earlier stay valid.
 """
 
 import os
@@ -43,7 +43,7 @@ Json = dict[str, Any]
 
 
 def fit(store: Store, order: FitOrder, folder: Path) -> Json:
-    """Fit a model into a folder; a `ModelSummary`. Raises Cannot."""
+    """Fit a model in a folder and return a `ModelSummary`; raise Cannot."""
     files = FitFolder(folder)
     files.tell("walks", 0, 0)
     entries = planned_walks(store, order.source, order.scene)
@@ -88,7 +88,7 @@ def _database(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> 
 
 
 def _kept_maps(files: FitFolder, entries: list[PlannedWalk], maker: MapMaker) -> list[DeviationMap]:
-    """Maps that an earlier run finished; an unfinished record behind them is cut off."""
+    """Return the maps that an earlier run finished, and truncate an incomplete record after them."""
     if not files.maps.exists():
         return []
     nodes = maker.grid.size

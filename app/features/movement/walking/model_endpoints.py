@@ -1,4 +1,4 @@
-"""Models of walking and their answers over HTTP."""
+"""HTTP endpoints of models of walking and their predictions."""
 
 from itertools import pairwise
 from math import dist
@@ -43,33 +43,33 @@ router = APIRouter(prefix="/walking", tags=["walking"])
 
 @router.get("/models")
 def get_models(db: Reading, context: Context, _: SignedIn) -> list[ModelListed]:
-    """The models, the newest first; one that is fitted tells how far it is."""
+    """Return the models, newest first, with the progress of those that are being fitted."""
     return model_list(db, context)
 
 
 @router.post("/models", status_code=201)
 async def post_model(wish: NewModel, context: Context, caller: SignedIn) -> ModelView:
-    """Have a model fitted; the answer comes at once, and the model tells how far it is."""
+    """Start fitting a model; the response is immediate, and the model shows the progress."""
     model_id = await write(context, lambda db: order_model(db, context, caller, wish))
     return await run_in_threadpool(begin_fit, context, model_id)
 
 
 @router.get("/models/{model_id}")
 def get_model(model_id: str, db: Reading, context: Context, _: SignedIn) -> ModelView:
-    """One model: what it was fitted on and how, and how well it guesses what it did not see."""
+    """Return one model: its walks and options, and its errors on data that were left out."""
     return model_view(db, context, model_id)
 
 
 @router.delete("/models/{model_id}", status_code=204)
 async def delete_model(model_id: str, context: Context, caller: SignedIn) -> None:
-    """Delete a model, or give up fitting it."""
+    """Delete a model, or cancel its fit."""
     await write(context, lambda db: remove_model(db, context, caller, model_id))
     await run_in_threadpool(context.part(FittingDesk).forget, model_id)
 
 
 @router.post("/models/{model_id}/stop")
 async def stop_model(model_id: str, context: Context, caller: SignedIn) -> ModelView:
-    """Stop fitting; the maps that are finished are kept."""
+    """Stop fitting a model; its finished maps are kept."""
     await write(context, lambda db: mark_stopped(db, context, caller, model_id))
     await run_in_threadpool(context.part(FittingDesk).halt, model_id)
     return await run_in_threadpool(_view, context, model_id)
@@ -77,7 +77,7 @@ async def stop_model(model_id: str, context: Context, caller: SignedIn) -> Model
 
 @router.post("/models/{model_id}/resume")
 async def resume_model(model_id: str, context: Context, caller: SignedIn) -> ModelView:
-    """Go on where it was stopped, or try again."""
+    """Resume a stopped fit, or retry a failed one."""
     await write(context, lambda db: mark_resumed(db, context, caller, model_id))
     return await run_in_threadpool(begin_fit, context, model_id)
 
@@ -88,7 +88,7 @@ async def resume_model(model_id: str, context: Context, caller: SignedIn) -> Mod
     responses={200: binary("The model's file, as `./run walk` reads it.")},
 )
 def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingResponse:
-    """The model as a file."""
+    """Download the model as a file."""
     with context.database.reading() as db:
         content_hash, _title = ready_content(db, model_id)
     headers = attachment(f"walking-{content_hash[:12]}.npz")
@@ -97,7 +97,7 @@ def get_model_file(model_id: str, context: Context, _: SignedIn) -> StreamingRes
 
 @router.post("/paths")
 async def post_path(wish: PathAsked, context: Context, _: SignedIn) -> PathView:
-    """The way between two points, or whether a drawn one is free of obstacles."""
+    """Return the shortest path between two points, or check that a drawn one avoids obstacles."""
     question = await run_in_threadpool(_question, context, wish)
     points = await context.part(Bench).computed(plan_way, question)
     length_m = sum(dist(a, b) for a, b in pairwise(points))
@@ -108,7 +108,7 @@ async def post_path(wish: PathAsked, context: Context, _: SignedIn) -> PathView:
 async def post_prediction(
     model_id: str, wish: PredictionAsked, context: Context, _: SignedIn
 ) -> PredictionView:
-    """How long people take on a path: a distribution, and walks drawn from it."""
+    """Predict how long people take on a path: a distribution, and walks drawn from it."""
     content_hash = await run_in_threadpool(_content, context, model_id)
     question = await run_in_threadpool(_question, context, wish)
     found = await context.part(Bench).computed(
@@ -119,7 +119,7 @@ async def post_prediction(
 
 @router.post("/models/{model_id}/slice")
 async def post_slice(model_id: str, wish: SliceAsked, context: Context, _: SignedIn) -> SliceView:
-    """How suitable steering parameters are for such a walk: a slice of the map."""
+    """Return how suitable steering parameters are for a walk: a slice of the map."""
     content_hash = await run_in_threadpool(_content, context, model_id)
     question = SliceQuestion(tuple(sorted(wish.dependencies.items())), wish.held, wish.value)
     found = await context.part(Bench).computed(slice_of, store_of(context), content_hash, question)

@@ -1,4 +1,4 @@
-"""Fitted models and their answers as they travel to a page; SI throughout."""
+"""Request and response models of fitted models and their predictions, in SI units."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -23,7 +23,7 @@ Value = Annotated[float, Field(ge=-1e6, le=1e6, allow_inf_nan=False)]
 
 
 class ProgressView(BaseModel):
-    """How far a fit is; `maps_total` is 0 while it is not known."""
+    """The progress of a fit; `maps_total` is 0 while it is unknown."""
 
     stage: Stage
     maps: int
@@ -31,7 +31,7 @@ class ProgressView(BaseModel):
 
 
 class ReadingView(BaseModel):
-    """How deviations are read as suitability."""
+    """The options by which deviations are converted to suitability."""
 
     normalisation: Literal["max", "min-max"]
     power: float
@@ -65,7 +65,11 @@ class LeftOutView(BaseModel):
 
 
 class LeftOutFigures(BaseModel):
-    """Guessed by neighbours, between nodes by radial basis functions, and from other people."""
+    """Errors of predicting left-out entries, by what was left out.
+
+    `neighbours`: an entry, predicted from its neighbours. `nodes`: a node, interpolated by radial
+    basis functions. `people`: a person, predicted from other people.
+    """
 
     neighbours: LeftOutView
     nodes: LeftOutView
@@ -73,7 +77,7 @@ class LeftOutFigures(BaseModel):
 
 
 class ModelSummary(BaseModel):
-    """What a fitted model is; `model_hash` is the one that its file names itself by."""
+    """The summary of a fitted model; `model_hash` is the hash in its file."""
 
     model_hash: str
     walks: int
@@ -91,7 +95,10 @@ class ModelSummary(BaseModel):
 
 
 class FittedOn(BaseModel):
-    """The set of walks as it was called when the fit was ordered; `id` is null once it is gone."""
+    """The set of walks that a model was fitted to, with its title at the time of the order.
+
+    `id` is null if the set was deleted.
+    """
 
     id: str | None
     title: str
@@ -107,7 +114,7 @@ class SceneNamed(BaseModel):
 
 
 class ModelListed(BaseModel):
-    """A model in a list; `progress` while it is fitted, `trouble` where that failed."""
+    """A model in a list; `progress` while it is fitted, `trouble` if that failed."""
 
     id: str
     title: str
@@ -124,7 +131,7 @@ class ModelListed(BaseModel):
 
 
 class ModelView(ModelListed):
-    """A model; `content_hash` and `size_bytes` are of its file."""
+    """A complete model; `content_hash` and `size_bytes` are those of its file."""
 
     scene: SceneNamed | None
     options: FitChoice
@@ -160,10 +167,11 @@ class PathView(BaseModel):
 
 
 class PredictionAsked(PathAsked):
-    """How long do people take on this path?
+    """A path for which durations are predicted.
 
-    `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, the same
-    seed gives the same; `shown` of them are followed along the path.
+    `stature_m` null: the mean of the model's people. `count` walks are drawn with `seed`, and the
+    same
+    seed gives the same walks; `shown` of them are followed along the path.
     """
 
     stature_m: Stature | None = None
@@ -173,7 +181,7 @@ class PredictionAsked(PathAsked):
 
 
 class Quantiles(BaseModel):
-    """Seconds: 50 % of the walks take from p25 to p75, 90 % from p05 to p95."""
+    """Quantiles of durations in seconds: 50 % of walks take p25 to p75, 90 % take p05 to p95."""
 
     p05: float
     p25: float
@@ -183,14 +191,14 @@ class Quantiles(BaseModel):
 
 
 class FixedView(BaseModel):
-    """What a model that does not draw says: one duration, of one steering vector."""
+    """The prediction of a deterministic model: the duration of one steering vector."""
 
     duration_s: float
     vector: list[float]
 
 
 class SampledWalk(BaseModel):
-    """One walk that was drawn; `xy_m` from 0 in steps of `step_s`, the last point at arrival."""
+    """One drawn walk; `xy_m` from 0 in steps of `step_s`, the last point at arrival."""
 
     vector: list[float]
     duration_s: float
@@ -199,11 +207,12 @@ class SampledWalk(BaseModel):
 
 
 class PredictionView(BaseModel):
-    """The distribution of durations on a path by P_prob, beside P_stat and P_adapt.
+    """The distribution of durations on a path by P_prob, with P_stat and P_adapt for comparison.
 
     `assumed`: dependencies that were not given. `outside`: those beyond the walks that the model
-    was fitted on, where it guesses. `lost`: draws that did not arrive and were drawn again.
-    `durations_s` are sorted. `kinds`: synthetic where made-up walkers are among the model's people.
+    was fitted to, where it extrapolates. `lost`: draws that did not arrive and were drawn again.
+    `durations_s` are sorted. `kinds`: includes synthetic if the model's people include synthetic
+    ones.
     """
 
     points_m: list[Point]
@@ -223,7 +232,7 @@ class PredictionView(BaseModel):
 
 
 class SliceAsked(BaseModel):
-    """A slice of the map that answers for these dependencies, one parameter held."""
+    """The slice of the map for these dependencies, with one parameter (`held`) fixed at `value`."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -237,7 +246,8 @@ class SliceAsked(BaseModel):
 class SliceView(BaseModel):
     """Suitability over two parameters; rows of `suitability` are values of y.
 
-    `order`: of a vector's numbers. `largest`: of the whole map, so that slices share a scale.
+    `order`: the parameters in the order of a vector's numbers. `largest`: the maximum of the whole
+    map, so that slices share a scale.
     """
 
     x: ParameterView

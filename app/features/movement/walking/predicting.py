@@ -1,6 +1,6 @@
-"""In a process of its own: what a model answers about a path.
+"""Predict walks on a path with a fitted model; runs in the worker process.
 
-The last models that were asked stay open, since making the blending space of one takes a second.
+The last models used stay open, since computing the blending space of one takes a second.
 """
 
 import tempfile
@@ -31,7 +31,7 @@ MOST_SHOWN = 400
 
 @lru_cache(maxsize=2)
 def opened(store: Store, content_hash: str) -> tuple[FittedWalking, SteeringFollower]:
-    """A stored model, and who walks by its rules; raises Cannot."""
+    """Return a stored model with the follower of its steering rules; raise Cannot."""
     with tempfile.TemporaryDirectory(prefix="reembody-walking-") as folder:
         path = Path(folder) / "model.npz"
         path.write_bytes(content_of(store, content_hash))
@@ -48,10 +48,12 @@ def _planner(text: str) -> LazyThetaPlanner:
 
 
 def way_asked(question: Question) -> PlannedPath:
-    """The path of a question: as it was drawn, or the shortest way between its ends.
+    """Return the path of a question: as drawn, or the shortest path between its ends.
 
     Raises:
-        Cannot: a point outside the scene or inside an obstacle, a path through one, no way.
+        Cannot: A point is outside the scene or inside an obstacle, the path crosses one, or there
+            is
+            no path.
     """
     points = question.points_m
     try:
@@ -82,7 +84,7 @@ def _check_drawn(scene: Scene, points: tuple[tuple[float, float], ...]) -> None:
 
 
 def predicted(store: Store, content_hash: str, question: Question) -> Json:
-    """How long people take on a path, a `PredictionView`; raises Cannot."""
+    """Predict how long people take on a path, as a `PredictionView`; raise Cannot."""
     fit, follower = opened(store, content_hash)
     path = way_asked(question)
     try:
@@ -124,7 +126,10 @@ def predicted(store: Store, content_hash: str, question: Question) -> Json:
 def _dependencies(
     fit: FittedWalking, path: PlannedPath, stature_m: float | None
 ) -> tuple[dict[str, float], list[str]]:
-    """What the walk depends on, and which of it was not said: the mean of the model's people."""
+    """Return the dependencies of the walk, and the names of those that were assumed.
+
+    An unknown stature is assumed to be the mean of the model's people.
+    """
     base, assumed = fit.database, []
     if stature_m is None and STATURE in base.names:
         stature_m = float(base.vectors[:, base.names.index(STATURE)].mean())
@@ -134,7 +139,7 @@ def _dependencies(
 
 
 def _outside(fit: FittedWalking, dependencies: dict[str, float]) -> list[str]:
-    """Dependencies beyond those of all walks that the model was fitted on."""
+    """Return the dependencies that are outside the range of the walks that the model was fitted to."""
     base = fit.database
     return [
         name
@@ -161,7 +166,7 @@ def _walkers(
     vectors: np.ndarray[Any, np.dtype[np.float64]],
     durations_s: np.ndarray[Any, np.dtype[np.float64]],
 ) -> list[Json]:
-    """Walkers along the path, each up to its arrival, at steps that a page can draw."""
+    """Return walks along the path, each up to its arrival, at time steps that a page can draw."""
     if not len(vectors):
         return []
     dt_s = predictor.follower.dt_s

@@ -1,7 +1,7 @@
-"""How far a fit is, told by the process that computes it to the one that is asked.
+"""The progress of a fit, written by the worker process and read by the server.
 
-Finished maps are appended to a file at once, so its size tells how many there are. Whoever resumes
-the fit goes on behind the last whole record.
+Each finished map is appended to a file immediately, so its size gives the number of maps. A resumed
+fit continues after the last complete record.
 """
 
 from dataclasses import dataclass
@@ -16,11 +16,11 @@ RECORD_BYTES = 8
 
 @dataclass(frozen=True)
 class Progress:
-    """How far a fit is.
+    """The progress of a fit.
 
     Attributes:
-        stage: reading walks, making maps, choosing how to read them and blending.
-        maps, maps_total: finished, of how many; total 0 while it is not known.
+        stage: Reading walks, making maps, or choosing the reading and blending.
+        maps, maps_total: Number of finished maps, of how many; the total is 0 while it is unknown.
     """
 
     stage: Stage = "waiting"
@@ -30,18 +30,18 @@ class Progress:
 
 @dataclass(frozen=True)
 class FitFolder:
-    """The files of one fit."""
+    """The folder of one fit, with its files."""
 
     folder: Path
 
     @property
     def model(self) -> Path:
-        """The finished model."""
+        """Return the path of the finished model."""
         return self.folder / "model.npz"
 
     @property
     def maps(self) -> Path:
-        """Records of finished maps: deviations, then travel times."""
+        """Return the path of the records of finished maps: deviations, then travel times."""
         return self.folder / "maps.f32"
 
     @property
@@ -49,13 +49,13 @@ class FitFolder:
         return self.folder / "told"
 
     def tell(self, stage: Stage, total: int, nodes: int) -> None:
-        """Say what is done now; whole or not at all."""
+        """Write the current stage atomically."""
         part = self._told.with_suffix(".part")
         part.write_text(f"{stage} {total} {nodes}", encoding="utf-8")
         part.replace(self._told)
 
     def progress(self) -> Progress:
-        """How far it is; what was told last, and the size of the file of maps."""
+        """Return the progress from the last stage written and the size of the file of maps."""
         try:
             told, total, nodes = self._told.read_text(encoding="utf-8").split()
             size = self.maps.stat().st_size if self.maps.exists() else 0

@@ -1,4 +1,4 @@
-"""In a process of its own: walks out of stored tables, of captures, of made-up walkers."""
+"""Read walks from stored tables and captures, or synthesise them; runs in the worker process."""
 
 import io
 from collections.abc import Sequence
@@ -33,7 +33,7 @@ MOST_WALKS = 5000
 
 
 def content_of(store: Store, content_hash: str) -> bytes:
-    """A stored file; raises Cannot where it is gone."""
+    """Return a stored file; raise Cannot if it was deleted."""
     pooled = make_url(store.url).get_backend_name() != "sqlite"
     engine = make_engine(store.url, pooled=pooled)
     try:
@@ -47,7 +47,7 @@ def content_of(store: Store, content_hash: str) -> bytes:
 
 
 def scene_of(text: str) -> Scene:
-    """A scene by its text, which was checked when it came in; raises Cannot."""
+    """Parse a scene, which was validated when it was uploaded; raise Cannot."""
     try:
         return load_scene(text)
     except ConfigError as error:
@@ -55,7 +55,7 @@ def scene_of(text: str) -> Scene:
 
 
 def planned_walks(store: Store, source: WalkSource, scene: str | None) -> list[PlannedWalk]:
-    """All walks of a source with the paths planned for them; raises Cannot."""
+    """Return all walks of a source with the paths planned for them; raise Cannot."""
     try:
         if isinstance(source, PopulationSource):
             return _made_up(source)
@@ -66,7 +66,7 @@ def planned_walks(store: Store, source: WalkSource, scene: str | None) -> list[P
 
 
 def tracks_of(data: bytes, source: TrackSource) -> list[Track]:
-    """The tracks of a table; raises Cannot with the line."""
+    """Return the tracks of a table; raise Cannot with the line."""
     reading = TrackReading(
         rate_hz=source.rate_hz, metres_per_unit=source.metres_per_unit, kind=source.kind
     )
@@ -89,7 +89,7 @@ def tracks_of(data: bytes, source: TrackSource) -> list[Track]:
 
 
 def walks_in(tracks: Sequence[Track]) -> list[Walk]:
-    """The walks of all tracks; raises Cannot where nobody walks, or there are too many."""
+    """Return the walks of all tracks; raise Cannot if there are none or too many."""
     walks = [walk for track in tracks for walk in walks_of(track)]
     if not walks:
         raise Cannot(
@@ -102,7 +102,7 @@ def walks_in(tracks: Sequence[Track]) -> list[Walk]:
 
 
 def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
-    """Each walk with its path, on the open floor where there is no scene; raises Cannot."""
+    """Plan a path for each walk, on an open floor if there is no scene; raise Cannot."""
     planner = None if scene is None else LazyThetaPlanner(scene)
     entries = []
     for number, walk in enumerate(walks, start=1):
@@ -118,7 +118,7 @@ def planned(walks: Sequence[Walk], scene: Scene | None) -> list[PlannedWalk]:
 
 
 def table_of_captures(store: Store, captures: Sequence[tuple[str, CapturedWalk]]) -> bytes:
-    """Ways of captured people as one table of tracks, by names of tracks; raises Cannot."""
+    """Return the tracks of captured people as one table, with the names as ids; raise Cannot."""
     text = io.StringIO()
     text.write("id,time_s,x_m,y_m\n")
     for name, capture in captures:

@@ -1,4 +1,4 @@
-"""Scenes: those that come with the product, and those that the lab brings in."""
+"""Scenes: those that come with the product, and those that the lab uploads."""
 
 import hashlib
 from functools import lru_cache
@@ -26,13 +26,13 @@ from app.science.walking.scene import Scene
 
 @lru_cache(maxsize=1)
 def _shipped() -> dict[str, tuple[str, Scene]]:
-    """Texts and scenes of those that come with the product, by key."""
+    """Return the text and scene of each scene that comes with the product, by key."""
     texts = {key: file.read_text(encoding="utf-8") for key, file in shipped_scenes().items()}
     return {key: (text, load_scene(text)) for key, text in texts.items()}
 
 
 def scene_list(db: Session) -> list[SceneListed]:
-    """All scenes: the lab's own by title, then those that come with the product."""
+    """Return all scenes: the lab's own by title, then those that come with the product."""
     rows = db.execute(
         select(WalkingScene.key, WalkingScene.title, WalkingScene.by, WalkingScene.at).order_by(
             WalkingScene.title, WalkingScene.key
@@ -49,14 +49,14 @@ def scene_list(db: Session) -> list[SceneListed]:
 
 
 def scene_text(db: Session, key: str) -> str:
-    """The text of a scene's file; raises NotFound."""
+    """Return the text of a scene's file; raise NotFound if there is no such scene."""
     if key in _shipped():
         return _shipped()[key][0]
     return _row(db, key).text
 
 
 def scene_view(db: Session, key: str) -> SceneView:
-    """A scene in full; raises NotFound."""
+    """Return one complete scene; raise NotFound if there is no such scene."""
     if key in _shipped():
         text, scene = _shipped()[key]
         return _view(scene, text, None)
@@ -65,7 +65,7 @@ def scene_view(db: Session, key: str) -> SceneView:
 
 
 def add_scene(db: Session, context: AppContext, caller: Caller, wish: NewScene) -> SceneView:
-    """Keep a scene file; raises InvalidConfig with every problem, Conflict for a key in use."""
+    """Store a scene file; raise InvalidConfig with every problem, Conflict if the key is in use."""
     try:
         scene = load_scene(wish.text)
     except ConfigError as error:

@@ -1,4 +1,4 @@
-"""Scenes, sets of walks and models of walking as they travel to a page; SI throughout."""
+"""Request and response models of scenes, sets of walks and models of walking, in SI units."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -17,7 +17,7 @@ Seed = Annotated[int, Field(ge=0, le=2**31 - 1)]
 
 
 def _numbers(count: int) -> WithJsonSchema:
-    """So many numbers, said in words that every reader of the interface's document knows."""
+    """Return the JSON schema of an array of exactly `count` numbers."""
     numbers = {"type": "array", "items": {"type": "number"}}
     return WithJsonSchema(numbers | {"minItems": count, "maxItems": count})
 
@@ -34,14 +34,14 @@ class _Asked(BaseModel):
 
 
 class ObstacleView(BaseModel):
-    """Something nobody walks through: a convex outline, metres."""
+    """An obstacle: a convex outline, in metres."""
 
     name: str
     corners_m: list[Point]
 
 
 class ScenePathView(BaseModel):
-    """A walk that people are asked for, between two places."""
+    """A path between two places that people are asked to walk."""
 
     name: str
     start: str
@@ -59,7 +59,7 @@ class SceneListed(BaseModel):
 
 
 class SceneView(SceneListed):
-    """A scene; `bounds_m` is left, near, right, far, x to the right and y ahead."""
+    """A complete scene; `bounds_m` is left, near, right, far, with x to the right and y ahead."""
 
     about: str
     content_hash: str
@@ -71,13 +71,13 @@ class SceneView(SceneListed):
 
 
 class NewScene(_Asked):
-    """The text of a scene file."""
+    """The text of a scene file to store."""
 
     text: Annotated[str, StringConstraints(min_length=1, max_length=MAX_SCENE_CHARACTERS)]
 
 
 class Range(BaseModel):
-    """Smallest, middle and largest value, and the mean."""
+    """Minimum, median, maximum and mean of a quantity."""
 
     low: float
     median: float
@@ -86,7 +86,7 @@ class Range(BaseModel):
 
 
 class CensusView(BaseModel):
-    """How long the planned paths are; a length on an edge belongs to the interval above it."""
+    """The distribution of path lengths; a length on an edge belongs to the interval above it."""
 
     count: int
     edges_m: list[float]
@@ -98,10 +98,10 @@ class CensusView(BaseModel):
 
 
 class WalksSummary(BaseModel):
-    """What is in a set of walks.
+    """The summary of a set of walks.
 
-    `cut_by_recording`: walks that a recording begins or ends in. `missing_dependencies`: those that
-    only some walks have, so that no model can depend on them.
+    `cut_by_recording`: walks during which a recording begins or ends. `missing_dependencies`: those
+    that only some walks have, so that no model can depend on them.
     """
 
     walks: int
@@ -115,14 +115,14 @@ class WalksSummary(BaseModel):
 
 
 class PopulationView(BaseModel):
-    """A documented population of made-up walkers."""
+    """A documented population of synthetic walkers."""
 
     name: str
     about: str
 
 
 class PopulationOrigin(_Asked):
-    """Made-up walkers: whom, how often each walks each path, and in which scene.
+    """Synthetic walkers: the population, how often each walks each path, and the scene.
 
     `scene` null: the paper's laboratory of sixteen straight and curved walks.
     """
@@ -152,7 +152,7 @@ class CapturesOrigin(_Asked):
 
 
 class TracksOrigin(BaseModel):
-    """A table of tracks that was brought in."""
+    """Walks cut from an uploaded table of tracks."""
 
     kind: Literal["tracks"] = "tracks"
     file_name: str
@@ -162,14 +162,14 @@ class TracksOrigin(BaseModel):
 
 
 class NewWalkSet(_Asked):
-    """Walks to be made or to be cut from captures; tables of tracks are uploaded."""
+    """A set of walks to synthesise or to cut from captures; tables of tracks are uploaded."""
 
     title: Title
     origin: Annotated[PopulationOrigin | CapturesOrigin, Field(discriminator="kind")]
 
 
 class WalkSetView(BaseModel):
-    """A set of walks. `kind` says whether people walked or a program."""
+    """A set of walks; `kind` says whether they are of people or synthetic."""
 
     id: str
     title: str
@@ -182,11 +182,11 @@ class WalkSetView(BaseModel):
 
 
 class FitChoice(_Asked):
-    """How to fit; the defaults are the paper's, but for the reading, which is chosen.
+    """Options of a fit; the defaults are the paper's, except that the reading is chosen.
 
-    `steps`: values of each steering parameter, whose cube is the size of a map. `k`: neighbours.
-    `entries`: of the blending space, blends included. `reading`: how deviations are read as
-    suitability; "chosen" decides it by predicting people who were left out.
+    `steps`: values of each steering parameter; a map has their cube as its size. `k`: neighbours.
+    `entries`: of the blending space, blends included. `reading`: how deviations are converted to
+    suitability; "chosen" selects it by predicting people who were left out.
     """
 
     steps: Annotated[int, Field(ge=3, le=12)] = 10
@@ -197,7 +197,7 @@ class FitChoice(_Asked):
 
 
 class NewModel(_Asked):
-    """A model to be fitted; `scene` is where tracks were walked, null for the open floor."""
+    """A model to fit; `scene` is the one in which tracks were walked, null for the open floor."""
 
     title: Title
     walk_set_id: RecordId

@@ -1,4 +1,4 @@
-"""Models of how people walk: ordering, stopping, resuming, deleting."""
+"""Order, stop, resume and delete models of how people walk."""
 
 from typing import cast
 
@@ -28,7 +28,7 @@ from app.platform.context import AppContext
 
 
 def model_by_id(db: Session, model_id: str, *, lock: bool = False) -> WalkingModelRow:
-    """The model; raises NotFound."""
+    """Return the model with this id; raise NotFound if there is none."""
     row = db.get(WalkingModelRow, model_id, with_for_update=lock)
     if row is None:
         raise NotFound("there is no such model", value=model_id)
@@ -36,7 +36,7 @@ def model_by_id(db: Session, model_id: str, *, lock: bool = False) -> WalkingMod
 
 
 def ready_content(db: Session, model_id: str) -> tuple[str, str]:
-    """Content hash and title of a model that can be asked; raises NotFound, NotNow."""
+    """Return the content hash and title of a fitted model; raise NotFound, or NotNow before that."""
     row = model_by_id(db, model_id)
     if row.state != "ready" or row.content_hash is None:
         raise NotNow(
@@ -49,7 +49,7 @@ def ready_content(db: Session, model_id: str) -> tuple[str, str]:
 
 
 def model_list(db: Session, context: AppContext) -> list[ModelListed]:
-    """All models, the newest first."""
+    """Return all models, newest first."""
     rows = db.scalars(
         select(WalkingModelRow).order_by(WalkingModelRow.at.desc(), WalkingModelRow.id)
     )
@@ -57,7 +57,7 @@ def model_list(db: Session, context: AppContext) -> list[ModelListed]:
 
 
 def model_view(db: Session, context: AppContext, model_id: str) -> ModelView:
-    """One model in full; raises NotFound."""
+    """Return one complete model; raise NotFound if there is none with this id."""
     row = model_by_id(db, model_id)
     content_hash = row.content_hash
     return ModelView(
@@ -71,7 +71,7 @@ def model_view(db: Session, context: AppContext, model_id: str) -> ModelView:
 
 
 def order_model(db: Session, context: AppContext, caller: Caller, wish: NewModel) -> str:
-    """Note a model that is to be fitted; its id. `begin_fit` begins once that is stored."""
+    """Store the order of a model and return its id; `begin_fit` starts it after the commit."""
     walks = walk_set_by_id(db, wish.walk_set_id)
     scene = None if wish.scene is None else scene_view(db, wish.scene)
     if scene is not None and walks.origin["kind"] == "population":
@@ -127,7 +127,7 @@ def order_of(db: Session, model_id: str) -> FitOrder:
 
 
 def begin_fit(context: AppContext, model_id: str) -> ModelView:
-    """Hand a noted model to the desk."""
+    """Start the fit of a stored order."""
     with context.database.reading() as db:
         order = order_of(db, model_id)
         context.part(FittingDesk).order(model_id, order)
@@ -135,7 +135,7 @@ def begin_fit(context: AppContext, model_id: str) -> ModelView:
 
 
 def mark_stopped(db: Session, context: AppContext, caller: Caller, model_id: str) -> None:
-    """Note that a fit is stopped; raises NotFound, NotNow."""
+    """Mark a fit as stopped; raise NotFound, or NotNow if it is not being fitted."""
     row = _in_state(db, model_id, "fitting")
     row.state = "stopped"
     db.flush()
@@ -143,7 +143,7 @@ def mark_stopped(db: Session, context: AppContext, caller: Caller, model_id: str
 
 
 def mark_resumed(db: Session, context: AppContext, caller: Caller, model_id: str) -> None:
-    """Note that a fit goes on; raises NotFound, NotNow, Conflict."""
+    """Mark a stopped or failed fit as resumed; raise NotFound, NotNow or Conflict."""
     row = _in_state(db, model_id, "stopped", "failed")
     order_of(db, model_id)
     row.state, row.trouble = "fitting", None
@@ -152,7 +152,7 @@ def mark_resumed(db: Session, context: AppContext, caller: Caller, model_id: str
 
 
 def remove_model(db: Session, context: AppContext, caller: Caller, model_id: str) -> None:
-    """Delete a model, or give up fitting it; raises NotFound."""
+    """Delete a model, fitted or not; raise NotFound if there is none with this id."""
     row = model_by_id(db, model_id, lock=True)
     db.delete(row)
     db.flush()
@@ -196,7 +196,7 @@ def _listed(row: WalkingModelRow, context: AppContext) -> ModelListed:
 def _record(
     db: Session, context: AppContext, caller: Caller, row: WalkingModelRow, action: str
 ) -> None:
-    # By id: a title that somebody gave may hold a person's name, and the trail cannot be erased.
+    # The id, not the title, which may contain a person's name: the audit trail cannot be erased.
     record(
         db,
         actor=caller.actor,

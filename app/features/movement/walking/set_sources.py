@@ -1,4 +1,4 @@
-"""Sets of walks as the processes that read them are told them."""
+"""Convert sets of walks to the sources that worker processes read."""
 
 from sqlalchemy.orm import Session
 
@@ -23,7 +23,7 @@ from app.platform.context import AppContext
 
 
 def source_of_set(db: Session, view: WalkSetView) -> WalkSource:
-    """What a fit needs to know of a stored set."""
+    """Return the source of a stored set, for a fit."""
     if isinstance(view.origin, PopulationOrigin):
         return _population(db, view.origin)
     content_hash = view.content_hash or ""
@@ -33,7 +33,7 @@ def source_of_set(db: Session, view: WalkSetView) -> WalkSource:
 
 
 def tracks_source(origin: TracksOrigin, kind: Kind, content_hash: str) -> TrackSource:
-    """A table as the process is told it."""
+    """Return the source of a table of tracks."""
     return TrackSource(
         name=origin.file_name,
         content_hash=content_hash,
@@ -45,7 +45,7 @@ def tracks_source(origin: TracksOrigin, kind: Kind, content_hash: str) -> TrackS
 
 
 def captures_source(origin: CapturesOrigin, content_hash: str) -> TrackSource:
-    """Ways cut from captures as the process is told them; raises InvalidInput."""
+    """Return the source of tracks from captures; raise InvalidInput if a person has two statures."""
     names = [f"c{at}" for at in range(len(origin.captures))]
     statures: dict[str, float] = {}
     for one in origin.captures:
@@ -69,7 +69,7 @@ def captures_source(origin: CapturesOrigin, content_hash: str) -> TrackSource:
 
 
 def population_source(context: AppContext, origin: PopulationOrigin) -> PopulationSource:
-    """Made-up walkers as the process is told them; raises NotFound."""
+    """Return the source of synthetic walkers; raise NotFound for an unknown scene."""
     with context.database.reading() as db:
         return _population(db, origin)
 
@@ -84,7 +84,7 @@ def _population(db: Session, origin: PopulationOrigin) -> PopulationSource:
 def captured_walks(
     context: AppContext, origin: CapturesOrigin
 ) -> tuple[tuple[str, CapturedWalk], ...]:
-    """Captures as the process is told them, by their names in the table; raises NotFound."""
+    """Return the captures of a set with their names in its table; raise NotFound."""
     found = []
     for at, one in enumerate(origin.captures):
         source = source_of_capture(context, one.capture_id)

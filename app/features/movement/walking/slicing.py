@@ -1,4 +1,4 @@
-"""In a process of its own: slices of the map that answers a question."""
+"""Compute slices of the map for given dependencies; runs in the worker process."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ Json = dict[str, Any]
 
 
 def sliced(store: Store, content_hash: str, question: SliceQuestion) -> Json:
-    """One slice of the map that answers, a `SliceView`; raises Cannot."""
+    """Return one slice of the map as a `SliceView`; raise Cannot."""
     fit, _ = opened(store, content_hash)
     grid = fit.space.grid
     names = [one.name for one in grid.parameters]
@@ -39,7 +39,7 @@ def sliced(store: Store, content_hash: str, question: SliceQuestion) -> Json:
         "held": _axis(fit, held),
         "order": names,
         "held_at": at,
-        # Rows are values of y, as heat maps are drawn.
+        # Rows are values of y, as heat maps expect.
         "suitability": found.T.round(5).tolist(),
         "largest": float(blended.max()),
     }

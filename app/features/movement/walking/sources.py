@@ -1,6 +1,6 @@
-"""Where walks come from, and what is asked about them, as the processes are told it.
+"""The data that the server passes to worker processes: sources of walks, orders and questions.
 
-Everything here travels between processes: plain, frozen, hashable where an answer is kept by it.
+They are pickled, so they are plain and frozen, and hashable where results are cached by them.
 """
 
 from dataclasses import dataclass
@@ -12,18 +12,18 @@ LABORATORY = "laboratory"
 """In place of a scene's text: the paper's sixteen straight and curved walks."""
 
 
-class Cannot(Exception):  # an error is named after what happened
-    """Something cannot be read, fitted or answered: the process tells the server why."""
+class Cannot(Exception):  # the name reads as a sentence with its reason
+    """Something cannot be parsed, fitted or predicted; raised in a worker process."""
 
     def __init__(self, reason: str, remedy: str = "") -> None:
-        # All of them as they came: errors travel between processes by their arguments.
+        # All arguments are passed on, because errors are pickled by their arguments.
         super().__init__(reason, remedy)
         self.reason, self.remedy = reason, remedy
 
 
 @dataclass(frozen=True)
 class Store:
-    """Where contents are: the address of the database."""
+    """Where file contents are read from: the database's URL."""
 
     url: str
 
@@ -33,13 +33,13 @@ class TrackSource:
     """A table of tracks.
 
     Attributes:
-        name: of the file.
-        content_hash: under which it is stored.
-        rate_hz, metres_per_unit: what the table does not say.
-        kind: whether people walked.
-        statures_m: subject and height, in pairs.
-        subjects: where one person has several tracks, the table's name and who it is.
-        titles: the same, and the recording that it comes from.
+        name: Of the file.
+        content_hash: Under which it is stored.
+        rate_hz, metres_per_unit: Missing in the table itself.
+        kind: Whether people walked, or the walks are synthetic.
+        statures_m: Pairs of subject and stature.
+        subjects: Pairs of the table's id and the person, for several tracks of one person.
+        titles: Pairs of the table's id and the recording that the track comes from.
     """
 
     name: str
@@ -54,12 +54,12 @@ class TrackSource:
 
 @dataclass(frozen=True)
 class PopulationSource:
-    """Made-up walkers.
+    """Synthetic walkers.
 
     Attributes:
-        name: of the population.
-        people, repetitions, seed: whom of it, and how often each walks each path.
-        scene: text of the scene file whose paths they walk, or `LABORATORY`.
+        name: Of the population.
+        people, repetitions, seed: How many walkers, how often each walks each path, random seed.
+        scene: Text of the scene file whose paths they walk, or `LABORATORY`.
     """
 
     name: str
@@ -74,7 +74,7 @@ WalkSource = TrackSource | PopulationSource
 
 @dataclass(frozen=True)
 class CapturedWalk:
-    """A stored capture whose person's way is wanted."""
+    """A stored capture from which a person's track is cut."""
 
     name: str
     content_hash: str
@@ -88,14 +88,15 @@ class CapturedWalk:
 
 @dataclass(frozen=True)
 class FitOrder:
-    """What is to be fitted.
+    """A model to fit.
 
     Attributes:
-        source: the walks.
-        scene: text of the scene in which tracks were walked, None for the open floor.
-        steps: values of each steering parameter.
-        seed, k, entries: as in `FitOptions`.
-        reading: how maps are read; "chosen" by people left out.
+        source: The walks.
+        scene: Text of the scene in which tracks were walked, None for the open floor.
+        steps: Values of each steering parameter.
+        seed, k, entries: As in `FitOptions`.
+        reading: How deviations are converted to suitability; "chosen" selects it by left-out
+            people.
     """
 
     source: WalkSource
@@ -109,15 +110,15 @@ class FitOrder:
 
 @dataclass(frozen=True)
 class Question:
-    """What a model is asked.
+    """A prediction to compute.
 
     Attributes:
-        scene: text of the scene; None for the open floor.
-        points_m: a path, or where `planned` its two ends.
-        planned: whether the way between them is to be found.
-        stature_m: of who walks, None for the mean of the model's people.
-        count, seed: draws of P_prob.
-        shown: how many of them walk along the path.
+        scene: Text of the scene; None for the open floor.
+        points_m: A path, or its two ends if `planned`.
+        planned: Whether the path between the ends is to be planned.
+        stature_m: Of the walker, None for the mean of the model's people.
+        count, seed: Draws of P_prob.
+        shown: How many of the draws are followed along the path.
     """
 
     scene: str | None
@@ -131,12 +132,12 @@ class Question:
 
 @dataclass(frozen=True)
 class SliceQuestion:
-    """Which slice of the blended map is wanted.
+    """A slice of the blended map to compute.
 
     Attributes:
-        dependencies: name and value, in pairs.
-        held: the parameter that is held.
-        value: where.
+        dependencies: Pairs of name and value.
+        held: The parameter that is fixed.
+        value: The value at which it is fixed.
     """
 
     dependencies: tuple[tuple[str, float], ...]

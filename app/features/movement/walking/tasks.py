@@ -1,6 +1,6 @@
-"""What is done in processes of their own; the server only names it.
+"""The tasks of the worker processes for walking; the server only passes their names.
 
-Each loads what it needs when it is done there: the server itself never computes walks.
+Each task imports what it needs when it runs: the server's own process never computes walks.
 """
 
 from dataclasses import dataclass
@@ -20,19 +20,19 @@ from app.features.movement.walking.sources import (
 
 @dataclass(frozen=True)
 class CapturedTable:
-    """Ways of captured people as one table of tracks, and what is in it."""
+    """Tracks of captured people as one table, with its summary."""
 
     table: bytes
     summary: dict[str, Any]
 
 
 def inspected_tracks(source: TrackSource, path: Path) -> dict[str, Any]:
-    """A `WalksSummary` of a table on disk; raises Cannot."""
+    """Return a `WalksSummary` of a table on disk; raise Cannot."""
     return _tracks_told(path.read_bytes(), source)
 
 
 def inspected_population(source: PopulationSource) -> dict[str, Any]:
-    """A `WalksSummary` of made-up walkers; raises Cannot."""
+    """Return a `WalksSummary` of synthetic walkers; raise Cannot."""
     from app.features.movement.walking.figures import walks_told
     from app.features.movement.walking.reading import planned_walks
 
@@ -42,7 +42,7 @@ def inspected_population(source: PopulationSource) -> dict[str, Any]:
 def captured_table(
     store: Store, captures: tuple[tuple[str, CapturedWalk], ...], source: TrackSource
 ) -> CapturedTable:
-    """The ways of captured people, cut and counted; raises Cannot."""
+    """Return the tracks of captured people with their summary; raise Cannot."""
     from app.features.movement.walking.reading import table_of_captures
 
     table = table_of_captures(store, captures)
@@ -50,28 +50,28 @@ def captured_table(
 
 
 def fit_model(store: Store, order: FitOrder, folder: Path) -> dict[str, Any]:
-    """Fit a model into a folder; a `ModelSummary`. Raises Cannot."""
+    """Fit a model in a folder and return a `ModelSummary`; raise Cannot."""
     from app.features.movement.walking.fit_task import fit
 
     return fit(store, order, folder)
 
 
 def plan_way(question: Question) -> list[tuple[float, float]]:
-    """The points of a path; raises Cannot."""
+    """Return the points of a path; raise Cannot."""
     from app.features.movement.walking.predicting import way_asked
 
     return [(float(x), float(y)) for x, y in way_asked(question).points_m]
 
 
 def predict_walk(store: Store, content_hash: str, question: Question) -> dict[str, Any]:
-    """How long people take on a path, a `PredictionView`; raises Cannot."""
+    """Predict how long people take on a path, as a `PredictionView`; raise Cannot."""
     from app.features.movement.walking.predicting import predicted
 
     return predicted(store, content_hash, question)
 
 
 def slice_of(store: Store, content_hash: str, question: SliceQuestion) -> dict[str, Any]:
-    """One slice of the map that answers, a `SliceView`; raises Cannot."""
+    """Return one slice of the map as a `SliceView`; raise Cannot."""
     from app.features.movement.walking.slicing import sliced
 
     return sliced(store, content_hash, question)

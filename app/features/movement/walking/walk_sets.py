@@ -1,4 +1,4 @@
-"""Sets of walks: tables that are brought in, ways cut from captures, made-up walkers."""
+"""Sets of walks: from uploaded tables, from captures, or synthetic."""
 
 import hashlib
 from collections.abc import AsyncIterator, Callable
@@ -43,7 +43,7 @@ from app.platform.half_made import uploads_of
 
 @dataclass(frozen=True)
 class Table:
-    """A table of tracks that is being brought in."""
+    """The parameters of an uploaded table of tracks."""
 
     title: str
     kind: Kind
@@ -51,12 +51,12 @@ class Table:
 
 
 def store_of(context: AppContext) -> Store:
-    """Where the processes find contents."""
+    """Return the store from which worker processes read contents."""
     return Store(context.settings.resolved_database_url)
 
 
 def walk_set_by_id(db: Session, set_id: str, *, lock: bool = False) -> WalkSetRow:
-    """The set; raises NotFound."""
+    """Return the set with this id; raise NotFound if there is none."""
     row = db.get(WalkSetRow, set_id, with_for_update=lock)
     if row is None:
         raise NotFound("there is no such set of walks", value=set_id)
@@ -64,12 +64,12 @@ def walk_set_by_id(db: Session, set_id: str, *, lock: bool = False) -> WalkSetRo
 
 
 def walk_set_view(row: WalkSetRow) -> WalkSetView:
-    """A set as a page sees it."""
+    """Return a set as a response model."""
     return WalkSetView.model_validate(row, from_attributes=True)
 
 
 def walk_set_list(db: Session) -> list[WalkSetView]:
-    """All sets, the newest first."""
+    """Return all sets, newest first."""
     rows = db.scalars(select(WalkSetRow).order_by(WalkSetRow.at.desc(), WalkSetRow.id))
     return [walk_set_view(row) for row in rows]
 
@@ -77,7 +77,7 @@ def walk_set_list(db: Session) -> list[WalkSetView]:
 async def add_table(
     context: AppContext, caller: Caller, wish: Table, body: AsyncIterator[bytes]
 ) -> WalkSetView:
-    """Keep a table of tracks; raises InvalidInput with the line where it cannot be read."""
+    """Store a table of tracks; raise InvalidInput with the line that cannot be parsed."""
     async with uploaded(context, body, None) as (file,):
         source = tracks_source(wish.origin, wish.kind, file.hash)
         found = await context.part(Bench).run(inspected_tracks, source, file.path)
@@ -87,7 +87,7 @@ async def add_table(
 
 
 async def add_walk_set(context: AppContext, caller: Caller, wish: NewWalkSet) -> WalkSetView:
-    """Make walkers up, or cut walks from captures; raises InvalidInput, NotFound."""
+    """Synthesise walks, or cut them from captures; raise InvalidInput or NotFound."""
     if isinstance(wish.origin, CapturesOrigin):
         return await _add_captured(context, caller, wish.title, wish.origin)
     source = await run_sync(population_source, context, wish.origin)
@@ -98,7 +98,7 @@ async def add_walk_set(context: AppContext, caller: Caller, wish: NewWalkSet) ->
 
 
 def remove_walk_set(db: Session, context: AppContext, caller: Caller, set_id: str) -> None:
-    """Delete a set; models that were fitted on it stay. Raises NotFound, Conflict."""
+    """Delete a set; models that were fitted to it stay. Raises NotFound, Conflict."""
     row = walk_set_by_id(db, set_id, lock=True)
     users = list(db.scalars(select(WalkingModelRow).where(WalkingModelRow.walk_set_id == set_id)))
     unfinished = [model.title for model in users if model.state != "ready"]

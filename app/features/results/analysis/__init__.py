@@ -1,7 +1,8 @@
-"""From the record to tables, scores and figures.
+"""Turn the stored record of a study into tables, scores, tests and figures.
 
-This face loads neither pandas nor plotly: figures and tests are computed in processes of their own
-(`Drawings`). What needs pandas has faces of its own: `tables`, `codebook`, `figures`, `questions`.
+Importing this package loads neither pandas nor plotly: figures and tests are computed in worker
+processes (`Drawings`). Code that needs pandas imports the subpackages `tables`, `codebook`,
+`figures` and `questions` directly.
 """
 
 from app.features.results.analysis.drawing import Drawings

@@ -1,7 +1,8 @@
-"""The dashboard of a study: its valid rows, drawn, group by group.
+"""Build the dashboard of a study: figures of its valid rows, by group.
 
-People's, simulated and test sessions are never drawn together. In a blinded study only completed
-sessions are drawn, so that nobody who still runs a session can learn its latencies here.
+Sessions of people, simulations and tests are never drawn together. In a blinded study only
+completed sessions are drawn, so that the figures cannot reveal the latencies of a session that is
+still running.
 """
 
 from collections.abc import Iterator
@@ -29,16 +30,17 @@ BLINDED_NOTE = "The study is blinded: measures of sessions that are still open a
 def build_dashboard(
     db: Session, study_key: str, kind: DashboardKind, chosen: FigureFilter = NO_FILTER
 ) -> DashboardFigures:
-    """Every figure of a study's sessions of one kind; raises NotFound for an unknown study."""
+    """Return every figure of a study's sessions of one kind; raise NotFound for an unknown study."""
     return dashboard_of(read_material(db, study_key, kind), chosen)
 
 
 def dashboard_of(
     material: Material, chosen: FigureFilter = NO_FILTER, group: FigureGroup | None = None
 ) -> DashboardFigures:
-    """The figures of what a filter leaves, of one group or of all, and what else could be chosen.
+    """Return the figures of the rows that pass the filter, and the values that the filter can take.
 
-    Only the tables that these figures are made of are wanted of `material`.
+    `group` limits the result to one group of figures. Only the tables that these figures need are
+    read from `material`.
     """
     left = material.chosen(chosen)
     return DashboardFigures(
@@ -57,7 +59,7 @@ def dashboard_of(
 def drawings_of(
     material: Material, chosen: FigureFilter = NO_FILTER, group: FigureGroup | None = None
 ) -> Iterator[Drawing]:
-    """The drawings one after the other, marked with what they show; of all groups unless named."""
+    """Yield the figures of one group or of all groups, each marked with what the filter selected."""
     prefix = TITLE_PREFIX[material.kind]
     note = f"{chosen.words()} {BLINDED_NOTE if material.blinded else ''}".strip()
     rows = Rows(material.chosen(chosen), invalid=chosen.rows == "all")
@@ -70,7 +72,7 @@ def drawings_of(
 
 
 def _explained(figure: Figure, rows: Rows) -> Iterator[Drawing]:
-    """The drawings; an empty one says so where there are data, and only none that count."""
+    """Yield the drawings of a figure; an empty one says if there are rows that are just not valid."""
     everything: dict[str, Drawing] | None = None
     for drawing in figure.draw(rows):
         if drawing.empty is not None and not rows.invalid and not rows.left.sessions.empty:

@@ -1,9 +1,9 @@
-"""Dashboards are drawn in a process of their own and kept until the data change.
+"""Draw dashboards in a worker process and cache them until the data change.
 
 Drawing a thousand participants takes many seconds of computing. In a thread of the server it would
-hold up every running session; so a process does it, which ends with the server. A page gets what
-was drawn last at once, with its time and whether newer data are being drawn. The study's tests are
-computed there, too, and kept in the same way.
+delay every running session, so a worker process does it, which ends with the server. A page
+immediately receives the last figures drawn, with their time and whether they are up to date. The
+study's tests are computed and cached in the same way.
 """
 
 import logging
@@ -39,7 +39,7 @@ What = Literal["dashboard", "statistics"]
 
 @dataclass(frozen=True)
 class Asked:
-    """What is to be drawn; what is kept is kept under it."""
+    """A request for a dashboard or for the study's tests; also the key of the cached result."""
 
     what: What
     study_key: str
@@ -50,7 +50,7 @@ class Asked:
 
 @dataclass(frozen=True)
 class Drawn:
-    """A dashboard as JSON, and the state of the data that it shows."""
+    """A dashboard or the study's tests as JSON, and the state of the data that it was made from."""
 
     body: bytes
     state: State
@@ -59,10 +59,13 @@ class Drawn:
 
 @dataclass
 class Drawings(Part):
-    """What was drawn, by study, kind and filter; a process draws what is missing, one at a time.
+    """The cached dashboards and tests; a worker process makes what is missing, one at a time.
 
-    Kept are those asked for last, up to MOST_KEPT_BYTES together. Tests have a process of their
-    own: those of a thousand participants take minutes, in which figures must not wait.
+    The cache holds up to MOST_KEPT_BYTES and evicts the least recently requested results. Tests
+    have
+    a worker process of their own: those of a thousand participants take minutes, and figures must
+    not
+    wait for them.
     """
 
     url: str
@@ -75,7 +78,7 @@ class Drawings(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The drawings of a server's studies."""
+        """Create the drawings of a server."""
         background = context.background
         return cls(
             context.settings.resolved_database_url,
@@ -92,20 +95,25 @@ class Drawings(Part):
         chosen: FigureFilter = NO_FILTER,
         group: FigureGroup | None = None,
     ) -> tuple[Drawn, bool]:
-        """The newest drawing of one group or of all, and whether it shows the data as they are now.
+        """Return the latest dashboard, and whether it shows the current data.
 
-        Raises NotFound for an unknown study, NotDurable where drawing fails.
+        `group` limits it to one group of figures. Raises NotFound for an unknown study, NotDurable
+        where
+        drawing fails.
         """
         return self._newest(db, Asked("dashboard", study_key, kind, chosen, group))
 
     def statistics(self, db: Session, study_key: str, kind: DashboardKind) -> tuple[Drawn, bool]:
-        """The newest answers to the study's questions; as `dashboard`."""
+        """Return the latest results of the study's tests, and whether they are of the current data.
+
+        Raises as `dashboard` does.
+        """
         return self._newest(db, Asked("statistics", study_key, kind))
 
     def sheet(
         self, study_key: str, kind: DashboardKind, chosen: FigureFilter, figure: str
     ) -> bytes:
-        """The rows of one figure as CSV; raises NotFound for an unknown study or figure."""
+        """Return the rows of one figure as CSV; raise NotFound for an unknown study or figure."""
         making = self._worker.submit(sheet, self.url, study_key, kind, chosen, figure)
         try:
             return making.result(FIRST_WITHIN_S)
@@ -141,7 +149,7 @@ class Drawings(Part):
     def _begin(self, asked: Asked, state: State) -> "Future[None]":
         worker = self._tester if asked.what == "statistics" else self._worker
         drawing = worker.submit(draw, self.url, asked)
-        # Not the drawing itself: who waits for that goes on before what was drawn is kept.
+        # Not the worker's future: whoever waits for that one resumes before the result is cached.
         kept: Future[None] = Future()
         self._under_way[asked] = kept
         drawing.add_done_callback(lambda done: self._keep(asked, state, done, kept))
@@ -165,21 +173,21 @@ class Drawings(Part):
             log.error("the %s of %s could not be made", asked.what, asked.study_key, exc_info=error)
 
     def _let_go(self) -> None:
-        """Of what was not asked for lately; the newest stays however large it is."""
+        """Evict the least recently requested results; keep the newest, however large it is."""
         size = sum(len(one.body) for one in self._drawn.values())
         while size > MOST_KEPT_BYTES and len(self._drawn) > 1:
             _, oldest = self._drawn.popitem(last=False)
             size -= len(oldest.body)
 
     def stop(self) -> None:
-        """Let the processes go, with what they are doing."""
+        """End the worker processes, including any work in progress."""
         self._worker.end()
         self._tester.end()
 
 
 def draw(url: str, asked: Asked) -> bytes:
-    """In the other process: a dashboard, or the answers to the study's questions, as JSON."""
-    # Loads pandas and plotly, which the server's own process need not hold.
+    """Return a dashboard or the results of the study's tests as JSON; runs in the worker process."""
+    # Loads pandas and plotly, which the server's own process does not need.
     from app.features.results.analysis import in_process
 
     if asked.what == "statistics":
@@ -190,7 +198,7 @@ def draw(url: str, asked: Asked) -> bytes:
 def sheet(
     url: str, study_key: str, kind: DashboardKind, chosen: FigureFilter, figure: str
 ) -> bytes:
-    """In the other process: the rows of one figure as CSV."""
+    """Return the rows of one figure as CSV; runs in the worker process."""
     from app.features.results.analysis import in_process
 
     return in_process.sheet(url, study_key, kind, chosen, figure)

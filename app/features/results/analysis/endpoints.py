@@ -1,4 +1,4 @@
-"""Dashboards, the rows of their figures, the study's tests, and the codebook over HTTP."""
+"""HTTP endpoints of dashboards, the rows of their figures, the study's tests and the codebook."""
 
 import json
 from typing import Annotated
@@ -26,9 +26,9 @@ FigureKey = Annotated[str, Path(pattern=r"^[a-z][a-z0-9_]{0,79}$")]
 def get_dashboard(
     key: str, db: Reading, context: Context, _: SignedIn, asked: Annotated[GroupAsked, Query()]
 ) -> Response:
-    """The figures of a study's sessions of one kind, as drawn last; ask again while not current.
+    """Return the latest figures of a study's sessions of one kind; repeat while not current.
 
-    The filter chooses sessions and rows before anything is drawn. One group of the figures is there
+    The filter selects sessions and rows before anything is drawn. One group of the figures is ready
     sooner than all of them.
     """
     return _answer(
@@ -49,11 +49,11 @@ def get_figure_rows(
     caller: SignedIn,
     asked: Annotated[DashboardAsked, Query()],
 ) -> Response:
-    """The rows that a figure is drawn from, as CSV; comment lines above them say what they are."""
+    """Return the rows that a figure is drawn from as CSV, with comment lines that describe them."""
     study_by_key(db, key)
     body = context.part(Drawings).sheet(key, asked.kind, asked.filter, figure)
     now = context.clock.utc_now()
-    # People's data leave the database: whoever must erase them has to know.
+    # People's data leave the database, so the copy is recorded for a later erasure.
     with context.database.writing() as writing:
         study = study_by_key(writing, key)
         record_copy(
@@ -87,17 +87,17 @@ def get_figure_rows(
 def get_statistics(
     key: str, db: Reading, context: Context, _: SignedIn, kind: DashboardKind = "people"
 ) -> Response:
-    """The study's questions, answered from the sessions that count; ask again while not current.
+    """Return the results of the study's tests on valid sessions; repeat while they are not current.
 
-    It takes no filter: what is tested is not chosen after looking.
+    There is no filter, so that what is tested cannot be chosen after seeing the data.
     """
     return _answer(*context.part(Drawings).statistics(db, key, kind))
 
 
 @router.get("/studies/{key}/codebook")
 def get_codebook(key: str, db: Reading, _: SignedIn) -> list[ColumnView]:
-    """What every column of the study's export holds."""
-    # Loads pandas, which the start of the server need not wait for.
+    """Return the description of every column of the study's export."""
+    # Imported here because it loads pandas, which would slow down the server's start.
     from app.features.results.analysis.codebook import codebook
     from app.features.results.analysis.tables import has_rules
 
@@ -117,5 +117,5 @@ def get_codebook(key: str, db: Reading, _: SignedIn) -> list[ColumnView]:
 
 def _answer(drawn: Drawn, current: bool) -> Response:  # noqa: FBT001 - as `Drawings` gives it
     when = json.dumps({"drawn_at": drawn.at.isoformat(), "current": current})
-    # Not read and written once more: figures of a thousand participants are large.
+    # The JSON is spliced, not parsed: the figures of a thousand participants are large.
     return Response(f"{when[:-1]},".encode() + drawn.body[1:], media_type="application/json")

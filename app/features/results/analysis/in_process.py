@@ -1,8 +1,8 @@
-"""What runs in the process that draws: figures, the rows of one, and the study's tests.
+"""The tasks of the worker process for figures: dashboards, rows of one figure, the study's tests.
 
 The tables stay in this process between tasks (`MaterialStore`), so that another filter of the same
-data costs its drawing only. Each task looks at the state of the data in the transaction that it
-reads by, so that no table of older data is taken for one of newer.
+data only costs its drawing. Each task determines the state of the data in the transaction that it
+reads in, so that outdated tables are never used for newer data.
 """
 
 from collections.abc import Iterator
@@ -30,7 +30,7 @@ def draw(
     chosen: FigureFilter,
     group: FigureGroup | None,
 ) -> bytes:
-    """The dashboard, or one group of its figures, as JSON."""
+    """Return the dashboard, or one group of its figures, as JSON."""
     with _material(url, study_key, kind) as material:
         return dashboard_of(material, chosen, group).model_dump_json().encode()
 
@@ -38,7 +38,10 @@ def draw(
 def sheet(
     url: str, study_key: str, kind: DashboardKind, chosen: FigureFilter, figure: str
 ) -> bytes:
-    """The rows of one figure as CSV; raises NotFound with the figures there are."""
+    """Return the rows of one figure as CSV.
+
+    Raises NotFound, with the keys of all figures, for an unknown figure.
+    """
     known = []
     with _material(url, study_key, kind) as material:
         for drawing in drawings_of(material, chosen):
@@ -49,8 +52,8 @@ def sheet(
 
 
 def compute(url: str, study_key: str, kind: DashboardKind) -> bytes:
-    """The answers to the study's questions as JSON."""
-    # Loads scipy and statsmodels, which figures do without.
+    """Return the results of the study's tests as JSON."""
+    # Imported here because it loads scipy and statsmodels, which figures do not need.
     from app.features.results.analysis.questions import answers_of
 
     with _material(url, study_key, kind) as material:

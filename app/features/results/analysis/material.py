@@ -1,8 +1,8 @@
-"""What figures and tests are made of: the tables of a study's sessions, read once and then chosen.
+"""The tables that figures and tests are made from: a study's sessions, read once and then filtered.
 
-Reading is slow and does not depend on what a reader picks; choosing is quick. So the tables are
-kept in the process that draws, for as long as the data stand still. Each is read when it is first
-wanted: the first figures of a page need few of them.
+Reading is slow and does not depend on the filter; filtering is quick. So the worker process keeps
+the tables until the data change. Each table is read on first use, because the first figures of a
+page need few of them.
 """
 
 from collections import OrderedDict
@@ -50,7 +50,7 @@ READ: Mapping[str, Callable[[Session, str, DashboardKind], pd.DataFrame]] = {
 
 
 class Tables(dict[str, pd.DataFrame]):
-    """Tables by name, each made by `make` when it is first wanted."""
+    """Tables by name, each created by `make` on first use."""
 
     def __init__(self, make: Callable[[str], pd.DataFrame]) -> None:
         super().__init__()
@@ -64,10 +64,10 @@ class Tables(dict[str, pd.DataFrame]):
 
 @dataclass(frozen=True, eq=False)
 class Material:
-    """The tables of a study's sessions of one kind, every row, valid or not.
+    """The tables of a study's sessions of one kind, with every row, valid or not.
 
     `instruments` by (key, version). `tables` by the names in `READ`. `hidden`: sessions whose
-    condition must not be known, whichever version of the study they ran.
+    condition must stay blinded, whichever version of the study they ran.
     """
 
     protocol: StudyProtocol
@@ -78,75 +78,75 @@ class Material:
 
     @property
     def sessions(self) -> pd.DataFrame:
-        """One row per session."""
+        """Return the table of sessions, one row per session."""
         return self.tables["sessions"]
 
     @property
     def scores(self) -> pd.DataFrame:
-        """One row per score of every form."""
+        """Return the table of scores, one row per score of every form."""
         return self.tables["scores"]
 
     @property
     def answers(self) -> pd.DataFrame:
-        """One row per answered item of every form."""
+        """Return the table of answers, one row per answered item of every form."""
         return self.tables["answers"]
 
     @property
     def phases(self) -> pd.DataFrame:
-        """One row per phase."""
+        """Return the table of phases, one row per phase."""
         return self.tables["phases"]
 
     @property
     def contacts(self) -> pd.DataFrame:
-        """One row per contact interval, without UTC."""
+        """Return the table of contacts, one row per contact interval, without UTC times."""
         return self.tables["contacts"]
 
     @property
     def errors(self) -> pd.DataFrame:
-        """Of the joint errors, the angles to the present pose."""
+        """Return the joint errors that are angles relative to the present pose."""
         return self.tables["errors"]
 
     @property
     def courses(self) -> pd.DataFrame:
-        """Bins of active time: joint errors to the present pose."""
+        """Return the joint errors relative to the present pose by bin of active time."""
         return self.tables["courses"]
 
     @property
     def quality(self) -> pd.DataFrame:
-        """One row per phase that was finished and stream."""
+        """Return the table of quality, one row per finished phase and stream."""
         return self.tables["quality"]
 
     @property
     def alarms(self) -> pd.DataFrame:
-        """One row per alarm raised or cleared."""
+        """Return the table of alarms, one row per alarm raised or cleared."""
         return self.tables["alarms"]
 
     @property
     def limbs(self) -> set[str]:
-        """The limbs that phases were done with."""
+        """Return the limbs that the phases were done with."""
         return set(self.tables["limbs"]["limb"].dropna())
 
     @property
     def blinded(self) -> bool:
-        """Whether those who run sessions must not know the latencies."""
+        """Return whether operators must not know the latencies of open sessions."""
         return self.protocol.blinding.operator or bool(self.hidden)
 
     @property
     def visible(self) -> pd.DataFrame:
-        """The sessions whose measures are shown: of a blinded study those that are completed."""
+        """Return the sessions whose measures are shown; of a blinded study only the completed ones."""
         known = self.sessions[~self.sessions["session_id"].isin(list(self.hidden))]
         return known[known["status"] == "completed"] if self.blinded else known
 
     def chosen(self, chosen: FigureFilter) -> "Material":
-        """What a filter leaves; rows stay as they are, valid or not."""
-        # In a blinded study the order of an open session is not to be found out by choosing one.
+        """Return the rows that pass a filter, valid or not."""
+        # In a blinded study, filtering by order must not reveal the order of an open session.
         known = self.visible if chosen.order is not None else self.sessions
         sessions = _sessions(known, chosen)
         ids = set(sessions["session_id"])
         return self._of(sessions, ids, chosen.limb)
 
     def of_sessions(self, ids: set[str]) -> "Material":
-        """What belongs to these sessions."""
+        """Return the rows that belong to these sessions."""
         return self._of(self.sessions[self.sessions["session_id"].isin(ids)], ids, None)
 
     def _of(self, sessions: pd.DataFrame, ids: set[str], limb: str | None) -> "Material":
@@ -155,18 +155,18 @@ class Material:
         return replace(self, tables=tables)
 
     def counting(self, rows: pd.DataFrame, *, invalid: bool = False) -> pd.DataFrame:
-        """The rows of visible sessions that count; with `invalid` the others too."""
+        """Return the valid rows of visible sessions; with `invalid`, all their rows."""
         seen = rows["session_id"].isin(set(self.visible["session_id"]))
         return rows[seen] if invalid else rows[seen & rows["valid"]]
 
 
 def n_not_valid(sessions: pd.DataFrame) -> int:
-    """How many sessions were completed and do not count by the rules of their study."""
+    """Return the number of completed sessions that are not valid by the rules of their study."""
     return int(((sessions["status"] == "completed") & ~sessions["valid"]).sum())
 
 
 def read_material(db: Session, study_key: str, kind: DashboardKind) -> Material:
-    """Read every table at once; raises NotFound for an unknown study."""
+    """Read every table immediately; raise NotFound for an unknown study."""
     material = _Reader(study_key, kind, db).material()
     for name in READ:
         material.tables[name]
@@ -175,9 +175,9 @@ def read_material(db: Session, study_key: str, kind: DashboardKind) -> Material:
 
 @dataclass
 class _Reader:
-    """Reads tables when they are wanted, by the transaction that is open then.
+    """Read tables on demand, in the transaction that is open at that time.
 
-    What several tables are joined with (`contexts`) is read once for all of them.
+    The context that several tables are joined with (`contexts`) is read once for all of them.
     """
 
     study_key: str
@@ -186,7 +186,7 @@ class _Reader:
     contexts: Contexts = field(default_factory=dict)
 
     def material(self) -> Material:
-        """Without a table yet; raises NotFound for an unknown study."""
+        """Return the material with no table read yet; raise NotFound for an unknown study."""
         study = study_by_key(self.db, self.study_key)
         protocol = protocol_of(newest_version(self.db, study))
         instruments, hidden = _instruments(self.db), hidden_sessions(self.db, study)
@@ -199,22 +199,24 @@ class _Reader:
 
 @dataclass
 class MaterialStore:
-    """Tables by database, study and kind, for as long as the data have the state they show."""
+    """A cache of tables by database, study and kind, valid until the state of the data changes."""
 
     _kept: "OrderedDict[tuple[URL, str, str], tuple[object, _Reader, Material]]" = field(
         default_factory=OrderedDict
     )
 
     def get(self, db: Session, study_key: str, kind: DashboardKind, state: object) -> Material:
-        """The tables as of `state`, which are those of this transaction.
+        """Return the tables as of `state`, which is the state in the transaction of `db`.
 
-        Tables that were read before stay; others are read by `db`, which must be open when they
-        are first wanted. With another state all are read anew.
+        Tables that were read before are reused; others are read through `db`, which must be open
+        when
+        they are first used. If the state has changed, all are read again.
         """
         name = (db.get_bind().engine.url, study_key, kind)
         found = self._kept.pop(name, None)
         if found is None or found[0] != state:
-            # Let go first: two sets of a large study's tables need not be there at once.
+            # Release the old tables first, so that two sets of a large study's are not in memory
+            # together.
             found = None
             reader = _Reader(study_key, kind, db)
             found = (state, reader, reader.material())
@@ -247,6 +249,6 @@ def _sessions(sessions: pd.DataFrame, chosen: FigureFilter) -> pd.DataFrame:
 def _rows(rows: pd.DataFrame, ids: set[str], limb: str | None) -> pd.DataFrame:
     kept = rows["session_id"].isin(ids)
     if limb is not None and "limb" in rows.columns:
-        # Rows of no limb belong to the whole session.
+        # Rows without a limb belong to the whole session.
         kept &= rows["limb"].isna() | (rows["limb"] == limb)
     return rows[kept]

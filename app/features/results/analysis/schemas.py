@@ -1,4 +1,4 @@
-"""A dashboard with its filter, the study's tests and a codebook as they travel to a page."""
+"""Response and query models of the dashboard, the study's tests and the codebook."""
 
 from datetime import date, datetime
 from typing import Annotated, Any, Literal
@@ -16,11 +16,12 @@ FigureGroup = Literal["progress", "embodiment", "answers", "tasks", "movement", 
 
 
 class FigureFilter(BaseModel):
-    """Which sessions and rows are drawn; everything unless named.
+    """Which sessions and rows are drawn; by default, all valid rows of all sessions.
 
     `rows`: "valid" leaves out what does not count (sessions that were broken off or are not valid
     by the study's rules, superseded and skipped steps), "all" draws it too. `since` and `until`:
-    days, both included, on which a session was created, in UTC. `order`: added latencies in ms in
+    the first and last day, in UTC, on which a session was created. `order`: added latencies in ms
+    in
     the order of the blocks, as in "0 125 350".
     """
 
@@ -35,11 +36,11 @@ class FigureFilter(BaseModel):
 
     @property
     def is_all(self) -> bool:
-        """Whether nothing was chosen."""
+        """Return whether the filter has its default values."""
         return self == FigureFilter()
 
     def words(self) -> str:
-        """What was chosen, as the sentence that stands in captions and files; empty for nothing."""
+        """Return the filter as a sentence for captions and files, empty for the default filter."""
         told = [*self._of_whom(), *self._when()]
         if self.limb is not None:
             told.append(f"the {self.limb} task")
@@ -71,26 +72,26 @@ NO_FILTER = FigureFilter()
 
 
 class DashboardAsked(FigureFilter):
-    """What a page asks for: whose sessions, and which of them."""
+    """The query of a dashboard: the kind of sessions and a filter."""
 
     kind: DashboardKind = "people"
 
     @property
     def filter(self) -> FigureFilter:
-        """Without the kind."""
+        """Return the filter without the kind."""
         return FigureFilter(**self.model_dump(include=set(FigureFilter.model_fields)))
 
 
 class GroupAsked(DashboardAsked):
-    """The same with the group whose figures are wanted; all of them unless named."""
+    """The query of a dashboard or of one of its groups of figures; without `group`, of all groups."""
 
     group: FigureGroup | None = None
 
 
 class FigureView(BaseModel):
-    """A figure for plotly.js, or in plain words what is missing for it; `n` participants.
+    """A figure for plotly.js, or a sentence (`empty`) that says what is missing; `n` participants.
 
-    `wide`: it needs the width of the page.
+    `wide`: the figure needs the full width of the page.
     """
 
     key: str
@@ -104,7 +105,10 @@ class FigureView(BaseModel):
 
 
 class FilterChoices(BaseModel):
-    """What can be chosen from: codes, orders as "0 125 350", limbs, first and last day (UTC)."""
+    """The values that the filter can take.
+
+    They are participant codes, orders as "0 125 350", limbs, and the first and last day in UTC.
+    """
 
     participants: list[str]
     orders: list[str]
@@ -114,9 +118,9 @@ class FilterChoices(BaseModel):
 
 
 class DashboardFigures(BaseModel):
-    """The figures of a study's sessions of one kind, as far as a filter leaves them.
+    """The figures of a study's sessions of one kind that pass a filter.
 
-    `n_not_valid` of the `n_completed` sessions do not count by the study's rules.
+    `n_not_valid` of the `n_completed` sessions are not valid by the study's rules.
     """
 
     kind: str
@@ -131,16 +135,16 @@ class DashboardFigures(BaseModel):
 
 
 class DashboardView(DashboardFigures):
-    """Figures as they were drawn at `drawn_at`; not `current`: newer data are being drawn."""
+    """Figures as drawn at `drawn_at`; if not `current`, newer data are being drawn."""
 
     drawn_at: datetime
     current: bool
 
 
 class ResultView(BaseModel):
-    """One answer: a sentence for a reader, a table for a reviewer, a line for a paper.
+    """The report of one test: a sentence for readers, a table for reviewers, a line for a paper.
 
-    `exploratory`: looked at, not declared. `warnings`: what speaks against relying on it.
+    `exploratory`: the test was not preregistered. `warnings`: reasons for caution.
     """
 
     key: str
@@ -156,11 +160,12 @@ class ResultView(BaseModel):
 
 
 class GlanceView(BaseModel):
-    """The answers of one limb in a few signs each; null where it could not be tested.
+    """The results of one limb in brief, each null if it could not be tested.
 
     `differ`: whether the latencies differ at all. `first`: the first latency that differs from the
-    smallest one, empty where none does. `trend` along latency, one-sided where one was
-    predicted, and the `way` that the measure goes.
+    smallest one, empty if none does. `trend`: of the trend along latency, one-sided where a
+    direction
+    was predicted. `way`: the direction of the trend.
     """
 
     limb: str
@@ -171,7 +176,7 @@ class GlanceView(BaseModel):
 
 
 class MeasureView(BaseModel):
-    """What was asked of one measure; `left_out` says in words who is not in it, and why.
+    """The test results of one measure; `left_out` says which participants are left out, and why.
 
     `glance` has a row for each limb whose latencies were compared.
     """
@@ -187,9 +192,9 @@ class MeasureView(BaseModel):
 
 
 class StatisticsResults(BaseModel):
-    """The study's questions, answered from its sessions of one kind.
+    """The test results of a study's sessions of one kind.
 
-    `alpha`: what p is compared with. `declared`: whether the study declared it before.
+    `alpha`: the level that p is compared with. `declared`: whether the study preregistered it.
     """
 
     kind: str
@@ -204,14 +209,14 @@ class StatisticsResults(BaseModel):
 
 
 class StatisticsView(StatisticsResults):
-    """Answers as of `drawn_at`; not `current`: they are being computed anew."""
+    """Test results as computed at `drawn_at`; if not `current`, newer ones are being computed."""
 
     drawn_at: datetime
     current: bool
 
 
 class ColumnView(BaseModel):
-    """A column of an export."""
+    """The codebook entry of one exported column."""
 
     table: str
     column: str

@@ -1,8 +1,8 @@
-"""A figure's rows as CSV, with what they are of in the comment above them.
+"""Write a figure's rows as CSV, with comment lines that describe them.
 
-The file opens with lines that begin with `#`: the study, whose data, what was chosen, the caption.
-Readers skip them by their usual option (`comment="#"`). Whether a row is simulated also stands in
-its first columns, where no reader loses it.
+The file begins with lines that start with `#`: the study, the kind of data, the filter, the
+caption. Readers skip them by their usual option (`comment="#"`). Whether a row is simulated is also
+in its first columns, where no reader loses it.
 """
 
 import csv
@@ -22,7 +22,10 @@ _RUN_AS_FORMULA = ("=", "+", "-", "@", "\t", "\r")
 
 
 def sheet_of(drawing: Drawing, material: Material) -> bytes:
-    """UTF-8, LF; missing values are empty; texts that a spreadsheet would run are quoted off."""
+    """Return a drawing's rows as CSV: UTF-8, LF, empty cells for missing values.
+
+    Text that a spreadsheet would run as a formula begins with an apostrophe.
+    """
     lines = _head(drawing, material)
     written = io.StringIO()
     writer = csv.writer(written, lineterminator="\n")

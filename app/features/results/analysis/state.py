@@ -1,4 +1,4 @@
-"""What tells whether figures drawn before still show the data: it changes when a figure might."""
+"""The state of a study's data, which decides whether cached figures are still up to date."""
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
@@ -17,9 +17,10 @@ State = tuple[object, ...]
 
 
 def state_of_data(db: Session, study_key: str, kind: str) -> State:
-    """What changes whenever a figure might: sessions, events in them, and computed summaries.
+    """Return a value that changes whenever a figure might.
 
-    Corrections and erasures are events, too.
+    It covers the study's version, sessions, events and computed summaries. Corrections and erasures
+    are events, too.
     """
     study = study_by_key(db, study_key)
     sessions = (StudySession.study_id == study.id, StudySession.kind == kind)

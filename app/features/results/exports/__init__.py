@@ -1,7 +1,7 @@
-"""Tidy CSV with a codebook.
+"""Export a study as tidy CSV files with a codebook.
 
-This face loads no pandas: files are made in a process of their own (`ExportDesk`). Whoever writes
-an export itself uses `writing`.
+Importing this package does not load pandas: files are made in worker processes (`ExportDesk`).
+Code that writes an export in its own process imports `writing`.
 """
 
 from app.features.results.exports.desk import ExportDesk

@@ -1,9 +1,9 @@
-"""Where exports are ordered, made one after the other, fetched and forgotten.
+"""The queue of exports: ordered, made one after the other, downloaded and removed.
 
-Files stand in a folder of their own beside the database, readable by the server alone. They go when
-their owner removes them, when nobody has asked for them for a while, when a participant of the
-study is erased, and at every start and end of the server. What is cancelled stops at once: its
-process is killed, and what it had written is removed.
+The files are in a folder of their own beside the database that only the server can read. They are
+removed when their owner deletes them, some time after the last download, when a participant of the
+study is erased, and whenever the server starts or stops. Cancelling an export kills its process
+immediately and removes what it had written.
 """
 
 import logging
@@ -35,8 +35,8 @@ ENDED = NotMade(
 
 
 def make_archive(order: Order) -> Made | NotMade:
-    """In the process: write the file, or say why not."""
-    # Loads pandas, which the server does without.
+    """Write the file, or return why it could not be made; runs in the worker process."""
+    # Loads pandas, which the server's own process does not need.
     from app.features.results.exports.writing import made
 
     return made(order)
@@ -44,7 +44,10 @@ def make_archive(order: Order) -> Made | NotMade:
 
 @dataclass(eq=False)
 class ExportDesk(Part):
-    """Safe from any thread. `keep_free_bytes` of the disk are never written to."""
+    """The exports of a server, with the thread that makes them; thread-safe.
+
+    `keep_free_bytes` of the disk are always left free.
+    """
 
     folder: Path
     url: str
@@ -59,7 +62,7 @@ class ExportDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The exports of a server's studies, in its scratch folder."""
+        """Create the exports of a server, in its scratch folder."""
         settings = context.settings
         return cls(
             settings.scratch_dir / "exports",
@@ -70,17 +73,20 @@ class ExportDesk(Part):
         )
 
     def start(self) -> None:
-        """Remove what an earlier run left."""
+        """Remove files that an earlier run of the server left."""
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def stop(self) -> None:
-        """Stop whatever is made, and remove every file."""
+        """Stop the exports in progress and remove every file."""
         self._drop(lambda _: True)
         self._maker.shutdown(wait=True, cancel_futures=True)
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def order(self, job: Job) -> ExportView:
-        """Have a file made; one that is under way is not made twice. Raises NotNow."""
+        """Queue an export, or return the open one for the same data.
+
+        Raises NotNow if too many of the account's exports are open.
+        """
         self._forget_old()
         with self._lock:
             mine = [one for one in self._jobs.values() if one.owner == job.owner and one.is_open]
@@ -100,14 +106,17 @@ class ExportDesk(Part):
             return self._view(job)
 
     def exports_of(self, owner: str) -> list[ExportView]:
-        """A person's exports, newest first."""
+        """Return an account's exports, newest first."""
         self._forget_old()
         with self._lock:
             mine = [self._view(job) for job in self._jobs.values() if job.owner == owner]
         return mine[::-1]
 
     def find(self, owner: str, export_id: str) -> Job:
-        """One of a person's exports; raises NotFound, also where it is somebody else's."""
+        """Return one of an account's exports.
+
+        Raises NotFound if there is none, or if it belongs to another account.
+        """
         self._forget_old()
         with self._lock:
             job = self._jobs.get(export_id)
@@ -120,23 +129,23 @@ class ExportDesk(Part):
         return job
 
     def view(self, owner: str, export_id: str) -> ExportView:
-        """How far one is; raises NotFound."""
+        """Return the progress of an export; raise NotFound if there is none."""
         return self._view(self.find(owner, export_id))
 
     def cancel(self, owner: str, export_id: str) -> None:
-        """Stop making it, or remove the file; raises NotFound."""
+        """Cancel an export, or remove its file; raise NotFound if there is none."""
         wanted = self.find(owner, export_id)
         self._drop(lambda job: job is wanted)
 
     def forget_study(self, study_key: str) -> None:
-        """Remove what holds data of a study: somebody in it was erased."""
+        """Remove all exports of a study, because one of its participants was erased."""
         self._drop(lambda job: job.study_key == study_key)
 
     def _view(self, job: Job) -> ExportView:
         return job.view(self.clock.monotonic_ns())
 
     def _make_or_fail(self, job: Job) -> None:
-        """Whatever happens, nobody waits for ever, and the next one is made."""
+        """Make an export; an unexpected error marks it as failed, and the next one is made."""
         try:
             self._make(job)
         except Exception as error:
@@ -198,7 +207,7 @@ class ExportDesk(Part):
                 job.given_up = True
                 del self._jobs[job.id]
         for job in dropped:
-            # Kills the process first, so nothing is written after the files are gone.
+            # Kill the process first, so that nothing is written after the files are removed.
             job.worker.end()
             job.remove_files()
 

@@ -1,4 +1,4 @@
-"""Exports over HTTP: sent while they are made, or ordered as files, watched and fetched."""
+"""HTTP endpoints of exports: streamed while they are made, or made as files to download."""
 
 from collections.abc import Collection, Mapping
 from datetime import datetime
@@ -35,8 +35,8 @@ MEDIA_TYPE = "application/zip"
 def get_export(
     key: str, db: Writing, context: Context, caller: SignedIn, kind: Kind = "people"
 ) -> StreamingResponse:
-    """The study's sessions of one kind as CSV files in a ZIP, sent while it is made."""
-    # Loads pandas, which the start of the server need not wait for.
+    """Stream the study's sessions of one kind as CSV files in a ZIP."""
+    # Imported here because it loads pandas, which would slow down the server's start.
     from app.features.results.exports.writing import study_archive
 
     study = study_by_key(db, key)
@@ -59,7 +59,7 @@ def get_export(
 def post_export(
     key: str, wish: ExportWish, db: Reading, context: Context, caller: SignedIn
 ) -> ExportView:
-    """Have a study's sessions of one kind, or one session, made into a ZIP of CSV files."""
+    """Start an export of a study's sessions of one kind, or of one session, as a ZIP of CSV files."""
     study = study_by_key(db, key)
     what = wish.kind if wish.session_id is None else _code_of(db, study.id, wish)
     now = context.clock.utc_now()
@@ -77,19 +77,19 @@ def post_export(
 
 @router.get("/exports")
 def get_exports(context: Context, caller: SignedIn) -> list[ExportView]:
-    """The caller's exports, newest first: waiting, under way, ready or failed."""
+    """Return the caller's exports, newest first: queued, in progress, ready or failed."""
     return context.part(ExportDesk).exports_of(caller.account_id)
 
 
 @router.get("/exports/{export_id}")
 def get_one_export(export_id: str, context: Context, caller: SignedIn) -> ExportView:
-    """How far one is."""
+    """Return the progress of one export."""
     return context.part(ExportDesk).view(caller.account_id, export_id)
 
 
 @router.delete("/exports/{export_id}", status_code=204)
 def delete_export(export_id: str, context: Context, caller: SignedIn) -> None:
-    """Stop making it, or remove the file."""
+    """Cancel an export, or remove its file."""
     context.part(ExportDesk).cancel(caller.account_id, export_id)
 
 
@@ -100,7 +100,7 @@ def delete_export(export_id: str, context: Context, caller: SignedIn) -> None:
     responses={200: {"content": {MEDIA_TYPE: {}}, "description": "A ZIP of CSV files."}},
 )
 async def get_export_file(export_id: str, context: Context, caller: SignedIn) -> FileResponse:
-    """The file; a download that broke off goes on where it was (`Range`, `If-Range`)."""
+    """Download the file; an interrupted download can be resumed (`Range`, `If-Range`)."""
     job = await run_in_threadpool(_ready, context, caller, export_id)
     if not job.recorded:
         async with context.database.writing_async() as db:
@@ -115,10 +115,10 @@ async def get_export_file(export_id: str, context: Context, caller: SignedIn) ->
 
 
 def _code_of(db: Session, study_id: str, wish: ExportWish) -> str:
-    """The participant's code of the one session that is wished for."""
+    """Return the participant's code of the requested session; raise NotFound if it is not there."""
     session = session_by_id(db, wish.session_id or "")
     if session.study_id != study_id or session.kind != wish.kind:
-        # In the words for one that was never there.
+        # The same message as for a session that never existed.
         raise NotFound("there is no such session", value=wish.session_id)
     participant = db.get_one(Participant, session.participant_id)
     return participant.code
@@ -126,7 +126,7 @@ def _code_of(db: Session, study_id: str, wish: ExportWish) -> str:
 
 def _ready(context: AppContext, caller: Caller, export_id: str) -> Job:
     job = context.part(ExportDesk).find(caller.account_id, export_id)
-    # Whoever lost the study since loses its files too.
+    # The caller may have lost access to the study after ordering the export.
     with context.database.reading() as db:
         require_object(db, caller, "/api/studies/{key}", {"key": job.study_key})
     if job.state != "ready":
@@ -162,9 +162,9 @@ def _put_on_record(
     sessions: int,
     size_bytes: int | None = None,
 ) -> None:
-    """The copy that leaves now, before its first byte: what breaks off has left, too.
+    """Record the copy before its first byte is sent, because a broken-off download is a copy, too.
 
-    `revealed`: sessions of a blinded study whose condition it tells although they are not over.
+    `revealed`: open sessions of a blinded study whose condition the copy shows.
     """
     record_copy(
         db,

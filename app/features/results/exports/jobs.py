@@ -1,4 +1,4 @@
-"""One export as the server keeps it while it is made and until it is fetched."""
+"""One export in the server's memory, from the order to the removal of its file."""
 
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
@@ -19,9 +19,11 @@ NS_PER_S = 1e9
 
 @dataclass(eq=False)
 class Job:
-    """What is to be made for whom. `began_ns`, `ended_ns`: monotonic, of the making alone.
+    """An export of one account, its state and its worker process.
 
-    `recorded`: whether the copy that leaves is on record; `given_up`: whoever wanted it does not.
+    `began_ns`, `ended_ns`: monotonic times of the making, without the wait in the queue.
+    `recorded`:
+    whether the copy is on record. `given_up`: whether the export was cancelled.
     """
 
     owner: str
@@ -48,27 +50,27 @@ class Job:
 
     @property
     def path(self) -> Path:
-        """Where the file is once it is ready."""
+        """Return the path of the finished file."""
         return self.folder / f"{self.id}.zip"
 
     @property
     def meter(self) -> Meter:
-        """Where the process that makes it says how far it is."""
+        """Return the progress file that the worker process writes."""
         return Meter(self.folder / f"{self.id}.progress")
 
     @property
     def is_open(self) -> bool:
-        """Whether it is still to be made."""
+        """Return whether the export is queued or in progress."""
         return self.state in ("queued", "making")
 
     @property
     def expires_at(self) -> datetime | None:
-        """When the file is removed, unless somebody asks for it before."""
+        """Return when the file is removed unless it is downloaded before; None if it is not ready."""
         last = self.fetched_at or self.made_at
         return None if last is None or self.state != "ready" else last + KEPT
 
     def is_the_same(self, other: "Job") -> bool:
-        """Whether both ask for the same file."""
+        """Return whether two jobs are orders of the same file by the same account."""
         return (self.owner, self.study_key, self.kind, self.session_id) == (
             other.owner,
             other.study_key,
@@ -77,12 +79,12 @@ class Job:
         )
 
     def remove_files(self) -> None:
-        """Leave nothing of it on the disk."""
+        """Remove all files of the export from the disk."""
         for path in (self.path, self.path.with_suffix(".part"), self.meter.path):
             path.unlink(missing_ok=True)
 
     def view(self, now_ns: int) -> ExportView:
-        """How far it is, and what can be told of the rest."""
+        """Return the progress of the export, with estimates of its size and remaining time."""
         done = self.meter.read()
         elapsed_s = self._elapsed_s(now_ns)
         size = self.size_bytes or done.bytes
@@ -97,7 +99,7 @@ class Job:
             state=self.state,
             asked_at=self.asked_at,
             rows=done.rows,
-            # Frames that came since are not in it, those of two streams may not be the same ones.
+            # The total is an estimate: frames may be added later, and the two streams may differ.
             rows_total=done.rows if self.state == "ready" else max(done.rows_total, done.rows),
             sessions=done.sessions,
             sessions_total=done.sessions_total,

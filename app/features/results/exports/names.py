@@ -1,4 +1,4 @@
-"""File names of an export, made by us: nothing that a person typed can leave the folder."""
+"""Safe file names for an export: no text entered by a person can lead out of the folder."""
 
 import re
 from datetime import date
@@ -8,20 +8,23 @@ MOST_CHARACTERS = 60
 
 
 def safe_name(text: str) -> str:
-    """`text` reduced to letters, digits, - and _, at most 60, never empty nor like an option."""
+    """Return `text` reduced to letters, digits, - and _.
+
+    The result has at most 60 characters, is never empty and never begins with a hyphen.
+    """
     return _UNSAFE.sub("_", text)[:MOST_CHARACTERS].lstrip("-") or "_"
 
 
 def samples_path(participant_code: str, session_id: str) -> str:
-    """Where the frames of a session stand in an export."""
+    """Return the path, in an export, of the frames of a session."""
     return f"samples/{safe_name(participant_code)}_{safe_name(session_id)}.csv"
 
 
 def receipt_path(participant_code: str, session_id: str) -> str:
-    """Where the receipt of a session stands in an export."""
+    """Return the path, in an export, of the receipt of a session."""
     return f"receipts/{safe_name(participant_code)}_{safe_name(session_id)}.json"
 
 
 def archive_name(study_key: str, what: str, day: date) -> str:
-    """The file name of an export as one file: study, what of it, and the day it shows."""
+    """Return the file name of an export: the study, which part of it, and the day."""
     return f"reembody_{safe_name(study_key)}_{safe_name(what)}_{day.isoformat()}.zip"

@@ -1,6 +1,6 @@
-"""What the server and the process that writes an export say to each other: order, progress, result.
+"""The order, progress and result that the server and an export's worker process exchange.
 
-Nothing here loads pandas: the server itself never needs it for an export.
+Nothing here loads pandas: the server's own process does not need it for an export.
 """
 
 import os
@@ -16,7 +16,7 @@ _LAYOUT = struct.Struct("<5q")
 
 @dataclass(frozen=True)
 class Order:
-    """What to write where. `keep_free_bytes` of the disk are left for what is recorded."""
+    """What to export, and the file to write; `keep_free_bytes` of the disk are left free."""
 
     url: str
     study_key: str
@@ -30,9 +30,9 @@ class Order:
 
 @dataclass(frozen=True)
 class Made:
-    """A complete file: its size, its hash, and how many sessions it holds.
+    """The result of a finished export: the file's size and hash, and its number of sessions.
 
-    `revealed`: those of a blinded study that were not completed and tell their condition.
+    `revealed`: the open sessions of a blinded study whose condition the file shows.
     """
 
     size_bytes: int
@@ -43,7 +43,7 @@ class Made:
 
 @dataclass(frozen=True)
 class NotMade:
-    """Why there is no file, in words for whoever asked."""
+    """Why an export failed, in words for the person who ordered it."""
 
     message: str
     remedy: str
@@ -51,7 +51,7 @@ class NotMade:
 
 @dataclass
 class Progress:
-    """Rows of movement and sessions that are written, of how many, and bytes of the file."""
+    """How many rows of movement and sessions have been written, of how many, and the file's size."""
 
     rows: int = 0
     rows_total: int = 0
@@ -62,17 +62,18 @@ class Progress:
 
 @dataclass(frozen=True)
 class Meter:
-    """The small file at `path`: five numbers, how far the process is.
+    """The progress file at `path`, in which a worker process records its progress as five numbers.
 
-    The writer overwrites them in place, readers read them whenever they like. A reader that meets
-    an unfinished write sees one number older than another, which no page notices; nobody waits for
-    anybody, and nothing is left when either process dies.
+    The writer overwrites them in place, readers read them at any time. A reader during an
+    unfinished
+    write sees one number older than another, which is harmless; no locks are needed, and no lock
+    remains if either process dies.
     """
 
     path: Path
 
     def tell(self, progress: Progress) -> None:
-        """Overwrite what was told before."""
+        """Overwrite the progress in the file."""
         handle = os.open(self.path, os.O_WRONLY | os.O_CREAT, 0o600)
         try:
             os.pwrite(handle, _LAYOUT.pack(*astuple(progress)), 0)
@@ -80,7 +81,7 @@ class Meter:
             os.close(handle)
 
     def read(self) -> Progress:
-        """What was told last; nothing where nothing was."""
+        """Return the latest progress, or zeros if nothing was written yet."""
         try:
             return Progress(*_LAYOUT.unpack(self.path.read_bytes()))
         except (OSError, struct.error):

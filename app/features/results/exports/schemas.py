@@ -1,4 +1,4 @@
-"""Exports that are made as a file, as they travel to a page."""
+"""Request and response models of exports that are made as a file."""
 
 from datetime import datetime
 from typing import Annotated, Literal
@@ -11,7 +11,7 @@ ExportState = Literal["queued", "making", "ready", "failed"]
 
 
 class ExportWish(BaseModel):
-    """What to export: a study's sessions of one kind, or one session of that kind alone."""
+    """What to export: a study's sessions of one kind, or only one session of that kind."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -27,12 +27,14 @@ class ExportTrouble(BaseModel):
 
 
 class ExportView(BaseModel):
-    """An export and how far it is.
+    """An export and its progress.
 
-    `rows` of movement are written of `rows_total`; other tables are small beside them. `bytes` are
-    on the disk; `bytes_expected` is told from the bytes a row has taken so far, `remaining_s` from
-    the time, both None while too little is known. `sha256` is of the file. `expires_at`: when the
-    server removes it.
+    `rows` of `rows_total` rows of movement are written; the other tables are small in comparison.
+    `bytes` are on the disk; `bytes_expected` is estimated from the bytes per row so far,
+    `remaining_s`
+    from the time, both None until there are enough rows. `sha256` is that of the file.
+    `expires_at`:
+    when the server removes it.
     """
 
     id: str

@@ -1,6 +1,6 @@
-"""Answers that were collected elsewhere: read, mapped, checked, taken in as a whole, undone.
+"""Import answers that were collected elsewhere: read, map, check, store all or none, undo.
 
-They stay apart from the answers of sessions, in tables and exports too.
+They are kept apart from the answers of sessions, in tables and in exports.
 """
 
 from app.features.results.imports.service import forget_participant

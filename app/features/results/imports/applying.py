@@ -1,8 +1,8 @@
-"""From the cells of a file to forms, with every problem of every cell before anything is stored.
+"""Convert the cells of a file to forms, and find every problem before anything is stored.
 
-A cell becomes an answer in three steps: a word that was given a number becomes that number; a
-number x becomes multiply * x + add; an item that the file has turned round is turned back. What
-comes out must be a possible answer to the item, or the cell is a problem.
+A cell becomes an answer in three steps: a word that was assigned a number becomes that number; a
+number x becomes multiply * x + add; an item that the file has already reverse-scored is reversed
+back. The result must be a possible answer to the item, or the cell is a problem.
 """
 
 import math
@@ -29,7 +29,7 @@ Value = float | str | bool | None
 
 @dataclass(frozen=True)
 class Form:
-    """One filled-in form of the file."""
+    """One completed form of the file."""
 
     line: int
     participant_code: str
@@ -42,9 +42,10 @@ class Form:
 
 @dataclass
 class Applied:
-    """Forms and problems; `unknown_words`: answers in words that were given no number.
+    """The forms and problems of a file; `unknown_words` are answers in words without a number.
 
-    `missing`: empty cells of forms. `numbers`: by item, what was told in numbers, unchanged.
+    `missing`: number of empty cells in forms. `numbers`: the numbers of each item, before
+    conversion.
     """
 
     forms: list[Form] = field(default_factory=list)
@@ -58,7 +59,7 @@ class Applied:
 def apply_mapping(
     sheet: Sheet, mapping: Mapping, instrument: Instrument, study_conditions: frozenset[str]
 ) -> Applied:
-    """Every form of the file; raises InvalidInput where a column is not there at all."""
+    """Return every form of the file; raise InvalidInput if a mapped column does not exist."""
     return _Run(sheet, mapping, instrument, study_conditions).forms()
 
 
@@ -131,7 +132,7 @@ class _Run:
         return value
 
     def _value(self, item: Item, cell: str) -> Value:
-        """None for words that mean nothing yet."""
+        """Return the answer in a cell, or None for words without a number."""
         if item.type == "text":
             return cell
         if item.type == "choice":
@@ -155,7 +156,7 @@ class _Run:
         return word in MISSING and word not in self._words
 
     def _labels(self, item: Item) -> dict[str, float]:
-        """The scale's own words, where every step has one."""
+        """Return the numbers of the scale's own labels, if every step has one."""
         scale = self._instrument.scale_of(item)
         if scale is None or len(scale.labels) != len(scale.steps):
             return {}

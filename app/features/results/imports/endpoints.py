@@ -1,4 +1,4 @@
-"""Answers collected elsewhere over HTTP: look, check, take in, list, undo."""
+"""HTTP endpoints of imported answers: preview, check, import, list, undo and erase."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -40,13 +40,13 @@ router = APIRouter(tags=["imports"], prefix="/studies/{key}/imports")
 
 @router.post("/look")
 def post_look(key: str, request: LookRequest, db: Reading, _: SignedIn) -> LookView:
-    """What a file holds and probably means; nothing is stored."""
+    """Preview a file and propose what its columns mean; nothing is stored."""
     return look(db, study_by_key(db, key), request)
 
 
 @router.post("/check")
 def post_check(key: str, request: CheckRequest, db: Reading, _: SignedIn) -> CheckView:
-    """What an import would do, with every cell that does not fit; nothing is stored."""
+    """Report what an import would do, with every invalid cell; nothing is stored."""
     return check(db, study_by_key(db, key), request.text, request.mapping)
 
 
@@ -54,7 +54,7 @@ def post_check(key: str, request: CheckRequest, db: Reading, _: SignedIn) -> Che
 def post_import(
     key: str, request: ImportRequest, db: Writing, context: Context, caller: SignedIn
 ) -> ImportView:
-    """Take a file in: every form or none."""
+    """Import a file: all of its forms, or none."""
     study = study_by_key(db, key)
     now = context.clock.utc_now()
     return import_view(db, take_in(db, study, request, actor=caller.actor, now=now))
@@ -62,14 +62,14 @@ def post_import(
 
 @router.get("")
 def get_imports(key: str, db: Reading, _: SignedIn) -> list[ImportView]:
-    """Every import of a study, newest first; undone ones too."""
+    """Return every import of a study, newest first, including those that were undone."""
     return [import_view(db, row) for row in imports_of(db, study_by_key(db, key))]
 
 
 @router.get("/{import_id}")
 def get_import(key: str, import_id: str, db: Reading, _: SignedIn) -> ImportDetail:
-    """One import, and what its scores came to."""
-    # Loads scipy, which the start of the server need not wait for.
+    """Return one import with the results of its scores."""
+    # Imported here because it loads scipy, which would slow down the server's start.
     from app.features.results.imports.results import results_of
 
     row = import_by_id(db, study_by_key(db, key), import_id)
@@ -85,12 +85,12 @@ def get_import(key: str, import_id: str, db: Reading, _: SignedIn) -> ImportDeta
 def get_import_table(
     key: str, import_id: str, db: Writing, context: Context, caller: SignedIn
 ) -> Response:
-    """The forms of an import as CSV; every row says that it is imported."""
+    """Return the forms of an import as CSV; every row is marked as imported."""
     study = study_by_key(db, key)
     row = import_by_id(db, study, import_id)
     body = as_csv(study, instrument_of_import(db, row), row, forms_of(db, row)).encode()
     now = context.clock.utc_now()
-    # People's data leave the database: whoever must erase them has to know.
+    # People's data leave the database, so the copy is recorded for a later erasure.
     record_copy(
         db,
         kind="export",
@@ -122,7 +122,7 @@ def get_import_table(
 def post_undo(
     key: str, import_id: str, request: UndoRequest, context: Context, caller: SignedIn
 ) -> ImportView:
-    """Take the forms of an import away; who did it and why stays."""
+    """Delete the forms of an import; keep the import with who undid it and why."""
     with _erasing(context) as db:
         study = study_by_key(db, key)
         row = import_by_id(db, study, import_id, lock=True)
@@ -136,7 +136,7 @@ def post_undo(
 def post_erase_imported(
     key: str, request: EraseImportedRequest, context: Context, caller: SignedIn
 ) -> ErasedImported:
-    """Take away what all files of a study say of one participant."""
+    """Erase one participant's answers from all imports of a study."""
     with _erasing(context) as db:
         gone = erase_imported(
             db,
@@ -151,7 +151,7 @@ def post_erase_imported(
 
 @contextmanager
 def _erasing(context: AppContext) -> Iterator[Session]:
-    """A transaction that removes what people said, and then the bytes, as an erasure does."""
+    """Open a transaction that deletes people's answers, and overwrite the freed bytes afterwards."""
     new = expect_erasure(context.settings)
     try:
         with context.database.writing() as db:

@@ -1,4 +1,4 @@
-"""Looking at a file and checking what is said of it; nothing is stored."""
+"""Preview a file and check its mapping, without storing anything."""
 
 from collections import Counter
 
@@ -31,7 +31,7 @@ _WIDTH = 80
 
 
 def look(db: Session, study: Study, request: LookRequest) -> LookView:
-    """What a file holds and probably means; nothing is stored. Raises InvalidInput, NotFound."""
+    """Return a preview of a file and a proposed mapping; raise InvalidInput or NotFound."""
     sheet = read_sheet(request.text, request.header_rows)
     known = parsed_instruments(db)
     key = request.instrument or likely_instrument(sheet, known)
@@ -56,7 +56,7 @@ def look(db: Session, study: Study, request: LookRequest) -> LookView:
 
 
 def check(db: Session, study: Study, text: str, mapping: Mapping) -> CheckView:
-    """What an import would do; nothing is stored. Raises InvalidInput, NotFound."""
+    """Return what an import would do, without storing it; raise InvalidInput or NotFound."""
     instrument, applied = applied_to(db, study, text, mapping)
     turning = reversed_items(instrument)
     conditions = Counter((form.condition, form.in_study) for form in applied.forms)
@@ -81,7 +81,7 @@ def check(db: Session, study: Study, text: str, mapping: Mapping) -> CheckView:
 
 
 def _remembered(db: Session, study: Study, key: str, sheet: Sheet) -> Mapping | None:
-    """What was said of the newest file with these columns."""
+    """Return the mapping of the newest imported file with the same columns, if there is one."""
     for row in imports_of(db, study):
         mapping = Mapping.model_validate(row.mapping)
         names = {mapping.participant, mapping.condition, mapping.date} - {None}

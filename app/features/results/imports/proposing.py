@@ -1,4 +1,4 @@
-"""What the columns of a file probably mean: a proposal that a person looks at and corrects."""
+"""Propose what the columns of a file mean; a person checks and corrects the proposal."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -16,7 +16,10 @@ _DATE = ("recordeddate", "date", "datum", "enddate", "submitdate", "startdate")
 
 
 def likely_instrument(sheet: Sheet, instruments: Map[str, Instrument]) -> str:
-    """The instrument of which most items have a column, as a share; the first by name if none."""
+    """Return the instrument with the largest share of items that have a column.
+
+    If no item has a column, the first instrument by name is returned.
+    """
 
     def share(key: str) -> float:
         sets = column_sets(sheet, instruments[key])
@@ -26,7 +29,7 @@ def likely_instrument(sheet: Sheet, instruments: Map[str, Instrument]) -> str:
 
 
 def propose(sheet: Sheet, instrument: Instrument, protocol: StudyProtocol) -> Mapping | None:
-    """A mapping, or None where no item or no participant can be told."""
+    """Return a mapping, or None if no item column or no participant column was identified."""
     sets = column_sets(sheet, instrument)
     participant = _named(sheet, (*_PARTICIPANT, *_MORE_PARTICIPANT))
     if not sets or participant is None:
@@ -50,7 +53,7 @@ def propose(sheet: Sheet, instrument: Instrument, protocol: StudyProtocol) -> Ma
 
 
 def column_sets(sheet: Sheet, instrument: Instrument) -> list[ColumnSet]:
-    """Columns that hold the items: one set of a tidy file, several of a wide one."""
+    """Return the columns of the items: one set for a tidy file, several for a wide one."""
     plain: dict[str, str] = {}
     marked: dict[str, dict[str, str]] = {}
     texts = {
@@ -58,7 +61,7 @@ def column_sets(sheet: Sheet, instrument: Instrument) -> list[ColumnSet]:
     }
     keys = {_bare(item.key): item.key for item in instrument.items}
     if len(keys) == 1:
-        # Nobody numbers the one question of an instrument.
+        # The only item of an instrument is often named after the instrument.
         keys[_bare(instrument.key)] = instrument.items[0].key
     for name, label in zip(sheet.header, sheet.labels, strict=True):
         own = _bare(name).removeprefix(_bare(instrument.key))
@@ -81,7 +84,7 @@ def column_sets(sheet: Sheet, instrument: Instrument) -> list[ColumnSet]:
 
 
 def study_conditions(words: Iterable[str], protocol: StudyProtocol) -> dict[str, str]:
-    """Words of a file -> keys of the study, where they are the key, the label or the latency."""
+    """Map words of a file to the study's conditions by their key, label or latency."""
     found: dict[str, str] = {}
     for word in words:
         for one in protocol.conditions:
@@ -95,7 +98,7 @@ def study_conditions(words: Iterable[str], protocol: StudyProtocol) -> dict[str,
 
 
 def _split(name: str) -> Iterable[tuple[str, str]]:
-    """("q1", "125 ms") and the reverse from "Q1_125 ms"."""
+    """Yield ("q1", "125 ms") and the reverse for "Q1_125 ms"."""
     for at, letter in enumerate(name):
         if letter in "_.- :/" and 0 < at < len(name) - 1:
             left, right = name[:at].strip(), name[at + 1 :].strip()

@@ -1,6 +1,7 @@
-"""What the scores of an import came to, condition by condition, by the functions of every study.
+"""Summarise and test the scores of an import by condition, with the same functions as for sessions.
 
-Kept apart from the study's own sessions: another setting, other devices, nobody who ran a session.
+They are kept apart from the study's own sessions: the setting and devices differ, and no operator
+ran a session.
 """
 
 from collections.abc import Sequence
@@ -23,7 +24,7 @@ _FEWEST = 2
 
 
 def results_of(instrument: Instrument, forms: Sequence[ImportedForm]) -> list[ScoreResult]:
-    """Every score with a value, in the instrument's order."""
+    """Return the results of every score that has values, in the instrument's order."""
     found = []
     for score in instrument.scores:
         rows = [form for form in forms if form.scores.get(score.key) is not None]

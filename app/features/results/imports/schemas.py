@@ -1,4 +1,4 @@
-"""What is said of a file of answers, what was found in it, and imports as they travel."""
+"""Request and response models of imported answers, with the mapping of a file."""
 
 from datetime import date, datetime
 from typing import Annotated, Literal, Self
@@ -19,7 +19,7 @@ class _Body(BaseModel):
 
 
 class ColumnSet(_Body):
-    """Columns that make one form: item -> column. `condition`: of all forms of these columns."""
+    """The columns of one form, item -> column; `condition`: that of all forms in these columns."""
 
     items: Annotated[dict[Short, Name], Field(min_length=1, max_length=200)]
     condition: Short | None = None
@@ -30,9 +30,10 @@ class Mapping(_Body):
 
     A tidy file has one set of columns and a column of conditions; a wide one has a set of columns
     for each condition. `conditions`: word of the file -> key of a condition of the study. `words`:
-    answer in words -> number. Numbers x become multiply * x + add, for scales that count elsewhere
-    from 1. `turned`: items that the file has turned round already; they are turned back, since the
-    formulas of the instrument turn them.
+    answer in words -> number. Numbers x become multiply * x + add, for scales that start at another
+    number. `turned`: items that the file has already reverse-scored; they are reversed back,
+    because
+    the instrument's formulas reverse them.
     """
 
     instrument: Short
@@ -61,7 +62,7 @@ class Mapping(_Body):
 
 
 class LookRequest(_Body):
-    """A file that is only looked at."""
+    """A file to preview."""
 
     text: Annotated[str, StringConstraints(min_length=1, max_length=MAX_TEXT)]
     instrument: Short | None = None
@@ -69,39 +70,39 @@ class LookRequest(_Body):
 
 
 class CheckRequest(_Body):
-    """A file and what its columns mean."""
+    """A file and its mapping, to be checked."""
 
     text: Annotated[str, StringConstraints(min_length=1, max_length=MAX_TEXT)]
     mapping: Mapping
 
 
 class ImportRequest(CheckRequest):
-    """The same, to be taken in."""
+    """A file and its mapping, to be imported."""
 
     file_name: Name
 
 
 class UndoRequest(_Body):
-    """Why an import is undone."""
+    """The reason for undoing an import."""
 
     reason: Reason
 
 
 class EraseImportedRequest(_Body):
-    """Whose imported answers go; `confirm` is the code, typed again."""
+    """The participant whose imported answers are erased; `confirm` is the code, typed again."""
 
     participant_code: Short
     confirm: Short
 
 
 class ErasedImported(BaseModel):
-    """How many forms went."""
+    """The number of imported forms that were erased."""
 
     forms: int
 
 
 class FileColumn(BaseModel):
-    """A column: its name, the question that stands below it, and some of what is in it."""
+    """A column of the file: its name, the question below the name, and examples of its values."""
 
     name: str
     label: str
@@ -111,7 +112,7 @@ class FileColumn(BaseModel):
 
 
 class ImportView(BaseModel):
-    """An import. Undone ones have no forms any more."""
+    """An import; one that was undone has no forms."""
 
     id: str
     file_name: str
@@ -129,10 +130,11 @@ class ImportView(BaseModel):
 
 
 class LookView(BaseModel):
-    """What a file holds, and a proposal for what it means.
+    """The preview of a file, and a proposed mapping.
 
-    `remembered`: the proposal is that of an earlier import. `proposal` has None where no column
-    could be told for the participants or for any item.
+    `remembered`: the proposal is the mapping of an earlier import. `proposal` is None if no column
+    was
+    identified for the participants or for any item.
     """
 
     separator: str
@@ -149,7 +151,7 @@ class LookView(BaseModel):
 
 
 class CellProblem(BaseModel):
-    """Why something in the file cannot be taken in as it is."""
+    """A problem that prevents a cell of the file from being imported."""
 
     line: int
     column: str
@@ -159,7 +161,7 @@ class CellProblem(BaseModel):
 
 
 class Shift(BaseModel):
-    """Numbers x of the file would fit as multiply * x + add."""
+    """A conversion, multiply * x + add, by which the numbers x of the file would fit the scale."""
 
     multiply: float
     add: float
@@ -179,7 +181,7 @@ class FormPreview(BaseModel):
 
 
 class ConditionCount(BaseModel):
-    """A condition of the file; `in_study`: it is one of the study's."""
+    """The number of forms in a condition of the file; `in_study`: the study has this condition."""
 
     condition: str
     in_study: bool
@@ -187,9 +189,9 @@ class ConditionCount(BaseModel):
 
 
 class CheckView(BaseModel):
-    """What an import would do. Nothing was stored. With problems it would be refused.
+    """What an import would do; nothing was stored, and with problems it would be rejected.
 
-    `reversed_items`: the instrument's formulas turn them round. `notes`: to be looked at.
+    `reversed_items`: those that the instrument's formulas reverse. `notes`: points to check.
     """
 
     forms: int
@@ -207,7 +209,7 @@ class CheckView(BaseModel):
 
 
 class ConditionMean(BaseModel):
-    """A score in a condition, over participants; `low` and `high`: 95 % interval of the mean."""
+    """A score in one condition, over participants; `low` and `high`: 95 % interval of the mean."""
 
     condition: str
     n: int
@@ -218,7 +220,7 @@ class ConditionMean(BaseModel):
 
 
 class PairView(BaseModel):
-    """Two conditions against each other."""
+    """The comparison of two conditions."""
 
     a: str
     b: str
@@ -230,7 +232,7 @@ class PairView(BaseModel):
 
 
 class ScoreResult(BaseModel):
-    """What a score came to. `test` is a sentence for a paper; without one `why_not` says why."""
+    """The results of a score; `test` is a sentence for a paper, `why_not` says why it is missing."""
 
     score: str
     title: str
@@ -243,7 +245,7 @@ class ScoreResult(BaseModel):
 
 
 class ImportDetail(BaseModel):
-    """An import and what its scores came to."""
+    """An import with the results of its scores."""
 
     view: ImportView
     results: list[ScoreResult]

@@ -1,4 +1,4 @@
-"""Imports: reading a file by its mapping, taking it in whole, undoing that, erasing a person."""
+"""Imports: apply the mapping, store a file's forms, undo an import, erase a participant."""
 
 from datetime import datetime
 from typing import Any, cast
@@ -24,7 +24,10 @@ _SHOWN_PROBLEMS = 200
 def applied_to(
     db: Session, study: Study, text: str, mapping: Mapping
 ) -> tuple[Instrument, Applied]:
-    """The instrument and the forms; raises InvalidInput for unknown items, conditions, columns."""
+    """Return the instrument and the forms of a file.
+
+    Raises InvalidInput for unknown items, conditions and columns.
+    """
     instrument = known_instrument(parsed_instruments(db), mapping.instrument)
     for item in [*(key for one in mapping.sets for key in one.items), *mapping.turned]:
         if item not in instrument.by_key:
@@ -44,7 +47,7 @@ def applied_to(
 
 
 def known_instrument(instruments: dict[str, Instrument], key: str) -> Instrument:
-    """The instrument of that key; raises NotFound."""
+    """Return the instrument with this key; raise NotFound if there is none."""
     if key not in instruments:
         raise NotFound(f"there is no instrument {key!r}", value=key, valid=sorted(instruments))
     return instruments[key]
@@ -55,12 +58,12 @@ def take_in(
 ) -> AnswerImport:
     """Store every form of a file, or none.
 
-    Raises InvalidInput with each cell that does not fit, Conflict where this file is in already.
+    Raises InvalidInput with each invalid cell, Conflict if this file was imported before.
     """
     mapping = request.mapping
     instrument, applied = applied_to(db, study, request.text, mapping)
     content_hash = sha256_of(request.text)
-    # The same file at the same time: the second waits here, and is then refused.
+    # If the same file is imported twice concurrently, the second waits here and is then rejected.
     db.execute(select(Study.id).where(Study.id == study.id).with_for_update(key_share=True))
     _refuse_second(db, study, mapping.instrument, content_hash)
     if applied.problems or not applied.forms:
@@ -99,7 +102,7 @@ def take_in(
 
 
 def undo(db: Session, row: AnswerImport, *, reason: str, actor: str, now: datetime) -> None:
-    """Take the forms of an import away; raises Conflict where that was done before."""
+    """Delete the forms of an import; raise Conflict if it was undone before."""
     if row.undone_at is not None:
         raise Conflict("this import was undone before", value=row.id, remedy="Nothing is left.")
     gone = _count(db, delete(ImportedForm).where(ImportedForm.import_id == row.id))
@@ -116,7 +119,7 @@ def undo(db: Session, row: AnswerImport, *, reason: str, actor: str, now: dateti
 
 
 def forget_participant(db: Session, study_id: str, code: str) -> int:
-    """Take away what files say of a participant; how many forms went."""
+    """Delete a participant's imported forms; return how many there were."""
     own = (ImportedForm.study_id == study_id) & (ImportedForm.participant_code == code)
     return _count(db, delete(ImportedForm).where(own))
 
@@ -155,8 +158,9 @@ def _count(db: Session, statement: Any) -> int:
 def erase_imported(
     db: Session, study: Study, code: str, *, confirm: str, actor: str, now: datetime
 ) -> int:
-    """Forget a participant on request; raises InvalidInput where the code was typed otherwise,
-    NotFound where no file has it.
+    """Erase a participant's imported answers; return how many forms there were.
+
+    Raises InvalidInput if `confirm` differs from the code, NotFound if no file has the code.
     """
     if confirm != code:
         raise InvalidInput(

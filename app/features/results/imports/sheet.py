@@ -1,7 +1,7 @@
-"""A file of answers as a table: which separator, which rows are head, which line is which.
+"""Parse a file of answers as a table: find the separator and the header rows, number the lines.
 
 Survey tools write more than one header row: names, then the questions, then ids of their own. The
-last kind is known by its look; otherwise one row is head unless a person says more.
+ids are recognised by their format; otherwise one header row is assumed unless a person says more.
 """
 
 import csv
@@ -30,7 +30,7 @@ _TOOL_IDS = ('{"importid"', "{'importid'")
 
 @dataclass(frozen=True)
 class SheetRow:
-    """A row and the line of the file on which it ends, from 1."""
+    """A row, with the line of the file on which it ends, counted from 1."""
 
     line: int
     cells: list[str]
@@ -38,7 +38,7 @@ class SheetRow:
 
 @dataclass(frozen=True)
 class Sheet:
-    """Named columns, the question below each name, and the rows."""
+    """A parsed file: named columns, the question below each name, and the rows."""
 
     separator: str
     header_rows: int
@@ -47,7 +47,7 @@ class Sheet:
     rows: list[SheetRow]
 
     def column(self, name: str) -> int:
-        """Where a column is; raises InvalidInput."""
+        """Return the index of a column; raise InvalidInput if there is none of this name."""
         if name not in self.header:
             raise InvalidInput(
                 f"the file has no column {name!r}",
@@ -58,13 +58,13 @@ class Sheet:
         return self.header.index(name)
 
     def values(self, name: str) -> list[str]:
-        """What stands in a column, row by row."""
+        """Return the values of a column, row by row."""
         at = self.column(name)
         return [row.cells[at].strip() for row in self.rows]
 
 
 def read_sheet(text: str, header_rows: int | None = None) -> Sheet:
-    """Read a file; raises InvalidInput with the line of what cannot be read."""
+    """Parse a file; raise InvalidInput with the line that cannot be read."""
     text = text.removeprefix("\ufeff")
     _require_table(text)
     separator = _separator(text)
@@ -84,7 +84,7 @@ def _separator(text: str) -> str:
 
 
 def _require_table(text: str) -> None:
-    """Raise InvalidInput for what is no text at all: a picture, a PDF, a workbook of Excel."""
+    """Raise InvalidInput if the file is not text: a picture, a PDF or an Excel workbook."""
     kind = next((kind for begins, kind in _NO_TABLES.items() if text.startswith(begins)), None)
     if kind is None and _CONTROL.search(text[:LOOKED_AT]) is None:
         return

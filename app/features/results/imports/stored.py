@@ -1,4 +1,4 @@
-"""Imports that are stored: finding them, and how they travel."""
+"""Query stored imports and convert them to views and CSV."""
 
 import csv
 import io
@@ -15,18 +15,18 @@ from app.features.results.imports.schemas import ImportView, Mapping
 from app.models import AnswerImport, ImportedForm, InstrumentVersion, Study
 from app.science.instruments import Instrument
 
-# As in exports: the full-width forms are read as the narrow ones by some spreadsheets.
+# As in exports: some spreadsheets treat the full-width forms like the ASCII ones.
 _RUNS = re.compile("^(?:[\\t\\r\\n]|[\\s\"'\ufeff\u200b]*[=+\\-@\uff1d\uff0b\uff0d\uff20])")
 
 
 def imports_of(db: Session, study: Study) -> list[AnswerImport]:
-    """Every import of a study, newest first, undone ones too."""
+    """Return every import of a study, newest first, including those that were undone."""
     query = select(AnswerImport).where(AnswerImport.study_id == study.id)
     return list(db.scalars(query.order_by(AnswerImport.imported_at.desc(), AnswerImport.id)))
 
 
 def import_by_id(db: Session, study: Study, import_id: str, *, lock: bool = False) -> AnswerImport:
-    """An import of this study; raises NotFound."""
+    """Return an import of this study; raise NotFound if there is none."""
     query = select(AnswerImport).where(
         AnswerImport.id == import_id, AnswerImport.study_id == study.id
     )
@@ -37,18 +37,18 @@ def import_by_id(db: Session, study: Study, import_id: str, *, lock: bool = Fals
 
 
 def forms_of(db: Session, row: AnswerImport) -> list[ImportedForm]:
-    """Its forms, in the order of the file."""
+    """Return the forms of an import, in the order of the file."""
     query = select(ImportedForm).where(ImportedForm.import_id == row.id)
     return list(db.scalars(query.order_by(ImportedForm.line, ImportedForm.id)))
 
 
 def instrument_of_import(db: Session, row: AnswerImport) -> Instrument:
-    """The wording whose formulas made the scores."""
+    """Return the instrument version whose formulas computed the scores of an import."""
     return instrument_of(kept_row(db, InstrumentVersion, row.instrument_version_id))
 
 
 def standing(db: Session, study: Study, key: str, content_hash: str) -> AnswerImport | None:
-    """The import of this very file that was not undone."""
+    """Return the import of a file with the same content that was not undone."""
     return db.scalar(
         select(AnswerImport).where(
             AnswerImport.study_id == study.id,
@@ -60,7 +60,7 @@ def standing(db: Session, study: Study, key: str, content_hash: str) -> AnswerIm
 
 
 def import_view(db: Session, row: AnswerImport) -> ImportView:
-    """An import as it travels."""
+    """Return an import as a response model."""
     codes = select(func.count(ImportedForm.participant_code.distinct()), func.count())
     people, forms = db.execute(codes.where(ImportedForm.import_id == row.id)).one()
     return ImportView(
@@ -83,7 +83,7 @@ def import_view(db: Session, row: AnswerImport) -> ImportView:
 def as_csv(
     study: Study, instrument: Instrument, row: AnswerImport, forms: Sequence[ImportedForm]
 ) -> str:
-    """One row a form: whose, where, then answers and scores; `origin` says imported in each."""
+    """Return one row per form: participant, condition, answers and scores, with origin = imported."""
     out = io.StringIO(newline="")
     writer = csv.writer(out, lineterminator="\n")
     items, scores = list(instrument.by_key), [one.key for one in instrument.scores]
@@ -108,7 +108,7 @@ def _cell(value: object) -> str:
 
 
 def import_files(db: Session, study: Study) -> Iterator[tuple[str, bytes]]:
-    """A file for each import that stands: its name and its bytes."""
+    """Yield the name and bytes of a CSV file for each import that was not undone."""
     for row in imports_of(db, study):
         if row.undone_at is None:
             text = as_csv(study, instrument_of_import(db, row), row, forms_of(db, row))
@@ -116,7 +116,7 @@ def import_files(db: Session, study: Study) -> Iterator[tuple[str, bytes]]:
 
 
 def told_of(db: Session, study_id: str, code: str) -> list[dict[str, object]]:
-    """What files say of one participant, for the participant."""
+    """Return one participant's imported answers, for the participant's own copy."""
     query = (
         select(ImportedForm, AnswerImport)
         .join(AnswerImport, AnswerImport.id == ImportedForm.import_id)

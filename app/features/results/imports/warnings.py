@@ -1,6 +1,4 @@
-"""What deserves a second look before answers are taken in: scales that count otherwise, and items
-that may have been turned round already.
-"""
+"""Find scales that seem to be numbered differently, and items that seem to be reversed already."""
 
 from collections.abc import Mapping as Map
 from collections.abc import Sequence
@@ -16,7 +14,7 @@ _AGAINST = 0.2
 
 
 def shift_of(instrument: Instrument, numbers: Map[str, Sequence[float]]) -> Shift | None:
-    """How numbers would fit the scale, where the file counts its steps from 0 or 1."""
+    """Return the conversion to the scale if the file seems to count its steps from 0 or 1."""
     found = []
     for key, values in numbers.items():
         scale = instrument.scale_of(instrument.by_key[key])
@@ -42,9 +40,9 @@ def shift_of(instrument: Instrument, numbers: Map[str, Sequence[float]]) -> Shif
 
 
 def reversed_items(instrument: Instrument) -> dict[str, tuple[str, list[str]]]:
-    """Items that a formula turns round: item -> the score and the items it adds.
+    """Return the items that a formula reverses: item -> the score and the items that it adds.
 
-    Found by asking the formulas: more of such an item makes less of the score.
+    They are found by evaluating the formulas: a higher answer to such an item lowers the score.
     """
     scaled = {
         item.key: scale
@@ -55,7 +53,7 @@ def reversed_items(instrument: Instrument) -> dict[str, tuple[str, list[str]]]:
         return {}
     keys = list(scaled)
     middle = np.array([(one.minimum + one.maximum) / 2 for one in scaled.values()])
-    # Row 0 is the middle everywhere; in row i + 1 item i is at its highest.
+    # In row 0 every item is at its middle; in row i + 1, item i is at its maximum.
     rows = np.tile(middle, (len(keys) + 1, 1))
     for at, one in enumerate(scaled.values()):
         rows[at + 1, at] = one.maximum
@@ -71,7 +69,7 @@ def reversed_items(instrument: Instrument) -> dict[str, tuple[str, list[str]]]:
 
 
 def looks_turned(turning: Map[str, tuple[str, list[str]]], forms: Sequence[Form]) -> list[str]:
-    """Notes on items that go along with what they should go against."""
+    """Return notes on items that correlate positively with items that they should oppose."""
     notes = []
     for item, (score, up) in turning.items():
         rows = [

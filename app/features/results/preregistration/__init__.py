@@ -1,1 +1,1 @@
-"""What a study declared before it looked, what was done, and every way in which the two differ."""
+"""Preregistration: what a study declared, what was done, and every deviation between the two."""

@@ -1,4 +1,4 @@
-"""Which version declared what, and how the protocol changed around the first session."""
+"""Find which version declared the preregistration, and describe it in words."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -26,13 +26,13 @@ RULES = {
 
 @dataclass(frozen=True)
 class Declared:
-    """The declaration that counts, and the version that made it first."""
+    """The current declaration, and the version that first made it."""
 
     preregistration: Preregistration
     version: StudyVersion
 
     def view(self, frozen_at: datetime | None) -> DeclarationView:
-        """As it travels."""
+        """Return the declaration as a response model."""
         own = self.preregistration
         return DeclarationView(
             version=self.version.number,
@@ -49,12 +49,15 @@ class Declared:
 
 
 def declared_in(version: StudyVersion) -> Preregistration | None:
-    """What a version declares."""
+    """Return the preregistration of a version, if it has one."""
     return protocol_of(version).preregistration
 
 
 def declaration_of(versions: list[StudyVersion]) -> Declared | None:
-    """The newest version's declaration, by the first version of the unbroken run that has it."""
+    """Return the newest version's declaration and the version that introduced it.
+
+    That is the first of the consecutive versions, up to the newest, with this declaration.
+    """
     newest = declared_in(versions[-1])
     if newest is None:
         return None
@@ -67,7 +70,7 @@ def declaration_of(versions: list[StudyVersion]) -> Declared | None:
 
 
 def primary_words(primary: PrimaryTest) -> str:
-    """The test in a sentence."""
+    """Return the primary test as a sentence."""
     if primary.measure == "score":
         measure = f"the score {primary.score} of {primary.instrument}"
     else:
@@ -81,5 +84,5 @@ def primary_words(primary: PrimaryTest) -> str:
 
 
 def rule_words(rule: ExclusionRule) -> str:
-    """Whom a rule leaves out."""
+    """Return a description of what an exclusion rule leaves out."""
     return RULES[rule.rule].format(limit=rule.limit if rule.limit is not None else 0.0)

@@ -1,4 +1,4 @@
-"""Every way in which what was done differs from what was declared, in plain words."""
+"""Describe every deviation of what was done from what was declared, in plain words."""
 
 import json
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ def deviations_of(
     found: Values,
     n_corrected: int,
 ) -> list[DeviationView]:
-    """Deviations first, notes last."""
+    """Return the deviations, followed by the notes."""
     told = [
         *_versions(declared, versions, sessions),
         *_numbers(declared, sessions, len(found.people)),
@@ -42,7 +42,7 @@ def _versions(
 ) -> list[DeviationView]:
     told: list[DeviationView] = []
     by_number = {version.number: version for version in versions}
-    # Of no sessions an empty list would choose columns.
+    # Without sessions, indexing by an empty list would select columns.
     elsewhere = pd.Series(
         [
             declared_in(by_number[int(n)]) != declared.preregistration

@@ -1,4 +1,4 @@
-"""What was done of what was declared, from the record as it stands."""
+"""Apply a preregistration to the recorded data: exclusions, the primary test and deviations."""
 
 from datetime import datetime
 from typing import cast
@@ -21,7 +21,7 @@ FEWEST = 2
 def done(
     db: Session, study: Study, declared: Declared, view: PreregistrationView
 ) -> PreregistrationView:
-    """The view filled in: who is in the test, its result, every deviation."""
+    """Return the view with the number of participants in the test, its result and every deviation."""
     kind = cast("Kind", view.kind)
     versions = versions_of(db, study)
     protocol = protocol_of(newest_version(db, study))
@@ -65,7 +65,7 @@ def _result(declared: Declared, found: Values) -> tuple[PrimaryResult | None, st
 
 
 def _frozen_at(versions: list[StudyVersion], declared: Declared) -> datetime | None:
-    """When the first session started on a version that declares just this."""
+    """Return when the first session started on a version with exactly this declaration."""
     frozen = [
         version.frozen_at
         for version in versions

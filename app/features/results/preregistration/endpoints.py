@@ -1,4 +1,4 @@
-"""Preregistrations over HTTP: the page, and what a registry takes."""
+"""HTTP endpoints of preregistrations: the page, and a report to upload to a registry."""
 
 from typing import Literal
 
@@ -17,7 +17,7 @@ router = APIRouter(tags=["preregistration"])
 def get_preregistration(
     key: str, db: Reading, context: Context, _: SignedIn, kind: DashboardKind = "people"
 ) -> PreregistrationView:
-    """What the study declared, what was done, and every deviation."""
+    """Return what the study declared, what was done, and every deviation."""
     return preregistration_of(db, key, kind, context.clock.utc_now())
 
 
@@ -34,7 +34,10 @@ def get_preregistration_report(
     kind: DashboardKind = "people",
     form: Literal["markdown", "json"] = "markdown",
 ) -> Response:
-    """The same as a file for a registry; participants are numbered, not named by their codes."""
+    """Return the preregistration's report as a file for a registry.
+
+    Participants are numbered, and their codes are left out.
+    """
     now = context.clock.utc_now()
     view = without_codes(preregistration_of(db, key, kind, now))
     written = view.model_dump_json(indent=2) + "\n" if form == "json" else as_markdown(view)

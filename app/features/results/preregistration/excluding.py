@@ -1,6 +1,6 @@
-"""The declared rules, applied to every session that was begun: who is left out, and why.
+"""Apply the declared exclusion rules to every session that is over, and report the reasons.
 
-A rule that cannot be judged, since nothing was measured, leaves nobody out; that is told.
+A rule that cannot be judged, because nothing was measured, excludes nobody; this is reported.
 """
 
 from collections.abc import Callable
@@ -29,7 +29,7 @@ BEGUN = ("completed", "aborted", "withdrawn")
 
 @dataclass
 class Tables:
-    """The rows of a study's sessions of one kind that the rules and the test look at."""
+    """The tables of a study's sessions of one kind that the rules and the test need."""
 
     sessions: pd.DataFrame
     phases: pd.DataFrame
@@ -39,13 +39,13 @@ class Tables:
 
     @property
     def tasks(self) -> pd.DataFrame:
-        """Task phases that count."""
+        """Return the valid task phases."""
         return self.phases[self.phases["phase_kind"].isin(COUNTED_KINDS) & self.phases["valid"]]
 
 
 @dataclass
 class Excluded:
-    """Who is left out, and which rules could not be judged of whom."""
+    """The excluded sessions, and the rules that could not be judged for some participants."""
 
     found: list[ExclusionView] = field(default_factory=list)
     not_judged: dict[str, list[str]] = field(default_factory=dict)
@@ -53,14 +53,14 @@ class Excluded:
 
 
 def read_tables(db: Session, study_key: str, kind: Kind) -> Tables:
-    """Read what is needed."""
+    """Read the tables that the rules and the test need."""
     instruments = [instrument_of(row) for row in db.scalars(select(InstrumentVersion))]
     return Tables(
         sessions=sessions_table(db, study_key, kind),
         phases=phases_table(db, study_key, kind),
         quality=quality_table(db, study_key, kind),
         answers=answers_table(db, study_key, kind),
-        # Where every item points the same way, all at the lowest is an honest answer.
+        # If no item is reverse-keyed, the lowest answer to all of them can be an honest one.
         one_sided=frozenset(
             (one.key, one.version)
             for one in instruments
@@ -70,13 +70,13 @@ def read_tables(db: Session, study_key: str, kind: Kind) -> Tables:
 
 
 def exclude(tables: Tables, rules: tuple[ExclusionRule, ...]) -> Excluded:
-    """Apply every rule to every session that is over, beginning with the study's `valid_when`."""
+    """Apply the study's `valid_when` and then every rule to each session that is over."""
     out = Excluded()
     over = tables.sessions[tables.sessions["status"].isin(BEGUN)]
     rows = over[["session_id", "participant_code", "status", "valid", "reasons_not_valid"]]
     for session_id, code, status, valid, why in rows.itertuples(index=False, name=None):
         if status == "completed" and not valid:
-            # The study's own rules come first, and the rest was not measured to be judged.
+            # The study's own rules come first; data for the other rules may be missing.
             out.found.append(ExclusionView(participant_code=code, rule="valid_when", reason=why))
             out.session_ids.add(session_id)
             continue

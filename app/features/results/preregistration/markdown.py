@@ -1,12 +1,12 @@
-"""The page as Markdown, for a registry: participants are numbered, their codes are left out."""
+"""Write the preregistration's report as Markdown, with participants numbered instead of coded."""
 
 from app.features.results.preregistration.schemas import DeviationView, PreregistrationView
 
 
 def without_codes(view: PreregistrationView) -> PreregistrationView:
-    """The same with participants numbered: what is published names nobody, not even by a code.
+    """Return a copy of the view with participants numbered, because the report is published.
 
-    Texts that name participants say how many instead.
+    Texts that name participants are replaced by texts that do not.
     """
     codes = list(dict.fromkeys(one.participant_code for one in view.excluded))
     number = {code: f"excluded {at}" for at, code in enumerate(codes, start=1)}
@@ -22,7 +22,7 @@ def without_codes(view: PreregistrationView) -> PreregistrationView:
 
 
 def as_markdown(view: PreregistrationView) -> str:
-    """A text that stands on its own; give it `without_codes`."""
+    """Return the report as Markdown; remove the participants' codes first (`without_codes`)."""
     lines = [
         f"# Preregistration and deviations: {view.study_key}",
         "",

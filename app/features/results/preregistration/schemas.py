@@ -1,4 +1,4 @@
-"""A preregistration beside what came of it, as it travels."""
+"""Response models of a preregistration, its result and the deviations."""
 
 from datetime import datetime
 from typing import Literal
@@ -24,9 +24,10 @@ DeviationCode = Literal[
 
 
 class DeclarationView(BaseModel):
-    """What is declared, by the first version that said just this; `content_hash` names it.
+    """The declaration, with the first version that made it; `content_hash` identifies the version.
 
-    `section` is the study file's own. `frozen_at`: when the first session of that version started.
+    `section` is the declaration in the study file. `frozen_at`: when the first session of a version
+    with this declaration started.
     """
 
     version: int
@@ -42,7 +43,7 @@ class DeclarationView(BaseModel):
 
 
 class ExclusionView(BaseModel):
-    """A session that the primary test leaves out: by which rule, and what was found."""
+    """A session that the primary test leaves out, with the rule and what was found."""
 
     participant_code: str
     rule: str
@@ -50,9 +51,11 @@ class ExclusionView(BaseModel):
 
 
 class PrimaryResult(BaseModel):
-    """The declared test, made. `sentence` is for a paper; `holds`: p is at most alpha.
+    """The result of the primary test.
 
-    `rows`: single comparisons or the effect, under `columns`.
+    `sentence` is for a paper. `holds`: p is at most alpha. `rows`: single comparisons or the
+    effect,
+    under `columns`.
     """
 
     n: int
@@ -64,7 +67,7 @@ class PrimaryResult(BaseModel):
 
 
 class DeviationView(BaseModel):
-    """A difference between what was declared and what was done; notes are none, but told too."""
+    """A deviation of what was done from what was declared, or a note (`is_note`)."""
 
     code: DeviationCode
     is_note: bool
@@ -72,7 +75,7 @@ class DeviationView(BaseModel):
 
 
 class PreregistrationView(BaseModel):
-    """Declared, done, and how the two differ. `why_no_result`: instead of a result."""
+    """What a study declared, what was done, and the deviations; `why_no_result` replaces a result."""
 
     study_key: str
     kind: str

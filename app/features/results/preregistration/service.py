@@ -1,4 +1,4 @@
-"""A study's declaration, and what came of it."""
+"""The preregistration of a study, with its result."""
 
 from datetime import datetime
 
@@ -13,7 +13,7 @@ from app.features.results.preregistration.schemas import PreregistrationView
 def preregistration_of(
     db: Session, study_key: str, kind: DashboardKind, now: datetime
 ) -> PreregistrationView:
-    """What a study declared and what came of it; raises NotFound."""
+    """Return a study's declaration with its result; raise NotFound for an unknown study."""
     study = study_by_key(db, study_key)
     declared = declaration_of(versions_of(db, study))
     view = PreregistrationView(
@@ -31,7 +31,7 @@ def preregistration_of(
     )
     if declared is None:
         return view
-    # Loads pandas and scipy, which neither the start nor an empty page need wait for.
+    # Imported here because it loads pandas and scipy, which would slow down start and empty page.
     from app.features.results.preregistration.doing import done
 
     return done(db, study, declared, view)

@@ -1,4 +1,4 @@
-"""The declared test, made as declared: the same functions as everywhere, nothing chosen here."""
+"""Compute the primary test exactly as declared, with the functions of the test registry."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ _COLUMNS = {"contact_time": "side_red_s", "completions": "completions"}
 
 @dataclass(frozen=True, eq=False)
 class Values:
-    """Participants x conditions, complete; who lacks which value is named."""
+    """The values of the complete participants x conditions, and who lacks a value (`lacking`)."""
 
     values: FloatArray
     levels: tuple[str, ...]
@@ -29,7 +29,7 @@ class Values:
 def values_of(
     db: Session, tables: Tables, protocol: StudyProtocol, kind: Kind, kept: set[str]
 ) -> Values:
-    """The measure of the sessions that are kept, by added latency from lowest to highest."""
+    """Return the declared measure of the sessions in `kept`, by ascending added latency."""
     declared = protocol.preregistration
     assert declared is not None  # noqa: S101 - asked only where there is one
     rows = _rows(db, tables, declared.primary, protocol.key, kind)
@@ -50,7 +50,7 @@ def values_of(
 
 
 def make_test(declared: Preregistration, found: Values) -> PrimaryResult:
-    """Make the declared test; raises StatisticsError where the data do not allow it."""
+    """Compute the declared test; raise StatisticsError if the data do not allow it."""
     primary = declared.primary
     sample = Sample(
         values=found.values,

@@ -1,6 +1,6 @@
-"""A phase looked at again: what moved, and what happened in step with it.
+"""Replay a recorded phase: the movement, and the events in step with it.
 
-Movement is placed by the `ReplayDesk`, one phase at a time.
+The `ReplayDesk` computes the movement, one phase at a time.
 """
 
 from app.features.results.replay.desk import ReplayDesk

@@ -1,9 +1,9 @@
-"""The times of a phase: every client run's clock on one axis, and where the active time ran on it.
+"""Map the clocks of all client runs of a phase to one time axis, with the spans of active time.
 
-Each run of the headset's program has a clock of its own. The phase's time begins where the phase's
-clock first ran, and counts on in seconds of the headset's clock. What a later run recorded is put
-behind the first by the wall clock: by the comparisons of clocks where there are any, else by when
-the run's first message of the phase came.
+Each run of the headset's program has a clock of its own. The phase's time begins when the phase's
+clock first ran, and continues in seconds of the headset's clock. A later run is placed by the
+wall clock: by the clock probes if there are any, else by the arrival of the run's first message of
+the phase.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 @dataclass(frozen=True)
 class Stretch:
-    """A stretch in which the active time ran: (begin, end) on the phase's time and on its own."""
+    """A span in which the active time ran: its ends in the phase's time and in active time."""
 
     begin_s: float
     end_s: float
@@ -24,7 +24,7 @@ class Stretch:
 
 @dataclass(frozen=True)
 class Run:
-    """A client run in the phase, on the phase's time; `begin_utc` None where nothing tells it."""
+    """A client run in the phase, in the phase's time; `begin_utc` is None where it is unknown."""
 
     epoch: int
     begin_s: float
@@ -37,17 +37,19 @@ MOST_UNEVEN = timedelta(seconds=5)
 
 
 class Wall(NamedTuple):
-    """A moment by the server's clock and how well it is known; None where it is not."""
+    """A moment by the server's clock, with its uncertainty; None where it is unknown."""
 
     utc: datetime | None
     uncertainty_ms: float | None = None
 
     def no_later_than(self, latest: datetime) -> "Wall":
-        """The same where it can be true, else the latest: nothing is heard before it happened.
+        """Return the moment, or `latest` if it is later: no message precedes its event.
 
-        A headset's clock that ran unevenly between two comparisons is off by more than these tell;
-        by how much this shows is added to the uncertainty. Off by more than MOST_UNEVEN, it is the
-        server's wall clock that was set, which the comparisons have seen and `latest` has not.
+        If a headset's clock ran unevenly between two probes, the error is larger than the probes
+        show; the
+        excess over `latest` is added to the uncertainty. An excess over MOST_UNEVEN means that the
+        server's
+        wall clock was set, which the probes account for and `latest` does not.
         """
         known = timedelta(milliseconds=self.uncertainty_ms or 0.0)
         if self.utc is None or not known < self.utc - latest <= MOST_UNEVEN:
@@ -57,7 +59,7 @@ class Wall(NamedTuple):
 
 @dataclass(frozen=True)
 class Told:
-    """What a run said the phase's clock did, at a time of that run's clock."""
+    """A change of the phase's clock that a run reported, at a time of that run's clock."""
 
     epoch: int
     what: str
@@ -68,9 +70,9 @@ class Told:
 
 @dataclass(frozen=True)
 class PhaseClock:
-    """Leads from every other time to the phase's.
+    """Conversions from active time, client time and UTC to the phase's time.
 
-    `offsets_s`: by epoch, what a run's clock lacks of the phase's time.
+    `offsets_s`: by epoch, the difference from the run's clock to the phase's time.
     """
 
     offsets_s: Mapping[int, float]
@@ -80,14 +82,14 @@ class PhaseClock:
 
     @property
     def duration_s(self) -> float:
-        """When the last thing was recorded."""
+        """Return the phase's time of the last record."""
         ends = [run.end_s for run in self.runs] + [one.end_s for one in self.active]
         return max([0.0, *ends])
 
     def of_counted(self, active_s: float, epoch: int, client_s: float) -> float:
-        """When something was counted at `active_s`, which a run saw at its own `client_s`.
+        """Return the phase's time of an event at `active_s`, recorded at the run's `client_s`.
 
-        Where the active time stood at that value for a while, the run's clock tells when in it.
+        If the active time stood at that value for a while, the run's clock decides on the moment.
         """
         first, last = (self.of_active(active_s, later=later) for later in (False, True))
         offset_s = self.offsets_s.get(epoch)
@@ -96,9 +98,9 @@ class PhaseClock:
         return min((first, last), key=lambda t_s: abs(t_s - client_s - offset_s))
 
     def of_active(self, active_s: float, *, later: bool) -> float:
-        """When the active time showed `active_s`; `later`: after the pause at that time, if any.
+        """Return the phase's time of an active time; `later`: after a pause at that time.
 
-        Times beyond the last stretch are its end.
+        Times beyond the last stretch become its end.
         """
         found = 0.0
         for one in self.active:
@@ -112,7 +114,10 @@ class PhaseClock:
         return found
 
     def of_utc(self, moment: datetime) -> float | None:
-        """When it was then, if a run knows; between two runs as far behind the earlier one."""
+        """Return the phase's time of a moment in UTC, or None if the UTC of no run is known.
+
+        Between two runs, the earlier run's clock is continued.
+        """
         known = [run for run in self.runs if run.begin_utc is not None]
         found = None
         for run in known:
@@ -128,10 +133,11 @@ _SAME_S = 1e-6
 def stretches(
     told: Sequence[Told], offsets_s: Mapping[int, float], active_s: float
 ) -> tuple[Stretch, ...]:
-    """The stretches between what started and what stopped the clock.
+    """Return the spans of active time from the reported starts and stops of the clock.
 
-    A run that ended without a word left the clock where the next one took it up; the last one where
-    the phase's own count `active_s` stands.
+    If a run ended without a report, its span ends at the active time at which the next run
+    continued;
+    the last span ends at the phase's own count `active_s`.
     """
     found: list[Stretch] = []
     begun: tuple[float, float] | None = None
@@ -156,5 +162,5 @@ BEGINNINGS = frozenset({"started", "resumed", "walk_back_ended"})
 
 
 def later_by(begin: datetime, run_s: float, time_scale: float) -> datetime:
-    """The moment that is so many seconds of the headset's clock behind another."""
+    """Return the moment that is `run_s` seconds of the headset's clock after another."""
     return begin + timedelta(seconds=run_s / time_scale)

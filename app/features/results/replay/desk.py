@@ -1,7 +1,7 @@
-"""Where movement is placed: one phase at a time, so that running sessions go on beside it.
+"""Compute the movement of replays, one phase at a time, so that running sessions are not delayed.
 
-Placing a phase of a minute takes a few tenths of a second, most of it in libraries that let other
-threads compute meanwhile. In a process of its own it would begin a second later.
+Computing a phase of a minute takes a few tenths of a second, most of it in libraries that let other
+threads run meanwhile. A worker process would take a second longer to start.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -14,7 +14,7 @@ from app.platform.context import AppContext, Part
 
 @dataclass
 class ReplayDesk(Part):
-    """Places the movement of one phase after the other."""
+    """Compute the movement of one phase after the other, in a thread."""
 
     database: Database
     _pool: ThreadPoolExecutor = field(
@@ -23,17 +23,18 @@ class ReplayDesk(Part):
 
     @classmethod
     def of(cls, context: AppContext) -> Self:
-        """The replays of a server's sessions."""
+        """Create the replays of a server's sessions."""
         return cls(context.database)
 
     def movement(self, session_id: str, phase_id: int, *, full: bool) -> bytes:
-        """The bytes of `app.features.results.replay.movement`; waits for them."""
-        # Loads the science, which the start of the server need not wait for.
+        """Return the movement of a phase as bytes (`app.features.results.replay.movement`)."""
+        # Imported here because it loads scientific libraries, which would slow down the server's
+        # start.
         from app.features.results.replay.movement import placed_movement
 
         placing = self._pool.submit(placed_movement, self.database, session_id, phase_id, full=full)
         return placing.result()
 
     def stop(self) -> None:
-        """Finish the phase under way; whoever waits for another is refused."""
+        """Finish the phase in progress and cancel those that wait."""
         self._pool.shutdown(wait=True, cancel_futures=True)

@@ -1,4 +1,4 @@
-"""Replays over HTTP."""
+"""HTTP endpoints of replays."""
 
 from typing import Annotated
 
@@ -17,7 +17,7 @@ PhaseId = Annotated[int, Path(ge=0, lt=2**31)]
 
 @router.get("/replay")
 def get_replay(session_id: str, phase_id: PhaseId, db: Reading, caller: SignedIn) -> Replay:
-    """What happened in a phase that is over, on the phase's own time."""
+    """Return what happened in a phase that is over, in the phase's time."""
     return replay_of(db, replayable(db, caller, session_id, phase_id))
 
 
@@ -36,11 +36,11 @@ def get_movement(
     caller: SignedIn,
     if_none_match: Annotated[str | None, Header(max_length=400)] = None,
 ) -> Response:
-    """Where the joints of participant and avatar were, to be drawn."""
+    """Return the positions of the joints of participant and avatar over time."""
     with context.database.reading() as db:
         asked = replayable(db, caller, session_id, phase_id)
         tag = movement_tag(db, asked)
-    # To be asked for each time: who may see what changes with the session.
+    # The cache must revalidate, because permissions change with the session's state.
     headers = {"etag": tag, "cache-control": "private, no-cache"}
     if if_none_match is not None and tag in if_none_match:
         return Response(status_code=304, headers=headers)

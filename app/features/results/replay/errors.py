@@ -1,4 +1,4 @@
-"""Joint errors of a phase over time, as its summary counts them, at a reduced rate."""
+"""Compute the joint errors of a phase over time as its summary does, at a reduced rate."""
 
 from dataclasses import dataclass, field
 
@@ -14,7 +14,7 @@ from app.science.rotations import FloatArray
 
 @dataclass
 class RunErrors:
-    """One run: the avatar's frames at the moments of the grid, and their partners by seq."""
+    """One run's avatar frames at the moments of the grid, and the target frames with the same seq."""
 
     sampling: Sampling
     _at: list[Indices] = field(default_factory=list)
@@ -23,7 +23,7 @@ class RunErrors:
     _asked: dict[int, tuple[float, FloatArray]] = field(default_factory=dict)
 
     def actual(self, piece: Frames) -> None:
-        """Take a piece of what the avatar did."""
+        """Add a piece of the avatar's frames."""
         at, frames = self.sampling.take(piece)
         if not len(at):
             return
@@ -32,7 +32,7 @@ class RunErrors:
         self._actual.append(frames.rotations)
 
     def target(self, piece: Frames) -> None:
-        """Take a piece of what the participant did, after everything that the avatar did."""
+        """Add a piece of the participant's frames, after all of the avatar's frames."""
         rows = np.flatnonzero(np.isin(piece.seq, self._wanted))
         if not len(rows):
             return
@@ -66,5 +66,5 @@ class RunErrors:
 
 
 def no_errors(grid: Grid) -> NDArray[np.float32]:
-    """Errors of no moment: (count, 21) NaN."""
+    """Return an array of missing errors for a grid: (count, 21) NaN."""
     return np.full((grid.count, len(ERROR_JOINTS)), np.nan, np.float32)

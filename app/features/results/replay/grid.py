@@ -1,4 +1,4 @@
-"""Which stored frame is shown at which moment: the nearest one, unless nothing was recorded."""
+"""Assign to each moment of a replay the nearest stored frame, except in gaps."""
 
 import math
 from collections.abc import Sequence
@@ -16,18 +16,18 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Grid:
-    """`count` moments at a constant rate from the phase's time 0 on."""
+    """`count` moments at a constant rate, from the phase's time 0."""
 
     rate_hz: float
     count: int
 
     @classmethod
     def over(cls, duration_s: float, rate_hz: float) -> "Grid":
-        """The moments from 0 to `duration_s`."""
+        """Return the grid of moments from 0 to `duration_s`."""
         return cls(rate_hz, 1 + math.floor(duration_s * rate_hz + 1e-6))
 
     def between(self, first_s: float, last_s: float) -> Indices:
-        """The moments from `first_s` to `last_s`, both included."""
+        """Return the indices of the moments from `first_s` to `last_s`, both included."""
         first = max(0, math.ceil(first_s * self.rate_hz - 1e-6))
         last = min(self.count - 1, math.floor(last_s * self.rate_hz + 1e-6))
         return np.arange(first, max(first, last + 1), dtype=np.int64)
@@ -35,10 +35,11 @@ class Grid:
 
 @dataclass
 class Sampling:
-    """Takes the pieces of one run in order and gives each moment of a grid its frame.
+    """Assign frames to the moments of a grid, from the pieces of one run in order.
 
-    `offset_s` leads from the run's clock to the phase's time. Moments up to half a step before the
-    first frame and behind the last are theirs, too.
+    `offset_s` is added to the run's clock to get the phase's time. The first and last frame are
+    also
+    used for moments up to half a step before and after them.
     """
 
     grid: Grid
@@ -48,7 +49,7 @@ class Sampling:
     _last: Frames | None = None
 
     def take(self, piece: Frames) -> tuple[Indices, Frames]:
-        """The moments that this piece settles, and the frame of each."""
+        """Return the moments that this piece decides, and the frame of each."""
         rising = self._rising(piece)
         joined = rising if self._last is None else concatenate([self._last, rising])
         if len(rising) == 0:
@@ -68,11 +69,11 @@ class Sampling:
 
     @property
     def last_s(self) -> float | None:
-        """The phase's time of the last frame so far."""
+        """Return the phase's time of the last frame so far."""
         return None if self._last is None else float(self._last.times_s[0]) + self.offset_s
 
     def _rising(self, piece: Frames) -> Frames:
-        """The frames whose time is finite and later than all before."""
+        """Return the frames whose time is finite and later than all before."""
         before_s = -np.inf if self._last is None else float(self._last.times_s[0])
         usable = np.where(np.isfinite(piece.times_s), piece.times_s, -np.inf)
         highest = np.maximum.accumulate(np.concatenate(([before_s], usable)))[:-1]
@@ -80,12 +81,12 @@ class Sampling:
 
 
 def chosen(frames: Frames, rows: NDArray[np.int64]) -> Frames:
-    """Some of the frames, in that order."""
+    """Return the frames with these indices, in that order."""
     return Frames(frames.seq[rows], frames.times_s[rows], frames.flags[rows], frames.values[rows])
 
 
 def uncovered(runs: Sequence[Sampling], duration_s: float) -> list[tuple[float, float]]:
-    """All gaps in order: within runs, between them, before the first and behind the last."""
+    """Return all gaps in order: within runs, between them, before the first and after the last."""
     found = [gap for run in runs for gap in run.gaps]
     spans = [(run.first_s, run.last_s) for run in runs]
     reached_s = 0.0
@@ -99,7 +100,7 @@ def uncovered(runs: Sequence[Sampling], duration_s: float) -> list[tuple[float, 
 
 
 def _nearest(times_s: NDArray[np.float64], query_s: NDArray[np.float64]) -> Indices:
-    """Which of the rising times is nearest to each query."""
+    """Return the index of the nearest of the ascending times for each query."""
     middles_s = (times_s[1:] + times_s[:-1]) / 2.0
     return np.asarray(np.searchsorted(middles_s, query_s), dtype=np.int64)
 
@@ -107,6 +108,6 @@ def _nearest(times_s: NDArray[np.float64], query_s: NDArray[np.float64]) -> Indi
 def _inside(
     query_s: NDArray[np.float64], times_s: NDArray[np.float64], wide: NDArray[np.int64]
 ) -> NDArray[np.bool_]:
-    """Which queries lie between two frames that are too far apart."""
+    """Return which queries lie between two frames that are too far apart."""
     after = np.searchsorted(times_s, query_s)
     return np.asarray(np.isin(after - 1, wide) & (after > 0) & (after < len(times_s)))

@@ -1,18 +1,18 @@
-"""The movement of a phase as bytes that a page can draw.
+"""Compute the movement of a phase as bytes that a page can draw.
 
-    bytes 0-3    length L of the header, unsigned, little-endian
-    bytes 4-     header: JSON in UTF-8, filled up with spaces so that 4 + L is a multiple of 4
-    then         float32, little-endian: x, y, z in m of every joint, [body][frame][joint][axis]
-    then         float32: joint errors in radians, [frame][joint]
+  bytes 0-3    length L of the header, unsigned, little-endian
+  bytes 4-     header: JSON in UTF-8, padded with spaces so that 4 + L is a multiple of 4
+  then         float32, little-endian: x, y, z in m of every joint, [body][frame][joint][axis]
+  then         float32: joint errors in radians, [frame][joint]
 
-The header holds `names` and `parents` of the J joints, `bodies` ("target", the participant, and
-"actual", the avatar), `frames` N and `rate_hz` of them from the phase's time 0 on, `error_joints`,
-`error_frames` and `error_rate_hz`, and `gaps`: stretches (begin, end) of the phase's time in which
-nothing was recorded.
+The header has `names` and `parents` of the J joints, `bodies` ("target", the participant, and
+"actual", the avatar), the number of `frames` N and their `rate_hz`, from the phase's time 0,
+`error_joints`, `error_frames` and `error_rate_hz`, and `gaps`: spans (begin, end) of the phase's
+time in which nothing was recorded.
 
-Places follow by forward kinematics from the stored frame that is nearest to each moment; nothing is
-smoothed or made up. In a gap, and where a rotation is none, they are NaN. Errors are the angles
-between what the avatar was asked for at that moment and what it did (`app.science.joint_error`).
+Positions are computed by forward kinematics from the stored frame nearest to each moment, without
+smoothing or interpolation. In gaps, and for invalid rotations, they are NaN. Errors are the angles
+between the avatar's target pose at that moment and its actual pose (`app.science.joint_error`).
 Pieces of a second are read one after the other, so a long phase takes no more memory than its
 answer.
 """
@@ -56,10 +56,10 @@ Places = NDArray[np.float32]
 
 @dataclass(frozen=True)
 class Recording:
-    """Where the frames of a phase are, and on what they are drawn.
+    """The frames of a phase to read, and the skeleton to compute positions with.
 
-    `offsets_s`: by epoch, what leads to the phase's time. `full`: the avatar, too, and its errors.
-    `hinges` of an avatar that is moved by physics.
+    `offsets_s`: by epoch, the difference from the run's clock to the phase's time. `full`: with the
+    avatar and its errors. `hinges`: those of a physics avatar.
     """
 
     session_id: str
@@ -73,12 +73,12 @@ class Recording:
 
 @dataclass
 class Movement:
-    """What is drawn of a phase.
+    """The positions, errors and gaps of a phase.
 
     Attributes:
-        positions_m: by body, (N, 22, 3).
-        errors_rad: (M, 21); no rows where there is one body.
-        gaps: stretches of the phase's time without a frame of the participant.
+        positions_m: By body, (N, 22, 3).
+        errors_rad: (M, 21); no rows if there is only one body.
+        gaps: Spans of the phase's time without a frame of the participant.
     """
 
     grid: Grid
@@ -89,7 +89,7 @@ class Movement:
 
 
 def movement_of(db: Session, recording: Recording) -> Movement:
-    """Read a phase's frames and place its bodies."""
+    """Read a phase's frames and compute the positions of its bodies."""
     bodies = 2 if recording.full else 1
     grid = Grid.over(recording.duration_s, _rate_hz(recording.duration_s, bodies))
     error_grid = Grid.over(recording.duration_s, ERROR_HZ if recording.full else 0.0)
@@ -99,7 +99,7 @@ def movement_of(db: Session, recording: Recording) -> Movement:
         for epoch, offset_s in recording.offsets_s.items()
     }
     if recording.full:
-        # First, so that it is known which frames of the participant are its partners.
+        # The avatar first: its frames decide which frames of the participant are needed.
         body = _body(db, recording, StreamName.ACTUAL, grid, tracks)
         movement.positions_m[StreamName.ACTUAL], _ = body
     body = _body(db, recording, StreamName.TARGET, grid, tracks)
@@ -119,7 +119,7 @@ def _body(
     grid: Grid,
     tracks: Mapping[int, RunErrors],
 ) -> tuple[Places, list[tuple[float, float]]]:
-    """One body's places, and the gaps of its stream."""
+    """Return the positions of one body, and the gaps of its stream."""
     places = np.full((grid.count, JOINT_COUNT, 3), np.nan, np.float32)
     runs = []
     for epoch, offset_s in recording.offsets_s.items():
@@ -140,7 +140,7 @@ def _pieces(db: Session, recording: Recording, stream: StreamName, epoch: int) -
 
 
 def _placed(skeleton: Skeleton, frames: Frames) -> Places:
-    """Joints in the world (n, 22, 3); NaN for those that hang on a rotation that is none."""
+    """Return joint positions in the world (n, 22, 3), NaN below an invalid rotation."""
     rotations = frames.rotations
     usable = np.where(is_unit(rotations)[..., np.newaxis], rotations, np.nan)
     roots_m = frames.values[:, :3].astype(np.float64)
@@ -148,7 +148,7 @@ def _placed(skeleton: Skeleton, frames: Frames) -> Places:
 
 
 def encode(movement: Movement) -> bytes:
-    """The bytes that a page gets: the participant first."""
+    """Return the movement as bytes, the participant first."""
     bodies = sorted(movement.positions_m, reverse=True)
     errors = np.ascontiguousarray(movement.errors_rad, dtype="<f4")
     header = json.dumps(
@@ -176,7 +176,7 @@ def _rate_hz(duration_s: float, bodies: int) -> float:
 
 
 def placed_movement(database: Database, session_id: str, phase_id: int, *, full: bool) -> bytes:
-    """The movement of a phase as `movement.encode` makes it; `full`: with the avatar."""
+    """Read and encode the movement of a phase (see `encode`); `full`: with the avatar."""
     with database.reading() as db:
         session = session_by_id(db, session_id)
         phase = db.get_one(Phase, (session_id, phase_id))

@@ -1,11 +1,11 @@
-"""A phase's replay as a page gets it; its movement comes beside it as bytes (`movement`).
+"""Response models of a phase's replay; its movement is sent separately as bytes (`movement`).
 
-Two times name a moment of a phase, and a third one the hour:
+Two times identify a moment of a phase, and a third one gives the time of day:
 
-- `t_s`, the phase's time: seconds of the headset's clock since the phase's clock first ran. It goes
-  on through pauses and losses of the headset, so that what was recorded lies on it as it happened.
-- `active_s`, the active time: what counted. It stands in pauses and on the way back.
-- UTC, by the server's clock: `runs` lead from the phase's time to it.
+- `t_s`, the phase's time: seconds of the headset's clock since the phase's clock first ran. It
+  continues through pauses and lost connections, so that records are at the time they happened.
+- `active_s`, the active time: the time that counts. It stops in pauses and on the way back.
+- UTC, by the server's clock: `runs` map the phase's time to it.
 """
 
 from datetime import datetime
@@ -26,7 +26,7 @@ Vector = tuple[float, float, float]
 
 
 class ActiveStretch(BaseModel):
-    """A stretch in which the phase's clock ran, on both of its times."""
+    """A span in which the phase's clock ran, in the phase's time and in active time."""
 
     begin_s: float
     end_s: float
@@ -35,10 +35,11 @@ class ActiveStretch(BaseModel):
 
 
 class ClientRun(BaseModel):
-    """One run of the headset's program in the phase, from its first to its last moment here.
+    """One run of the headset's program, from its first to its last moment in the phase.
 
-    `begin_utc`: when it began, by the server's clock; null where that cannot be said.
-    `uncertainty_ms`: how well; null where no clock was compared and it is when the message came.
+    `begin_utc`: its start by the server's clock; null where it is unknown. `uncertainty_ms`: that
+    of
+    `begin_utc`; null if there is no clock probe and `begin_utc` is the arrival of a message.
     """
 
     epoch: int
@@ -49,7 +50,7 @@ class ClientRun(BaseModel):
 
 
 class ReplayContact(BaseModel):
-    """One part of the avatar at one surface; `effect` is what the task made of it."""
+    """The contact of a body part of the avatar with a surface; `effect`: its effect in the task."""
 
     surface: str
     surface_kind: str
@@ -73,7 +74,7 @@ class ReplayCompletion(BaseModel):
 
 
 class Moment(BaseModel):
-    """Something that the phase's clock did, and why."""
+    """A change of the phase's clock, and its cause."""
 
     what: What
     t_s: float
@@ -82,7 +83,7 @@ class Moment(BaseModel):
 
 
 class ReplayNote(BaseModel):
-    """A note of the lab that was written during the phase."""
+    """A note that the lab wrote during the phase."""
 
     id: str
     text: str
@@ -92,7 +93,7 @@ class ReplayNote(BaseModel):
 
 
 class ReplaySurface(BaseModel):
-    """A block of the task's scene: its centre and half its size, metres, in the movement's world.
+    """A surface of the task's scene: its centre and half its size in metres, in world coordinates.
 
     `kind`: panel, side, target or start. `box` is null for target and start.
     """
@@ -105,12 +106,14 @@ class ReplaySurface(BaseModel):
 
 
 class Replay(BaseModel):
-    """One phase. Latency, contacts, completions and scene are left out of a `participant` view.
+    """One phase; a `participant` view has no latency, contacts, completions and scene.
 
     `forms`: scores of the forms filled in after this phase and before the next, in order;
-    `administrations` names all of them, with or without scores. `stature_m` is the body's that is
-    drawn; where it is not known, a usual one is taken. `time_scale`: seconds of the headset's clock
-    per second of the server's.
+    `administrations` names all of them, with or without scores. `stature_m` is that of the body
+    drawn;
+    if it is unknown, a default is used. `time_scale`: seconds of the headset's clock per second of
+    the
+    server's.
     """
 
     session_id: str

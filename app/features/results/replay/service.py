@@ -1,8 +1,8 @@
-"""Which phases may be looked at again, by whom, and how much of them.
+"""Decide which phases may be replayed, by whom, and with or without the avatar.
 
-A phase is replayed once it is over. Who must not learn the latency sees the participant's own
-movement and nothing of the avatar: the two beside each other, or contacts beside the movement that
-led to them, would show the latency to anybody who looks.
+A phase can be replayed once it is over. Blinded readers see the participant's own movement and
+nothing of the avatar: both together, or contacts together with the movement that led to them,
+would reveal the latency.
 """
 
 import hashlib
@@ -31,7 +31,7 @@ USUAL_STATURE_M = 1.7
 
 @dataclass(frozen=True)
 class Replayable:
-    """A phase that the caller may look at, and how."""
+    """A phase that the caller may replay, and the view that they may see."""
 
     session: StudySession
     phase: Phase
@@ -39,15 +39,15 @@ class Replayable:
 
     @property
     def full(self) -> bool:
-        """Whether the avatar is shown, and what happened to it."""
+        """Return whether the view includes the avatar and its contacts."""
         return self.view == "full"
 
 
 def replayable(db: Session, caller: Caller, session_id: str, phase_id: int) -> Replayable:
-    """The phase, if it can be replayed for the caller.
+    """Return the phase, if the caller may replay it.
 
-    Raises NotFound where there is no such phase, Gone where its data were erased, NotNow before it
-    is over.
+    Raises NotFound if there is no such phase, Gone if its data were erased, NotNow before it is
+    over.
     """
     session = session_by_id(db, session_id)
     if erased_session(db, session_id):
@@ -77,7 +77,7 @@ def replayable(db: Session, caller: Caller, session_id: str, phase_id: int) -> R
 
 
 def stature_of(db: Session, session: StudySession) -> float | None:
-    """The stature of the body in the session: the avatar's on record, else the participant's."""
+    """Return the stature of the body in the session: the recorded avatar's, else the participant's."""
     recorded = [content_body(row) for row in contents_of(db, session.id, "avatar")]
     for body in reversed(recorded):
         if isinstance(body, dict) and isinstance(body.get("stature_m"), float):
@@ -86,7 +86,7 @@ def stature_of(db: Session, session: StudySession) -> float | None:
 
 
 def frames_stored(db: Session, phase: Phase) -> int:
-    """How many frames of both bodies are stored of a phase."""
+    """Return the number of frames of both bodies that are stored for a phase."""
     total = 0
     for table in (TelemetryChunk, TelemetryBatch):
         of_phase = (table.session_id == phase.session_id, table.phase_id == phase.phase_id)
@@ -96,7 +96,7 @@ def frames_stored(db: Session, phase: Phase) -> int:
 
 
 def movement_tag(db: Session, asked: Replayable) -> str:
-    """Changes whenever the bytes of the movement may: an entity tag, with its quotes."""
+    """Return an entity tag, with its quotes, that changes whenever the bytes of the movement may."""
     phase = asked.phase
     told = (
         *(phase.session_id, phase.phase_id, phase.status, phase.active_s, frames_stored(db, phase)),

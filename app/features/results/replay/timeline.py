@@ -1,4 +1,4 @@
-"""What happened in a phase, on the phase's time."""
+"""Collect what happened in a phase, in the phase's time."""
 
 import json
 from collections.abc import Iterator
@@ -37,7 +37,7 @@ from app.protocol import TIMED_KINDS
 
 
 def replay_of(db: Session, asked: Replayable) -> Replay:
-    """The phase as a page draws it around its movement."""
+    """Return everything of a replay except the movement."""
     session, phase = asked.session, asked.phase
     clock = phase_clock(db, session, phase)
     stature_m = stature_of(db, session)
@@ -112,7 +112,7 @@ def _completions(db: Session, phase: Phase, clock: PhaseClock) -> list[ReplayCom
 
 
 def _moments(db: Session, phase: Phase, clock: PhaseClock) -> Iterator[Moment]:
-    """As the headset told them; where it could not, as the server had to assume them."""
+    """Yield the changes of the phase's clock as the headset reported or the server assumed them."""
     for one in told_of(db, phase):
         t_s = one.client_s + clock.offsets_s[one.epoch]
         cause = one.cause if one.what == "paused" else None
@@ -134,7 +134,7 @@ def _moments(db: Session, phase: Phase, clock: PhaseClock) -> Iterator[Moment]:
 
 
 def _notes(db: Session, phase: Phase, clock: PhaseClock) -> Iterator[ReplayNote]:
-    """Those that were written while the phase ran, paused or not."""
+    """Yield the notes that were written while the phase ran or was paused."""
     for row in contents_of(db, phase.session_id, "note"):
         if row.body is None or phase.started_at is None or row.created_at < phase.started_at:
             continue
@@ -173,7 +173,7 @@ def _surfaces(db: Session, asked: Replayable) -> list[ReplaySurface]:
 
 
 def _administrations(db: Session, asked: Replayable) -> list[str]:
-    """The forms between this phase and the next step that is one, those of this attempt."""
+    """Return the forms of this attempt between this phase and the next phase of the procedure."""
     phase, plan = asked.phase, plan_of(db, asked.session)
     following = []
     for step in plan[phase.step_index + 1 :]:
@@ -197,6 +197,6 @@ def _administrations(db: Session, asked: Replayable) -> list[str]:
     )
     if again is not None:
         filled = filled.where(Submission.submitted_at < again)
-    # A form that was filled in again counts as it was last.
+    # If a form was filled in twice, the later one counts.
     newest = dict(db.execute(filled.order_by(Submission.submitted_at)).all())
     return [newest[index] for index in following if index in newest]

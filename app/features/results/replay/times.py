@@ -1,4 +1,4 @@
-"""A phase's clock, from what the record holds of it."""
+"""Compute a phase's clock from the record."""
 
 from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
@@ -17,21 +17,21 @@ _US = timedelta(microseconds=1)
 
 
 class _Span(NamedTuple):
-    """From when to when a run recorded the phase, on its own clock."""
+    """The first and last moment at which a run recorded the phase, on the run's own clock."""
 
     first_s: float
     last_s: float
 
 
 def phase_clock(db: Session, session: StudySession, phase: Phase) -> PhaseClock:
-    """The clock of a phase that has begun; one without any record stands at zero."""
+    """Return the clock of a phase; without any record, its duration is 0."""
     told, heard = _told(db, phase)
     spans = _spans(db, phase, told)
     if not spans:
         return PhaseClock({}, (), (), session.time_scale)
     first = next((one.epoch for one in told if one.what == "started"), min(spans))
     zero_s = _zero(phase, told, spans[first])
-    # Without what was recorded while the phase was being prepared.
+    # Exclude what was recorded while the phase was being prepared.
     spans[first] = _Span(zero_s, max(spans[first].last_s, zero_s))
     walls = _walls(db, session, phase, spans, heard)
     offsets_s: dict[int, float] = {}
@@ -41,19 +41,19 @@ def phase_clock(db: Session, session: StudySession, phase: Phase) -> PhaseClock:
         offsets_s[epoch] = begin_s - spans[epoch].first_s
         end_s = begin_s + spans[epoch].last_s - spans[epoch].first_s
         runs.append(Run(epoch, begin_s, end_s, *walls[epoch]))
-    # Where nobody told of the clock, that it ran all the time is all that can be said.
+    # Without any report, the clock is assumed to have run all the time.
     said = told or [Told(first, "started", zero_s, 0.0, "")]
     active = stretches(said, offsets_s, phase.active_s)
     return PhaseClock(offsets_s, tuple(runs), active, session.time_scale)
 
 
 def told_of(db: Session, phase: Phase) -> list[Told]:
-    """What the headset told of the phase's clock, in order, refused or not."""
+    """Return the headset's reports on the phase's clock in order, including rejected ones."""
     return _told(db, phase)[0]
 
 
 def _begin(runs: Sequence[Run], first: Wall, own: Wall, time_scale: float) -> float:
-    """When a run begins: by the wall clock, else as the one before ended."""
+    """Return when a run begins: by the wall clock, else at the end of the previous run."""
     if not runs:
         return 0.0
     if first.utc is None or own.utc is None:
@@ -62,13 +62,16 @@ def _begin(runs: Sequence[Run], first: Wall, own: Wall, time_scale: float) -> fl
 
 
 def _zero(phase: Phase, told: Sequence[Told], span: _Span) -> float:
-    """When the phase's clock first ran, on the clock of that run."""
+    """Return when the phase's clock first ran, on the clock of that run."""
     begun = next((one.client_s for one in told if one.what == "started"), phase.client_started_s)
     return span.first_s if begun is None else begun
 
 
 def _told(db: Session, phase: Phase) -> tuple[list[Told], dict[int, tuple[float, datetime]]]:
-    """The same, and when the server heard the first of each run: (client's time, UTC)."""
+    """Return the headset's reports, and when the server received the first of each run.
+
+    The second is, by epoch, (client's time, UTC).
+    """
     rows = db.execute(
         select(ClientReport.epoch, ClientReport.payload, ClientReport.received_at)
         .where(ClientReport.session_id == phase.session_id, ClientReport.type == "phase")
@@ -85,7 +88,7 @@ def _told(db: Session, phase: Phase) -> tuple[list[Told], dict[int, tuple[float,
 
 
 def _spans(db: Session, phase: Phase, told: Sequence[Told]) -> dict[int, _Span]:
-    """By epoch; from movement, reports and contacts, whichever reach further."""
+    """Return the spans by epoch, from movement, reports and contacts, whichever reach further."""
     found: dict[int, list[float]] = {}
     chunks = select(
         TelemetryChunk.epoch,
@@ -122,7 +125,7 @@ def _batch_times(row: TelemetryBatch) -> list[float]:
 
 
 def _only_epoch(db: Session, phase: Phase) -> int:
-    """The run of a phase of which no movement is left."""
+    """Return the run of a phase that has no movement."""
     query = select(func.min(Contact.epoch)).where(
         Contact.session_id == phase.session_id, Contact.phase_id == phase.phase_id
     )
@@ -136,8 +139,8 @@ def _walls(
     spans: dict[int, _Span],
     heard: dict[int, tuple[float, datetime]],
 ) -> dict[int, Wall]:
-    """By epoch, when its span began by the server's clock."""
-    # Loads pandas, which the start of the server need not wait for.
+    """Return by epoch when its span began, by the server's clock."""
+    # Imported here because it loads pandas, which would slow down the server's start.
     from app.features.results.analysis.tables import run_clocks
 
     clocks = run_clocks(db, session.id)

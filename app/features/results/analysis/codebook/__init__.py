@@ -1,7 +1,7 @@
-"""Every exported column, described exactly once.
+"""The codebook: one description of every exported column.
 
-The codebook is not written beside the tables, it makes them: a table has the columns of its
-entries, in their order. So no column can be exported without a description.
+The tables are built from it: each table has exactly the columns of its codebook entries, in their
+order. So no column can be exported without a description.
 """
 
 from app.features.results.analysis.codebook.book import (

@@ -1,4 +1,4 @@
-"""Writes docs/data-dictionary.md: `python -m app.features.results.analysis.codebook > FILE`."""
+"""Print the data dictionary: `python -m app.features.results.analysis.codebook > FILE`."""
 
 import sys
 

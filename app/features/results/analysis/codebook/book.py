@@ -1,4 +1,4 @@
-"""The whole codebook, as a table and as a page."""
+"""The complete codebook, as a data frame and as a Markdown page."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, replace
@@ -87,16 +87,19 @@ _BY_TABLE = {
 
 
 def columns_of(table: str, *, rules: bool = True) -> tuple[Column, ...]:
-    """The columns of a table in order.
+    """Return the columns of a table in their order.
 
-    `rules`: of studies that say when a session counts; what those have more is left out else.
+    Without `rules`, the columns that exist only for studies with `valid_when` rules are left out.
     """
     columns = _BY_TABLE[table]
     return columns if rules else tuple(map(_plain, filter(_without_rules, columns)))
 
 
 def codebook(*, rules: bool = True) -> tuple[Column, ...]:
-    """Every column of an export, with or without what there is of studies with rules."""
+    """Return every column of an export.
+
+    Without `rules`, the columns that exist only for studies with `valid_when` rules are left out.
+    """
     return CODEBOOK if rules else tuple(map(_plain, filter(_without_rules, CODEBOOK)))
 
 
@@ -110,14 +113,14 @@ def _plain(column: Column) -> Column:
 
 
 def codebook_frame(*, rules: bool = True) -> pd.DataFrame:
-    """The codebook as a table: table, column, meaning, unit, type, levels."""
+    """Return the codebook as a data frame: table, column, meaning, unit, type, levels."""
     frame = pd.DataFrame([asdict(column) for column in codebook(rules=rules)])
     frame = frame.rename(columns={"name": "column"})
     return frame[[column.name for column in columns_of("codebook")]]
 
 
 def data_dictionary() -> str:
-    """The codebook as a Markdown page; the columns of the joints are folded into one line each."""
+    """Return the codebook as a Markdown page; the joints' columns are merged into one line each."""
     parts = [PREFACE]
     for table, rows in TABLES.items():
         parts += [f"## {table}", rows, _markdown(_folded(columns_of(table)))]
@@ -125,7 +128,7 @@ def data_dictionary() -> str:
 
 
 def _folded(columns: Sequence[Column]) -> list[Column]:
-    """One line for all joints of a stream and all parts of a quaternion."""
+    """Merge the columns of all joints of a stream, and of all quaternion parts, into one column."""
     folded: dict[str, Column] = {}
     for column in columns:
         short = _folded_column(column)

@@ -1,4 +1,4 @@
-"""One column of an export, described once, and the columns that many tables share."""
+"""The description of one exported column, and the columns that many tables share."""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -11,10 +11,12 @@ ColumnType = Literal["text", "integer", "number", "boolean", "time"]
 
 @dataclass(frozen=True)
 class Column:
-    """What a column holds.
+    """The description of one exported column.
 
-    `of_rules`: only in exports with sessions of a study version that says when a session counts
-    (`valid_when`). `without_rules`: the meaning in all other exports, if it is another there.
+    `of_rules`: the column exists only in exports with sessions of a study version that has rules
+    for
+    valid sessions (`valid_when`). `without_rules`: the meaning in all other exports, where it
+    differs.
     `type`: text, integer, number (double precision unless the meaning says otherwise), boolean
     (true or false) or time (UTC, ISO 8601). `unit` is empty for a column without one. `levels` is
     the range of a number or the words a text column can hold.
@@ -32,37 +34,37 @@ class Column:
 
 @dataclass(frozen=True)
 class Describe:
-    """Writes the columns of one table without repeating its name."""
+    """Create the columns of one table without repeating the table's name."""
 
     table: str
 
     def text(self, name: str, meaning: str, levels: str = "") -> Column:
-        """A column of words."""
+        """Return a text column."""
         return Column(self.table, name, "text", meaning, levels=levels)
 
     def integer(self, name: str, meaning: str, unit: str = "", levels: str = "") -> Column:
-        """A column of whole numbers."""
+        """Return a column of integers."""
         return Column(self.table, name, "integer", meaning, unit, levels)
 
     def number(self, name: str, meaning: str, unit: str = "", levels: str = "") -> Column:
-        """A column of numbers."""
+        """Return a column of floating-point numbers."""
         return Column(self.table, name, "number", meaning, unit, levels)
 
     def boolean(self, name: str, meaning: str) -> Column:
-        """A column of true and false."""
+        """Return a column whose values are true or false."""
         return Column(self.table, name, "boolean", meaning, levels="true, false")
 
     def valid(self, meaning: str, without_rules: str) -> Column:
-        """Whether a row counts, which means more where a study has rules for it."""
+        """Return the column `valid`, with a second meaning for studies without `valid_when` rules."""
         return replace(self.boolean("valid", meaning), without_rules=without_rules)
 
     def time(self, name: str, meaning: str) -> Column:
-        """A column of moments."""
+        """Return a column of timestamps in UTC."""
         return Column(self.table, name, "time", meaning, "UTC, ISO 8601")
 
 
 def session_columns(table: str) -> tuple[Column, ...]:
-    """Whose row it is: the first columns of every table of a study."""
+    """Return the columns that identify a row's session, the first of every table of a study."""
     of = Describe(table)
     return (
         of.text("study_key", "The study."),
@@ -82,7 +84,7 @@ def session_columns(table: str) -> tuple[Column, ...]:
 
 
 def place_columns(table: str) -> tuple[Column, ...]:
-    """Where in the design a row belongs; all empty outside the blocks."""
+    """Return the columns for block, position, limb and condition, empty outside the blocks."""
     of = Describe(table)
     return (
         of.integer(
@@ -108,7 +110,7 @@ def place_columns(table: str) -> tuple[Column, ...]:
 
 
 def phase_columns(table: str) -> tuple[Column, ...]:
-    """Which phase a row belongs to, and whether it counts."""
+    """Return the columns that identify the phase of a row and say whether the row is valid."""
     of = Describe(table)
     return (
         of.integer("phase_id", "The phase within its session.", levels="1 and up"),

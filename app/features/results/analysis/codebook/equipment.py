@@ -27,7 +27,7 @@ CALIBRATIONS: tuple[Column, ...] = (
 
 
 def epoch_column(table: str) -> Column:
-    """Whose monotonic clock a row's times are of."""
+    """Return the column that names the client's run, and so the monotonic clock of the row's times."""
     return Describe(table).integer(
         "epoch",
         "Run of the client: a restart takes a new one, with a new clock.",
@@ -36,7 +36,7 @@ def epoch_column(table: str) -> Column:
 
 
 def mapped_columns(table: str, name: str, what: str) -> tuple[Column, ...]:
-    """A moment of the client's clock in UTC, with its uncertainty."""
+    """Return the columns of a client time mapped to UTC and of its uncertainty."""
     of = Describe(table)
     return (
         of.time(

@@ -1,4 +1,4 @@
-"""The columns of quality.csv and alarms.csv."""
+"""The columns of quality.csv, doubts.csv and alarms.csv."""
 
 from app.features.record.doubts import KINDS
 from app.features.results.analysis.codebook.column import (

@@ -1,7 +1,7 @@
-"""Figures for a dashboard: valid rows of the tables in, plotly figures out; no SQL.
+"""Build plotly figures for a dashboard from the valid rows of the tables; no SQL.
 
-Every builder gives a `Drawing`: a figure with its title, its caption and the rows that are in it,
-or, where there is too little to draw, one plain sentence on what is missing.
+Every builder returns a `Drawing`: a figure with its title, its caption and the rows in it, or,
+where there is too little to draw, one plain sentence on what is missing.
 """
 
 from app.features.results.analysis.figures.achieved import achieved_drawing

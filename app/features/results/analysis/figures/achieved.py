@@ -1,4 +1,4 @@
-"""What latency the avatar really had, against what was ordered."""
+"""The figure of the achieved latency against the set latency."""
 
 import numpy as np
 import pandas as pd
@@ -38,7 +38,7 @@ _COLUMNS = (
 
 
 def achieved_drawing(phases: pd.DataFrame) -> Drawing:
-    """From valid rows of the table of phases."""
+    """Draw the achieved against the set latency of each task phase, from valid rows of `phases`."""
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     measured = tasks.dropna(subset=["achieved_latency_ms", "latency_ms"])
     n = participants(measured)
@@ -59,7 +59,7 @@ def achieved_drawing(phases: pd.DataFrame) -> Drawing:
 
 
 def _figure(measured: pd.DataFrame, off: pd.Series, latencies: list[float]) -> go.Figure:
-    """Left the lag itself, right how far it is off."""
+    """Draw the achieved latency in the left panel and its deviation from the set one in the right."""
     spread = 0.05 * max(latencies[-1] - latencies[0], 50.0)
     figure = new_figure(titles=("Achieved", "Achieved less ordered"), horizontal_spacing=0.14)
     ends = [latencies[0] - spread, latencies[-1] + spread]
@@ -100,7 +100,7 @@ def _points(
     own: pd.DataFrame, look: tuple[str, str, str], spread: float, *, less: bool
 ) -> go.Scatter:
     name, colour, symbol = look
-    # Beside each other in the order of the rows: the same data give the same picture.
+    # Spread points sideways in the order of the rows, so that the same data give the same picture.
     place = own.groupby("latency_ms").cumcount() / own.groupby("latency_ms")[
         "latency_ms"
     ].transform("size").clip(lower=2)

@@ -1,4 +1,4 @@
-"""Joint error as a heat map on a body, one body a latency."""
+"""The figure of joint errors as a heat map on a body, one body per latency."""
 
 import pandas as pd
 import plotly.graph_objects as go
@@ -27,7 +27,7 @@ _HEIGHT_PX = 400
 
 
 def joint_error_body_drawing(errors: pd.DataFrame) -> Drawing:
-    """Mean angle of every joint at its place, from valid rows of the table of joint errors."""
+    """Draw the mean error of every joint on a body, from valid rows of the table of joint errors."""
     rows = task_angles(errors)
     n = participants(rows)
     if n < FEWEST_PARTICIPANTS:
@@ -48,7 +48,7 @@ def joint_error_body_drawing(errors: pd.DataFrame) -> Drawing:
 
 
 def _places() -> dict[str, tuple[float, float]]:
-    """(x to the viewer's right, y up) of every joint of a body in the T-pose, in m."""
+    """Return the position of every joint in the T-pose, in m: (x to the viewer's right, y up)."""
     skeleton = build_skeleton(_STATURE_M)
     places: dict[str, tuple[float, float]] = {}
     for index, name in enumerate(JOINT_NAMES):

@@ -1,4 +1,4 @@
-"""A measure at each latency, one panel a limb: every participant's line, and the mean over them."""
+"""Figures of a measure at each latency: each participant's line and the mean, one panel per limb."""
 
 import itertools
 from collections.abc import Sequence
@@ -36,21 +36,24 @@ SHAPE_SHARE = 0.16
 
 @dataclass(frozen=True)
 class MeanInterval:
-    """Mean of n values with half the width of its 95 % interval; None for fewer than two."""
+    """The mean of n values and half the width of its 95 % interval (None for a single value)."""
 
     mean: float
     half_width: float | None
     n: int
 
     def words(self, unit: str) -> str:
-        """Half the width in words, for a hover text."""
+        """Return the half width as text with its unit, for a hover text."""
         if self.half_width is None:
             return f"{unit} (one participant, no interval)"
         return f"± {self.half_width:.2g} {unit}"
 
 
 def mean_interval(values: Sequence[float]) -> MeanInterval:
-    """Student's interval: mean +- t(.975, n - 1) s / sqrt(n). Raises ValueError for no values."""
+    """Return Student's interval: mean +- t(.975, n - 1) s / sqrt(n).
+
+    Raises ValueError if there are no values.
+    """
     if len(values) == 0:
         raise ValueError("expected at least one value, got none")
     array = np.asarray(values, np.float64)
@@ -63,7 +66,7 @@ def mean_interval(values: Sequence[float]) -> MeanInterval:
 
 @dataclass(frozen=True)
 class Across:
-    """What stands on the x axis: a column of numbers, how it is called, and its unit."""
+    """The quantity on the x axis: its column in the table, its title and its unit."""
 
     column: str
     title: str
@@ -74,7 +77,7 @@ LATENCY = Across("latency_ms", "added latency (ms)", "ms")
 
 
 def per_participant(frame: pd.DataFrame, value: str, across: str = LATENCY.column) -> pd.DataFrame:
-    """One row per participant, limb and latency: the mean of `value`, as column `value`."""
+    """Return the mean of the column `value` per participant, limb and latency, as column `value`."""
     keys = ["participant_code", "limb", across]
     known = frame.dropna(subset=[*keys, value])
     return known.groupby(keys)[value].mean().rename("value").reset_index()
@@ -88,8 +91,10 @@ def latency_figure(
     limits: tuple[float, float] | None = None,
     across: Across = LATENCY,
 ) -> go.Figure:
-    """Draw `values` (participant_code, limb, latency_ms, value), one row a participant and cell.
+    """Draw a measure at each latency, one panel per limb.
 
+    `values` has one row per participant, limb and latency (participant_code, limb, latency_ms,
+    value).
     `axis` is the title of the y axis with its unit, `limits` the lowest and highest possible value.
     """
     limbs = [limb for limb in LIMBS if (values["limb"] == limb).any()]
@@ -118,7 +123,7 @@ def latency_figure(
 
 
 def drawn_rows(values: pd.DataFrame, unit: str, across: Across = LATENCY) -> pd.DataFrame:
-    """What `latency_figure` draws, as rows: participants' values, then means with intervals."""
+    """Return the rows that `latency_figure` draws: participants' values, then means with intervals."""
     rows = [values.assign(row="participant")]
     for limb in LIMBS:
         own = values[values["limb"] == limb].rename(columns={across.column: "x"})
@@ -149,13 +154,13 @@ def limb_panels(data: pd.DataFrame) -> tuple[list[str], list[float], go.Figure]:
 
 
 def cells(values: pd.DataFrame, across: str = LATENCY.column) -> dict[float, MeanInterval]:
-    """Mean and interval at each latency, in order."""
+    """Return the mean and interval at each latency, in ascending order of latency."""
     by_place = values.sort_values(across).groupby(across)["value"]
     return {float(str(at)): mean_interval(group.tolist()) for at, group in by_place}
 
 
 def _shapes(own: pd.DataFrame, limb: str, places: Sequence[float], unit: str) -> list[go.Violin]:
-    """The distribution at each place, on its right; none of a few participants."""
+    """Return a half violin to the right of each x value; omit those with few participants."""
     gap = min((b - a for a, b in itertools.pairwise(places)), default=10.0)
     traces = []
     for place, group in own.groupby("x")["value"]:
@@ -163,7 +168,8 @@ def _shapes(own: pd.DataFrame, limb: str, places: Sequence[float], unit: str) ->
             continue
         traces.append(
             go.Violin(
-                # Objects: arrays of numbers would travel packed, lists be looked through.
+                # dtype=object: plotly would encode numeric arrays in binary, and inspect every item
+                # of a list.
                 x=np.full(len(group), float(str(place)) + 0.06 * gap, dtype=object),
                 y=group.to_numpy(dtype=object),
                 name=f"distribution, {limb}",
@@ -181,10 +187,10 @@ def _shapes(own: pd.DataFrame, limb: str, places: Sequence[float], unit: str) ->
 
 
 def _people(own: pd.DataFrame, unit: str, across: Across, legend: bool) -> go.Scatter:  # noqa: FBT001 - one of two panels
-    """All participants as one trace, with a gap between their lines."""
+    """Return one trace with the lines of all participants, separated by gaps."""
     lines = own.sort_values(["participant_code", "x"])
     codes = lines["participant_code"].to_numpy(dtype=object)
-    # Behind the last point of each line.
+    # The index after the last point of each line.
     gaps = np.append(np.flatnonzero(codes[1:] != codes[:-1]) + 1, len(codes))
     nothing = np.array([None], dtype=object)
 

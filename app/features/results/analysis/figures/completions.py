@@ -1,4 +1,4 @@
-"""How many tasks were completed: at each latency, and as a session went on."""
+"""Figures of the number of completed tasks, by latency and by block."""
 
 import pandas as pd
 
@@ -32,12 +32,12 @@ _UNIT = "tasks"
 
 
 def completions_drawing(phases: pd.DataFrame) -> Drawing:
-    """From valid rows of the table of phases; a phase without a completion counts as 0."""
+    """Draw completed tasks by latency, from valid rows of `phases`; no completions count as 0."""
     return _drawing(KEY, TITLE, MEANS, phases)
 
 
 def learning_drawing(phases: pd.DataFrame) -> Drawing:
-    """The same rows by the block in which they were done."""
+    """Draw completed tasks by the block of the session, from valid rows of `phases`."""
     words = MEANS.replace("each latency", "each block")
     return _drawing(LEARNING_KEY, LEARNING_TITLE, f"{words} {_ORDERS}", phases, BLOCK)
 

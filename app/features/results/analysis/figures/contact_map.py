@@ -1,4 +1,4 @@
-"""How long each part of the body was at each side of a box: side x body part."""
+"""The heat map of contact time by side of the box and body part."""
 
 import pandas as pd
 import plotly.graph_objects as go
@@ -28,7 +28,7 @@ _APART = "\u001f"
 
 
 def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
-    """From valid rows of the tables of phases and contacts; one panel a limb and latency."""
+    """Draw contact times, one panel per limb and latency, from valid rows of phases and contacts."""
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     sides = contacts[contacts["surface_kind"] == "side"]
     n = participants(tasks)
@@ -44,7 +44,7 @@ def contact_map_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing
 
 
 def _means(tasks: pd.DataFrame, sides: pd.DataFrame) -> pd.DataFrame:
-    """limb, latency_ms, body_part, side, mean_s_per_phase; one row for each that occurs."""
+    """Return limb, latency_ms, body_part, side, mean_s_per_phase for each combination that occurs."""
     times = part_side_times(sides)
     times["what"] = times["body_part"] + _APART + times["side"]
     found = []
@@ -90,7 +90,7 @@ def _figure(means: pd.DataFrame) -> go.Figure:
         coloraxis={
             "colorscale": "Cividis",
             "cmin": 0.0,
-            # Alone the lower bound would be left out.
+            # plotly ignores the lower bound unless the upper one is set, too.
             "cmax": float(means["mean_s_per_phase"].max()) or 1.0,
             "colorbar": {"title": {"text": "time (s per phase)", "side": "right"}},
         },

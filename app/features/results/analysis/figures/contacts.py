@@ -1,4 +1,4 @@
-"""How long sides of boxes were touched, and by which parts of the body."""
+"""The figure of contact times with sides of boxes, by side and by body part."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -31,7 +31,7 @@ WHAT = (
 
 
 def contacts_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
-    """From valid rows of the tables of phases and contacts."""
+    """Draw mean contact times per phase, from valid rows of the tables of phases and contacts."""
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
     sides = contacts[contacts["surface_kind"] == "side"]
     n = participants(tasks)
@@ -63,7 +63,7 @@ def contacts_drawing(phases: pd.DataFrame, contacts: pd.DataFrame) -> Drawing:
 
 
 def _side_times(sides: pd.DataFrame) -> pd.DataFrame:
-    """Red time by phase and side, over all boxes: columns session_id, phase_id, what, time_s."""
+    """Return the red time by phase and side over all boxes: session_id, phase_id, what, time_s."""
     rows = []
     for key, contacts in _grouped(sides, "session_id", "phase_id").items():
         for side, red in red_spans(contacts).items():
@@ -72,7 +72,7 @@ def _side_times(sides: pd.DataFrame) -> pd.DataFrame:
 
 
 def _part_times(sides: pd.DataFrame) -> pd.DataFrame:
-    """Contact time by phase and body part: the union over its contacts with each side."""
+    """Return the contact time by phase and body part: the union over its contacts with each side."""
     rows = []
     for key, contacts in _grouped(sides, "session_id", "phase_id", "body_part").items():
         rows.append((*key, sum(total_s(red) for red in red_spans(contacts).values())))
@@ -80,7 +80,7 @@ def _part_times(sides: pd.DataFrame) -> pd.DataFrame:
 
 
 def part_side_times(sides: pd.DataFrame) -> pd.DataFrame:
-    """Contact time by phase, body part and side, over all boxes, s."""
+    """Return the contact time by phase, body part and side over all boxes, in seconds."""
     rows = []
     for key, contacts in _grouped(sides, "session_id", "phase_id", "body_part").items():
         for side, red in red_spans(contacts).items():
@@ -91,7 +91,10 @@ def part_side_times(sides: pd.DataFrame) -> pd.DataFrame:
 
 
 def _grouped(sides: pd.DataFrame, *by: str) -> dict[tuple[Any, ...], list[Contact]]:
-    """The contacts of each group; plain lists, as a thousand sessions have many small groups."""
+    """Group the contacts by the columns `by`.
+
+    The groups are plain lists, because a thousand sessions have many small groups.
+    """
     names = [*by, "surface", "begin_active_s", "end_active_s"]
     found: dict[tuple[Any, ...], list[Contact]] = {}
     for row in zip(*(sides[name].tolist() for name in names), strict=True):
@@ -105,7 +108,10 @@ def _times(rows: Sequence[tuple[Any, ...]]) -> pd.DataFrame:
 
 
 def mean_times(tasks: pd.DataFrame, times: pd.DataFrame) -> pd.DataFrame:
-    """Mean over participants of their seconds per phase: rows latency_ms, columns `what`."""
+    """Return the mean over participants of their seconds per phase.
+
+    The rows are latency_ms, the columns the values of `what`.
+    """
     keys = ["session_id", "phase_id"]
     wide = times.pivot(index=keys, columns="what", values="time_s")
     own = tasks[[*keys, "participant_code", "latency_ms"]].merge(wide, on=keys, how="left")

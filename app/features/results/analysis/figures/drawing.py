@@ -1,4 +1,4 @@
-"""What a figure builder gives."""
+"""The result of a figure builder, and helpers that make one."""
 
 import json
 from dataclasses import dataclass, field, replace
@@ -14,9 +14,10 @@ Group = Literal["progress", "embodiment", "answers", "tasks", "movement", "quali
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure with its words, or the sentence that stands in its place; `n` participants.
+    """A figure with its texts; without a figure, `empty` is a sentence that says what is missing.
 
-    `data`: the rows that were drawn, for a file. `wide`: it needs the width of the page.
+    `n`: number of participants. `data`: the rows that were drawn, for a file. `wide`: the figure
+    needs the full width of the page.
     """
 
     key: str
@@ -30,14 +31,14 @@ class Drawing:
     wide: bool = False
 
     def as_json(self) -> dict[str, Any] | None:
-        """The figure as plotly.js reads it."""
+        """Return the figure in the form that plotly.js reads, or None if there is no figure."""
         if self.figure is None:
             return None
         loaded: dict[str, Any] = json.loads(self.figure.to_json())
         return loaded
 
     def among_chosen(self) -> "Drawing":
-        """The same where only some sessions are looked at: others may have what is missing."""
+        """Return a copy whose empty text says that only the filtered sessions were considered."""
         if self.empty is None:
             return self
         return replace(
@@ -45,45 +46,48 @@ class Drawing:
         )
 
     def marked(self, prefix: str, note: str) -> "Drawing":
-        """The same with words in front of the title, in the figure too, and behind the caption."""
+        """Return a copy with `prefix` before the title and `note` after the caption.
+
+        The title in the figure itself is changed, too.
+        """
         title = f"{prefix}{self.title}"
         if self.figure is not None:
             self.figure.update_layout(title_text=title)
         return replace(self, title=title, caption=f"{self.caption} {note}".strip())
 
     def of_group(self, group: Group, *, wide: bool = False) -> "Drawing":
-        """The same in a group of the page."""
+        """Return a copy that belongs to a group of figures on the page."""
         return replace(self, group=group, wide=wide)
 
 
 def drawn(
     key: str, title: str, caption: str, n: int, figure: go.Figure, data: pd.DataFrame
 ) -> Drawing:
-    """A drawing with a figure, which gets the title too, and the rows that are in it."""
+    """Return a drawing with a figure, to which the title is added, and the rows in it."""
     figure.update_layout(title_text=title)
     return Drawing(key, title, " ".join(caption.split()), n, figure=figure, data=data)
 
 
 def too_few(key: str, title: str, caption: str, n: int, what: str) -> Drawing:
-    """A drawing without a figure: nobody has `what` yet."""
+    """Return a drawing without a figure that says that no participant has `what` yet."""
     empty = f"No participant has {what} yet."
     return Drawing(key, title, " ".join(caption.split()), n, empty=empty)
 
 
 def count_note(n: int) -> str:
-    """How many participants a figure shows; with one there is no interval."""
+    """Return a sentence with the number of participants; one participant has no interval."""
     if n == 1:
         return "n = 1 participant, so there is no interval yet."
     return f"n = {n} participants."
 
 
 def participants(frame: pd.DataFrame) -> int:
-    """How many participants have a row."""
+    """Return the number of participants that have a row."""
     return int(frame["participant_code"].nunique())
 
 
 def limb_note(phases: pd.DataFrame) -> str:
-    """Whether limb and time can be told apart, from `phases` with limb and position."""
+    """Return a sentence if limb is confounded with time, from `phases` with limb and position."""
     placed = phases.dropna(subset=["limb", "position"])
     first = set(placed[placed["position"] == 1]["limb"])
     if len(first) != 1 or placed["limb"].nunique() < 2:

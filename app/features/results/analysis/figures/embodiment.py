@@ -1,4 +1,4 @@
-"""How much the body felt like one's own, at each latency and with each limb."""
+"""Figures of the embodiment scores, by latency and limb."""
 
 from collections.abc import Iterator, Mapping
 
@@ -29,7 +29,7 @@ COMPONENTS: Mapping[str, tuple[str, str]] = {
 
 
 def embodiment_drawings(scores: pd.DataFrame) -> Iterator[Drawing]:
-    """One drawing a component, from valid rows of the table of scores."""
+    """Yield one drawing per component of embodiment, from valid rows of the table of scores."""
     for score, (title, axis) in COMPONENTS.items():
         rows = scores[scores["score"] == score].dropna(subset=["limb", "value"])
         yield _component(score, title, axis, rows).of_group("embodiment")

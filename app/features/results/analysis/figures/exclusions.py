@@ -1,4 +1,4 @@
-"""What does not count, and why: nothing is left out in silence."""
+"""The figure of what counts in the analysis, what is left out, and why."""
 
 import pandas as pd
 import plotly.graph_objects as go
@@ -22,7 +22,7 @@ _ROW_PX = 34
 def exclusions_drawing(
     sessions: pd.DataFrame, phases: pd.DataFrame, scores: pd.DataFrame
 ) -> Drawing:
-    """From all rows, valid or not, of the three tables."""
+    """Draw the counts from all rows, valid or not, of the three tables."""
     n = participants(sessions)
     if sessions.empty:
         empty = "No session has joined the study yet."
@@ -34,7 +34,7 @@ def exclusions_drawing(
 
 
 def _figure(rows: pd.DataFrame) -> go.Figure:
-    """A panel each for sessions, phases and scores: their numbers are of different size."""
+    """Draw one panel each for sessions, phases and scores, because their numbers differ in size."""
     kinds = list(dict.fromkeys(rows["what"]))
     figure = new_figure(
         rows=len(kinds), titles=tuple(kind.capitalize() for kind in kinds), vertical_spacing=0.16
@@ -58,7 +58,7 @@ def _figure(rows: pd.DataFrame) -> go.Figure:
             )
             figure.add_trace(bar, row=row, col=1)
         figure.update_yaxes(autorange="reversed", row=row, col=1)
-        # Room for the number behind the longest bar.
+        # Leave room for the number to the right of the longest bar.
         longest = max(float(own["count"].max()), 1.0)
         figure.update_xaxes(range=[0.0, 1.15 * longest], row=row, col=1)
     figure.update_xaxes(title_text="count (sessions, phases, scores)", row=len(kinds), col=1)

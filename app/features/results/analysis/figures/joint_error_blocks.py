@@ -1,4 +1,4 @@
-"""How far the body was from the participant's pose as a session went on."""
+"""The figure of the mean joint error over the blocks of a session."""
 
 import pandas as pd
 import plotly.graph_objects as go
@@ -25,7 +25,7 @@ _NAMES = ("limb", "latency_ms", "block", "mean_deg", "ci95_low_deg", "ci95_high_
 
 
 def joint_error_blocks_drawing(errors: pd.DataFrame) -> Drawing:
-    """Mean angle by block, a line a latency and a panel a limb, from valid rows of the table."""
+    """Draw the mean angle by block, one line per latency and one panel per limb, from valid rows."""
     rows = task_angles(errors).dropna(subset=["block", "limb", "latency_ms"])
     n = participants(rows)
     if n < FEWEST_PARTICIPANTS:
@@ -38,7 +38,7 @@ def joint_error_blocks_drawing(errors: pd.DataFrame) -> Drawing:
 
 
 def _means(values: pd.DataFrame) -> pd.DataFrame:
-    """Mean and interval over participants of every limb, latency and block that occurs."""
+    """Return mean and interval over participants for every limb, latency and block that occurs."""
     found = []
     for (limb, latency), own in values.groupby(["limb", "latency_ms"]):
         for block, cell in cells(own, "block").items():
@@ -53,7 +53,7 @@ def _figure(data: pd.DataFrame) -> go.Figure:
     for column, limb in enumerate(limbs, start=1):
         for place, latency in enumerate(latencies):
             own = data[(data["limb"] == limb) & (data["latency_ms"] == latency)]
-            # A little apart, so that no interval hides another.
+            # Shift the lines slightly, so that no interval hides another.
             shift = _APART * (place - 0.5 * (len(latencies) - 1))
             trace = _trace(own, latency, place, shift)
             figure.add_trace(trace.update(showlegend=column == 1), row=1, col=column)

@@ -1,4 +1,4 @@
-"""How far the body was from the participant's pose as a phase went on."""
+"""The figure of the mean joint error over the active time of a phase."""
 
 import pandas as pd
 import plotly.graph_objects as go
@@ -37,7 +37,10 @@ _NAMES = (*_KEYS, "mean_deg", "ci95_low_deg", "ci95_high_deg", "n")
 
 
 def joint_error_course_drawing(courses: pd.DataFrame) -> Drawing:
-    """Mean angle by active time, a line a latency and a panel a limb, from rows that count."""
+    """Draw the mean angle by active time, one line per latency and one panel per limb.
+
+    `courses` are valid rows of the table of joint errors over time.
+    """
     chosen = courses["reference"].eq("present") & courses["phase_kind"].isin(COUNTED_KINDS)
     rows = courses[chosen].dropna(subset=[*_KEYS, "mean_deg"])
     n = participants(rows)
@@ -56,7 +59,7 @@ def _steps_note(data: pd.DataFrame) -> str:
 
 
 def _means(values: pd.DataFrame) -> pd.DataFrame:
-    """Mean and interval over participants of every limb, latency and step that occurs."""
+    """Return mean and interval over participants for every limb, latency and step that occurs."""
     found = []
     for place, own in values.groupby(_KEYS[:2]):
         ends_s = own.groupby("begin_active_s")["end_active_s"].max()
@@ -73,7 +76,7 @@ def _figure(data: pd.DataFrame) -> go.Figure:
         owns = [
             data[(data["limb"] == limb) & (data["latency_ms"] == latency)] for latency in latencies
         ]
-        # All bands first, so that none lies over a line.
+        # Add all bands first, so that none covers a line.
         for place, (latency, own) in enumerate(zip(latencies, owns, strict=True)):
             figure.add_trace(_band(own, latency, place), row=1, col=column)
         for place, (latency, own) in enumerate(zip(latencies, owns, strict=True)):
@@ -88,7 +91,10 @@ def _figure(data: pd.DataFrame) -> go.Figure:
 
 
 def _band(own: pd.DataFrame, latency: float, place: int) -> go.Scatter:
-    """The intervals, from the begin of the first step to the end of the last; gaps stay open."""
+    """Return the band of the intervals, from the start of the first step to the end of the last.
+
+    Where steps are missing, the band has a gap.
+    """
     known = own.dropna(subset=["ci95_low_deg", "ci95_high_deg"])
     x: list[float | None] = []
     y: list[float | None] = []

@@ -1,4 +1,4 @@
-"""How far the body was from the participant's pose, at each latency."""
+"""Figures of the mean joint error at each latency, by body part and by joint."""
 
 import pandas as pd
 import plotly.graph_objects as go
@@ -58,7 +58,7 @@ _COLOURS = {"head": BLUE, "spine": GREEN, "arm": VERMILLION, "leg": ORANGE}
 
 
 def joint_error_drawing(errors: pd.DataFrame) -> Drawing:
-    """Mean angle by latency and part of the body, from valid rows of the table of joint errors."""
+    """Draw the mean angle by latency and body part, from valid rows of the table of joint errors."""
     key, title = "joint_error_parts", "Joint error by added latency and body part"
     rows = task_angles(errors)
     n = participants(rows)
@@ -70,7 +70,7 @@ def joint_error_drawing(errors: pd.DataFrame) -> Drawing:
     by_part = _by_part(rows)
     for place, part in enumerate(BODY_PARTS):
         if part in by_part:
-            # A little apart, so that no interval hides another.
+            # Shift the lines slightly, so that no interval hides another.
             figure.add_trace(_trace(by_part[part], part, place, step * (place - 2.5)))
     latency_axis(figure, latencies)
     figure.update_yaxes(title_text="mean joint error (deg)", rangemode="tozero")
@@ -79,7 +79,7 @@ def joint_error_drawing(errors: pd.DataFrame) -> Drawing:
 
 
 def joint_error_map_drawing(errors: pd.DataFrame) -> Drawing:
-    """Mean angle of every joint at every latency, from the same rows."""
+    """Draw a heat map of the mean angle of every joint at every latency, from valid rows."""
     key, title = "joint_error_joints", "Joint error by added latency and joint"
     rows = task_angles(errors)
     n = participants(rows)
@@ -100,7 +100,7 @@ def joint_error_map_drawing(errors: pd.DataFrame) -> Drawing:
 
 
 def _heat(table: pd.DataFrame, shares: pd.DataFrame) -> go.Heatmap:
-    """Latencies downwards, joints to the right; the number stands in each cell."""
+    """Return a heat map with latencies down, joints across and the value in each cell."""
     numbers = table.T.to_numpy()
     return go.Heatmap(
         x=[str(joint) for joint in table.index],
@@ -118,7 +118,7 @@ def _heat(table: pd.DataFrame, shares: pd.DataFrame) -> go.Heatmap:
 
 
 def joint_rows(rows: pd.DataFrame) -> pd.DataFrame:
-    """Mean over participants by joint and latency, with how many they are of."""
+    """Return the mean over participants by joint and latency, with the number of participants."""
     keys = ["joint", "latency_ms"]
     each = rows.groupby([*keys, "participant_code"])[["mean_deg", "clipped_share"]].mean()
     found = each.groupby(level=keys).agg(
@@ -130,7 +130,7 @@ def joint_rows(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def _part_rows(by_part: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """Mean and interval over participants by part of the body and latency."""
+    """Return mean and interval over participants by body part and latency."""
     found = []
     for part, own in by_part.items():
         for latency, cell in cells(own).items():
@@ -142,12 +142,15 @@ def _part_rows(by_part: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def what_of(rows: pd.DataFrame) -> str:
-    """What joint error is, for the avatars of these rows."""
+    """Return the definition of joint error that applies to the avatars of these rows."""
     return f"{WHAT} {HINGES}" if rows["clipped_share"].notna().any() else WHAT
 
 
 def _clipped(rows: pd.DataFrame) -> pd.DataFrame:
-    """Share of clipped samples by joint and latency, a mean over participants; NaN for none."""
+    """Return the share of clipped samples by joint and latency, NaN where it is unknown.
+
+    It is a mean over participants.
+    """
     each = rows.groupby(["joint", "latency_ms", "participant_code"])["clipped_share"].mean()
     return each.groupby(level=["joint", "latency_ms"]).mean().unstack("latency_ms")
 
@@ -157,7 +160,10 @@ def _clipped_words(share: float) -> str:
 
 
 def _clipped_note(shares: pd.DataFrame) -> str:
-    """Which joint was asked for too much most often; nothing for bodies without limits."""
+    """Return a sentence on the mean share of clipped samples and the joint with the largest.
+
+    It is empty for bodies without limits.
+    """
     by_joint = shares.mean(axis=1).dropna()
     if by_joint.empty:
         return ""
@@ -170,19 +176,19 @@ def _clipped_note(shares: pd.DataFrame) -> str:
 
 
 def task_angles(errors: pd.DataFrame) -> pd.DataFrame:
-    """Whole angles against the present pose, of the tasks."""
+    """Return the rows of task phases with the whole angle, relative to the present pose."""
     chosen = errors["axis"].eq("angle") & errors["reference"].eq("present")
     return errors[chosen & errors["phase_kind"].isin(COUNTED_KINDS)].dropna(subset=["mean_deg"])
 
 
 def _by_part(rows: pd.DataFrame) -> dict[str, pd.DataFrame]:
-    """The means of every part of the body that has joints in these rows, in the body's order."""
+    """Return the means of every body part that has joints in these rows, as BODY_PARTS orders them."""
     groups = dict(iter(rows.groupby(rows["joint"].map(PART_OF_JOINT))))
     return {part: _means(groups[part]) for part in BODY_PARTS if part in groups}
 
 
 def _means(rows: pd.DataFrame) -> pd.DataFrame:
-    """One value per participant and latency: the mean over joints and phases."""
+    """Return one value per participant and latency: the mean over joints and phases."""
     means = rows.groupby(["participant_code", "latency_ms"])["mean_deg"].mean()
     return means.rename("value").reset_index()
 

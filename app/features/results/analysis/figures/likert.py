@@ -1,7 +1,7 @@
-"""Answers item by item: diverging bars, one for each latency, one panel a limb.
+"""Figures of the answers to each item: diverging bars per latency, one panel per limb.
 
-Bars stand about the middle of the scale: what disagrees goes to the left, what agrees to the right,
-and half of the middle category to either side.
+Bars are centred on the middle of the scale: disagreement extends to the left, agreement to the
+right, and the middle category half to either side.
 """
 
 import textwrap
@@ -28,7 +28,7 @@ WHAT = (
     "placed so that the middle of the scale is at 0 %: disagreement to the left (hatched), "
     "agreement to the right. Redone and superseded forms are left out unless chosen."
 )
-# Brewer's PuOr: told apart by every kind of colour vision, lightest in the middle.
+# Brewer's PuOr, lightest in the middle; it can be read with any kind of colour vision.
 _DISAGREE = ("#b35806", "#e08214", "#fdb863", "#fee0b6")
 _AGREE = ("#d8daeb", "#b2abd2", "#8073ac", "#542788")
 _MIDDLE = "#c9c9c9"
@@ -40,7 +40,7 @@ MOST_CATEGORIES = 9
 
 @dataclass(frozen=True)
 class _Category:
-    """One point of the scale: how far from the middle, and how it looks."""
+    """One answer category: its value, label and appearance, and its side of the middle (-1, 0, 1)."""
 
     value: int
     label: str
@@ -52,14 +52,14 @@ class _Category:
 def likert_drawings(
     answers: pd.DataFrame, instruments: Mapping[tuple[str, int], Instrument]
 ) -> Iterator[Drawing]:
-    """One drawing for each questionnaire that is asked after phases, from rows that count."""
+    """Yield one drawing per questionnaire that is answered after phases, from valid rows."""
     asked = answers[answers["item_type"].eq("likert")].dropna(subset=["limb", "value_number"])
     if asked.empty:
         yield too_few(
             "likert", "Answers item by item", WHAT, 0, "answered a questionnaire after a phase"
         ).of_group("answers", wide=True)
     for key, own in asked.groupby("instrument"):
-        # Wordings may differ between versions; what the newest says is shown.
+        # The wording may differ between versions; that of the newest is shown.
         newest = instruments[str(key), int(own["instrument_version"].max())]
         for first, drawing in enumerate(_of_instrument(own, newest)):
             yield drawing.of_group("answers", wide=True) if first == 0 else drawing
@@ -102,14 +102,14 @@ def _categories(low: int, high: int, labels: Sequence[str]) -> list[_Category]:
 
 
 def _spread(colours: Sequence[str], place: int, count: int) -> str:
-    """The colour of one of `count` categories; the ends of the scale have the ends."""
+    """Return the colour of category `place` of `count`, spread over the whole range of colours."""
     if count == 1:
         return colours[1]
     return colours[round(place * (len(colours) - 1) / (count - 1))]
 
 
 def _shares(own: pd.DataFrame) -> pd.DataFrame:
-    """Counts and percentages: item, limb, latency_ms, answer, count, percent, n."""
+    """Return counts and percentages of answers: item, limb, latency_ms, answer, count, percent, n."""
     keys = ["item", "limb", "latency_ms"]
     counts = own.groupby([*keys, "value_number"]).size().rename("count").reset_index()
     counts["n"] = counts.groupby(keys)["count"].transform("sum")
@@ -146,7 +146,7 @@ def _figure(
 
 
 def _places(items: Sequence[Item], latencies: Sequence[float]) -> dict[tuple[str, float], float]:
-    """Where each bar stands, from the top; above the bars of an item is room for its words."""
+    """Return the y position of each bar, from the top, with space for text above each item's bars."""
     room = _TEXT_PX / _BAR_PX
     return {
         (item.key, latency): at * (len(latencies) + room) + room + place
@@ -201,7 +201,7 @@ def _begins(
     percent: Mapping[tuple[str, float, int], tuple[float, float, float]],
     categories: Sequence[_Category],
 ) -> dict[tuple[str, float], float]:
-    """Where each bar begins, so that the middle of the scale is at 0."""
+    """Return the left end of each stacked bar, so that the middle of the scale is at 0."""
     return {
         place: -sum(
             percent.get((*place, one.value), (0.0, 0.0, 0.0))[0] / (1.0 if one.side < 0 else 2.0)

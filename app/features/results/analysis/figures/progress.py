@@ -1,4 +1,4 @@
-"""How far the study has come, order by order."""
+"""Figures of the study's progress: sessions by order, and completed sessions over time."""
 
 from collections.abc import Sequence
 
@@ -30,9 +30,11 @@ _STATES = {
 def progress_drawing(
     sessions: pd.DataFrame, orders: Sequence[str], *, blinded: bool = False
 ) -> Drawing:
-    """From all rows of the table of sessions; `orders` are those of the design ("0 125 350").
+    """Draw the number of sessions by order and status, from all rows of the table of sessions.
 
-    `blinded` puts all orders together: the order of an open session is not the reader's to know.
+    `orders` are those of the design ("0 125 350"). `blinded` merges all orders, because the order
+    of
+    an open session must not be revealed.
     """
     n = participants(sessions)
     if sessions.empty:
@@ -48,7 +50,7 @@ def progress_drawing(
         figure.add_trace(
             go.Bar(
                 x=[name.replace(" ", " → ") if not blinded else name for name in names],
-                # Bars of nothing would still draw their edges.
+                # Bars of height 0 would still draw their edges.
                 y=[int(counts.get(name, 0)) or None for name in names],
                 name=state,
                 marker=hatched(colour, pattern),
@@ -59,7 +61,7 @@ def progress_drawing(
     figure.update_xaxes(title_text="order of added latencies (ms)", type="category")
     figure.update_yaxes(title_text="sessions (count)", rangemode="tozero")
     if own.value_counts().max() <= FEW:
-        # Left alone, plotly would label halves of sessions.
+        # By default, plotly would label fractions of sessions.
         figure.update_yaxes(dtick=1)
     caption = f"n = {n} participant{'s' if n != 1 else ''}. Balance counts completed sessions only."
     if (status == NOT_VALID).any():
@@ -73,13 +75,13 @@ def progress_drawing(
 
 
 def _statuses(sessions: pd.DataFrame) -> "pd.Series[str]":
-    """Where each session stands; those that were completed and do not count stand apart."""
+    """Return the status of each session; completed but invalid sessions have one of their own."""
     off = (sessions["status"] == "completed") & ~sessions["valid"]
     return sessions["status"].mask(off, NOT_VALID)
 
 
 def progress_time_drawing(sessions: pd.DataFrame, planned: int) -> Drawing:
-    """Completed sessions over the days, and how many the design asks for (`planned`)."""
+    """Draw completed sessions by day, and the number that the design asks for (`planned`)."""
     done = sessions[_statuses(sessions) == "completed"].dropna(subset=["ended_at_utc"])
     n = participants(done)
     if done.empty:

@@ -1,4 +1,4 @@
-"""How good the recording was: frame rates, gaps, and what alarmed."""
+"""Figures of recording quality: frame rates, gaps and alarms."""
 
 import pandas as pd
 import plotly.graph_objects as go
@@ -39,7 +39,7 @@ _ROW_PX = 34
 
 
 def quality_drawing(quality: pd.DataFrame) -> Drawing:
-    """From rows of the table of quality that count."""
+    """Draw frame rates and gaps per stream, from valid rows of the table of quality."""
     n = participants(quality)
     if n == 0:
         return too_few(KEY, TITLE, WHAT, 0, "a phase with movement").of_group("quality")
@@ -84,7 +84,7 @@ def _box(own: pd.DataFrame, name: str, stream: str, look: tuple[str, str]) -> go
 
 
 def alarms_drawing(alarms: pd.DataFrame, sessions: int) -> Drawing:
-    """From rows of the table of alarms; `sessions` is how many are looked at."""
+    """Draw how often each alarm was raised, from the table of alarms of `sessions` sessions."""
     raised = alarms[alarms["state"] == "raised"]
     n = participants(raised)
     what = f"{ALARMS_WHAT} {sessions} sessions."

@@ -1,7 +1,7 @@
 """The registry of the dashboard's figures, in the order in which they are drawn.
 
-Whoever adds a figure writes its builder in a file of this folder, and its entry in `FIGURES`: the
-dashboard draws it in its group, and its rows can be downloaded.
+To add a figure, write its builder in a file of this folder and add its entry to `FIGURES`: the
+dashboard then draws it in its group, and its rows can be downloaded.
 """
 
 from collections.abc import Callable, Iterator
@@ -33,7 +33,7 @@ from app.protocol import StudyProtocol
 
 
 class Rows:
-    """What a filter left, and of its tables the rows that count, taken out when first wanted."""
+    """The data that pass a filter, and the valid rows of their tables, selected on first use."""
 
     def __init__(self, left: Material, *, invalid: bool) -> None:
         self.left = left
@@ -41,31 +41,31 @@ class Rows:
 
     @cached_property
     def phases(self) -> pd.DataFrame:
-        """Phases that count."""
+        """Return the valid rows of the table of phases."""
         return self.counting(self.left.phases)
 
     @cached_property
     def errors(self) -> pd.DataFrame:
-        """Joint errors that count."""
+        """Return the valid rows of the table of joint errors."""
         return self.counting(self.left.errors)
 
     @cached_property
     def contacts(self) -> pd.DataFrame:
-        """Contacts that count."""
+        """Return the valid rows of the table of contacts."""
         return self.counting(self.left.contacts)
 
     def counting(self, table: pd.DataFrame) -> pd.DataFrame:
-        """Of a table the rows that count."""
+        """Return the valid rows of a table."""
         return self.left.counting(table, invalid=self.invalid)
 
 
 @dataclass(frozen=True)
 class Figure:
-    """One figure of the dashboard, or a family of figures that one builder gives.
+    """One figure of the dashboard, or a family of figures from one builder.
 
     Attributes:
-        group: of the page; the figures of a group are drawn together.
-        draw: makes the drawings, each with its key, title and caption, of the rows that count.
+        group: The group on the page; the figures of a group are drawn together.
+        draw: Makes the drawings, each with its key, title and caption, from the valid rows.
     """
 
     group: Group
@@ -73,7 +73,10 @@ class Figure:
 
     @classmethod
     def one(cls, group: Group, draw: Callable[[Rows], Drawing], *, wide: bool = False) -> "Figure":
-        """The entry of a builder that gives one drawing; `wide`: it needs the page's width."""
+        """Create the entry of a builder that returns one drawing.
+
+        `wide`: the drawing needs the full width of the page.
+        """
 
         def drawings(rows: Rows) -> Iterator[Drawing]:
             drawing = draw(rows)
@@ -83,7 +86,7 @@ class Figure:
 
 
 def orders_of(protocol: StudyProtocol) -> list[str]:
-    """Every order of latencies that the design has, as "0 125 350"."""
+    """Return every order of latencies in the design, as "0 125 350"."""
     latencies = {condition.key: condition.latency_ms for condition in protocol.conditions}
     slots = planned_slots(protocol)
     return sorted({" ".join(f"{latencies[name]:g}" for name in order) for order, _ in slots})

@@ -1,7 +1,7 @@
-"""One look for all figures: colours that every kind of vision tells apart, on any background.
+"""The common look of all figures, legible with any colour vision and on any background.
 
-Colours are Okabe and Ito's (2008) without black and yellow, which one background or the other would
-swallow. Whatever a colour tells, a shape, a dash or a pattern tells too.
+Colours are Okabe and Ito's (2008) without black and yellow, which would vanish on a dark or on a
+light background. Whatever a colour shows is also shown by a shape, a dash or a pattern.
 """
 
 import copy
@@ -37,8 +37,8 @@ TEMPLATE = go.layout.Template(
 
 
 def new_figure(*, rows: int = 1, titles: tuple[str, ...] = ("",), **options: object) -> go.Figure:
-    """An empty figure in our look with a panel for each title, `rows` rows of them."""
-    # A copy takes a seventh of the time, and a page of figures has few kinds of panels.
+    """Return an empty figure in the common look with a panel per title, in `rows` rows."""
+    # Copying takes a seventh of the time, and a page has few different panel layouts.
     return copy.deepcopy(_empty_figure(rows, titles, **options))
 
 
@@ -50,7 +50,7 @@ def _empty_figure(rows: int, titles: tuple[str, ...], **options: object) -> go.F
         subplot_titles=titles if any(titles) else None,
         **options,
     )
-    # The legend stands below the plot: above it are the titles of the panels.
+    # The legend is below the plot because the panel titles are above it.
     figure.update_layout(
         template=TEMPLATE,
         legend={"orientation": "h", "x": 0.0, "y": -0.3, "yanchor": "top"},
@@ -60,7 +60,7 @@ def _empty_figure(rows: int, titles: tuple[str, ...], **options: object) -> go.F
 
 
 def hatched(colour: str, pattern: str) -> dict[str, object]:
-    """How a bar looks: its colour, a pattern that tells it apart without, and an edge."""
+    """Return the look of a bar: colour and edge, and a pattern that replaces the colour in grey."""
     return {
         "color": colour,
         "pattern": {"shape": pattern},
@@ -69,18 +69,18 @@ def hatched(colour: str, pattern: str) -> dict[str, object]:
 
 
 def quiet(lines: int) -> str:
-    """The grey of so many lines over each other: the more, the fainter each."""
+    """Return a grey for this many overlapping lines: the more lines, the fainter each."""
     return f"rgba(128, 128, 128, {max(0.06, min(0.55, 12.0 / max(lines, 1))):.2f})"
 
 
 def see_through(colour: str) -> str:
-    """A colour "#rrggbb" for areas that lie over each other."""
+    """Return a transparent version of a colour "#rrggbb" for areas that overlap."""
     red, green, blue = (int(colour[at : at + 2], 16) for at in (1, 3, 5))
     return f"rgba({red}, {green}, {blue}, 0.18)"
 
 
 def latency_line(latency_ms: float, place: int, *, size_px: int) -> dict[str, object]:
-    """How the line of the latency at this place is drawn: known by colour, dash and shape."""
+    """Return the look of the line of the latency at index `place`: its colour, dash and symbol."""
     colour = COLOURS[place % len(COLOURS)]
     return {
         "mode": "lines+markers",
@@ -92,7 +92,7 @@ def latency_line(latency_ms: float, place: int, *, size_px: int) -> dict[str, ob
 
 
 def latency_axis(figure: go.Figure, latencies_ms: list[float]) -> None:
-    """Label the x axes with the study's latencies, a little room at both ends."""
+    """Label the x axes with the study's latencies, with a margin at both ends."""
     room = 0.08 * (latencies_ms[-1] - latencies_ms[0]) or 10.0
     figure.update_xaxes(
         title_text="added latency (ms)",

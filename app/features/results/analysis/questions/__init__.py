@@ -1,4 +1,4 @@
-"""The study's questions and their answers: tests of what was declared, in sentences and tables."""
+"""Statistical tests of a study's measures, reported in sentences and tables."""
 
 from app.features.results.analysis.questions.answers import answers_of
 

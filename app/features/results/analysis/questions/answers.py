@@ -1,7 +1,7 @@
-"""All answers to a study's questions, from the sessions of one kind.
+"""Compute all test results of a study from its sessions of one kind.
 
-Alpha and the primary test belong into the study beforehand. Where a study says nothing of them,
-alpha is the usual 5 %, and the answers say that nobody declared it.
+Alpha and the primary test belong in the study file, before data are collected. If a study does
+not declare alpha, the usual 5 % is used, and the results say that it was not declared.
 """
 
 from collections.abc import Iterator, Sequence
@@ -38,7 +38,7 @@ TEST = "These are sessions for trying things out; their results mean nothing."
 
 
 def answers_of(material: Material) -> StatisticsResults:
-    """The answers to a study's questions; no measure with fewer than two participants."""
+    """Return the test results of a study; measures with fewer than two participants are left out."""
     sessions = material.sessions
     declared = material.protocol.preregistration
     alpha = USUAL_ALPHA if declared is None else declared.alpha

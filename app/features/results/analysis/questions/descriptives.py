@@ -1,4 +1,4 @@
-"""What each condition gave: means, spreads, and the share of a score's maximum."""
+"""Descriptive statistics by condition: means, spreads and the share of a score's maximum."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from app.science.statistics import FloatArray, share_of_maximum
 
 
 def descriptive(measure: Measure) -> Said:
-    """Mean, spread and median of every cell."""
+    """Return the mean, standard deviation and median of every cell of the design."""
     rows = []
     for limb in measure.limbs:
         for latency, column in measure.table(limb).items():

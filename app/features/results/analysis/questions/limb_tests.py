@@ -1,7 +1,7 @@
 """The rank tests of one measure and one limb, exact where possible.
 
-Whether latencies differ (Friedman), which differ from the smallest (Wilcoxon, Holm), and whether
-the measure goes one way along latency (Page, one-sided where that was predicted).
+They test whether latencies differ (Friedman), which differ from the smallest (Wilcoxon, Holm), and
+whether the measure rises or falls with latency (Page, one-sided where a direction was predicted).
 """
 
 import math
@@ -48,7 +48,7 @@ REPORTED = frozenset({"friedman", "page_trend", "against_reference", "rm_anova"}
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """One measure at one limb.
+    """The data of one measure for one limb, with the alpha to test at.
 
     `table`: (n, L) participants x latencies, NaN where there is no value.
     """
@@ -60,17 +60,17 @@ class Asked:
 
     @property
     def complete(self) -> FloatArray:
-        """The participants with every latency."""
+        """Return the rows of the participants with a value at every latency."""
         return complete_rows(self.table)[0]
 
     @property
     def name(self) -> str:
-        """As a paper names it."""
+        """Return the name of the measure and task as a paper would print it."""
         return f"{self.measure.title}, {self.limb} task"
 
 
 def apa_of(one: Comparison) -> str:
-    """A comparison in a line for a paper."""
+    """Return a comparison as one line for a paper."""
     return (
         f"{one.a} vs. {one.b} ms: W = {number(one.test.w, 1)}, n = {one.test.n}, "
         f"{p_words(one.test.p)}, Holm-adjusted {p_words(one.p_holm)}, rank-biserial r = "
@@ -79,13 +79,13 @@ def apa_of(one: Comparison) -> str:
 
 
 def listwise(asked: Asked) -> str:
-    """How many are left out of tests that need every latency; nothing where nobody is."""
+    """Return a sentence on how many participants lack a latency, or nothing if none does."""
     left = len(asked.table) - len(asked.complete)
     return f"{left} participants without every latency are left out." if left else ""
 
 
 def signed_floor(found: AgainstReference) -> str:
-    """Whether n is too small for any result: the smallest p that the test can give."""
+    """Return a warning if n is too small for the signed-rank test to reach significance."""
     sides = 1.0 if found.alternative != "two-sided" else 2.0
     family = len(found.comparisons)
     most = max((one.test.n - one.test.n_zero for one in found.comparisons), default=0)
@@ -100,7 +100,10 @@ def signed_floor(found: AgainstReference) -> str:
 
 
 def friedman_floor(found: Friedman, alpha: float) -> str:
-    """The same of Friedman's test, whose smallest exact p is k!^(1 - n)."""
+    """Return a warning if n is too small for Friedman's test to reach significance.
+
+    Its smallest exact p is k!^(1 - n).
+    """
     floor = float(math.factorial(found.df + 1)) ** (1 - found.n)
     if floor <= alpha:
         return ""
@@ -111,7 +114,10 @@ def friedman_floor(found: Friedman, alpha: float) -> str:
 
 
 def trend(asked: Asked) -> Said:
-    """One-sided where a direction was predicted, else doubled; raises StatisticsError."""
+    """Report Page's trend test, one-sided where a direction was predicted, else doubled.
+
+    Raises StatisticsError if the test cannot be computed.
+    """
     predicted, levels = asked.measure.predicted, asked.measure.levels
     if predicted is None:
         return _open(asked, page_trend(asked.complete))
@@ -187,9 +193,9 @@ def _predicted(asked: Asked, found: DirectionalHypothesis) -> Said:
 
 
 def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[Said]:
-    """Friedman, planned comparisons, the trend and every further test of the registry.
+    """Yield Friedman's test, planned comparisons, the trend and every further registered test.
 
-    What cannot be tested says why.
+    A test that cannot be computed is reported with the reason.
     """
     asked = Asked(measure, limb, measure.table(limb).to_numpy(dtype=np.float64), alpha)
     reports: list[tuple[Callable[[Asked], Said], str, str]] = [
@@ -209,12 +215,12 @@ def limb_results(measure: Measure, limb: str, alpha: float) -> Iterator[Said]:
 
 
 def further_tests() -> list[StatisticalTest]:
-    """The tests of the registry that have no report of their own, here or in `models`."""
+    """Return the registered tests that have no report of their own, here or in `models`."""
     return [one for one in TESTS if one.key not in REPORTED]
 
 
 def _further(test: StatisticalTest, asked: Asked) -> Said:
-    """The report of a test that the registry alone knows; it was declared by nobody."""
+    """Report a test that has no report of its own; it is exploratory."""
     sample = Sample(asked.complete, asked.measure.levels, test.directions[0], alpha=asked.alpha)
     found = test.load()(sample)
     return Said(

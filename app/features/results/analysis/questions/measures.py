@@ -1,8 +1,8 @@
-"""What is tested: one value for each participant, limb and latency, and who is not in it.
+"""The measures that are tested: one value per participant, limb and latency.
 
-Only completed sessions that are valid are tested, and of those only rows that count. A value is the
-mean of a participant's rows in one cell of the design. Whoever lacks a cell is left out of the
-tests that need all of them, by name and with the reason.
+Only valid rows of valid completed sessions are tested. A value is the mean of a participant's rows
+in one cell of the design. Participants without a cell are left out of the tests that need all of
+them, and are listed with the reason.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -26,11 +26,12 @@ _SHOWN = 12
 
 @dataclass(frozen=True, eq=False)
 class Measure:
-    """One measure of a study.
+    """One measure of a study, such as a score or the contact time.
 
-    `values` has the columns participant_code, limb, latency_ms, value; `places` the same with the
-    block in which it was done. `maximum`: of a score whose range is as large to both sides of 0.
-    `continuous`: seconds, degrees and counts, for which means and their models are meant.
+    `values` has the columns participant_code, limb, latency_ms, value; `places` has the block, too.
+    `maximum`: the maximum of a score whose range is symmetric about 0. `continuous`: seconds,
+    degrees
+    and counts, for which means and models of means are meaningful.
     """
 
     key: str
@@ -45,27 +46,27 @@ class Measure:
 
     @property
     def latencies_ms(self) -> tuple[float, ...]:
-        """The levels, in order."""
+        """Return the latencies in ascending order."""
         return tuple(sorted(float(one) for one in self.values["latency_ms"].unique()))
 
     @property
     def levels(self) -> tuple[str, ...]:
-        """The same as words."""
+        """Return the latencies as text, in ascending order."""
         return tuple(f"{one:g}" for one in self.latencies_ms)
 
     @property
     def limbs(self) -> tuple[str, ...]:
-        """The limbs that there are values of."""
+        """Return the limbs that have values."""
         return tuple(limb for limb in LIMBS if (self.values["limb"] == limb).any())
 
     def table(self, limb: str) -> pd.DataFrame:
-        """Participants x latencies, NaN where there is no value."""
+        """Return the values as participants x latencies, NaN where there is no value."""
         own = self.values[self.values["limb"] == limb]
         wide = own.pivot(index="participant_code", columns="latency_ms", values="value")
         return wide.reindex(columns=list(self.latencies_ms)).sort_index()
 
     def cells(self) -> FloatArray:
-        """(n, latencies, limbs) of participants with every cell."""
+        """Return the values (n, latencies, limbs) of the participants with a value in every cell."""
         tables = [self.table(limb) for limb in self.limbs]
         everybody = sorted(set().union(*(table.index for table in tables)))
         stacked = np.stack(
@@ -75,7 +76,7 @@ class Measure:
         return kept
 
     def missing(self) -> list[str]:
-        """Who lacks which cells, in words."""
+        """Return sentences that say which participants lack which cells."""
         told: dict[str, list[str]] = {}
         for limb in self.limbs:
             for code, row in self.table(limb).iterrows():
@@ -87,7 +88,7 @@ class Measure:
 
 
 def measures_of(material: Material) -> Iterator[Measure]:
-    """The study's measures: scores, contact time, completions, joint error; those with values."""
+    """Yield the study's measures with values: scores, contact time, completions and joint error."""
     tested = completed(material)
     yield from _scores(tested)
     tasks = tested.counting(tested.phases)
@@ -115,14 +116,14 @@ def measures_of(material: Material) -> Iterator[Measure]:
 
 
 def completed(material: Material) -> Material:
-    """Only what belongs to completed sessions that are valid: open ones may still change."""
+    """Return the data of valid completed sessions; open sessions may still change."""
     sessions = material.sessions
     tested = (sessions["status"] == "completed") & sessions["valid"]
     return material.of_sessions(set(sessions[tested]["session_id"]))
 
 
 def left_out(material: Material) -> list[str]:
-    """Sessions that are in no test, each with the reason."""
+    """Return the sessions that are in no test, each with the reason."""
     sessions = material.sessions
     out = sessions[(sessions["status"] != "completed") | ~sessions["valid"]]
     known = {"planned": "not started", "active": "still open"}
@@ -138,7 +139,7 @@ def left_out(material: Material) -> list[str]:
 
 
 def shortened(lines: Sequence[str]) -> list[str]:
-    """The first of many lines, and how many more there are."""
+    """Return the first lines and, if there are more, a line that says how many."""
     more = len(lines) - _SHOWN
     return [*lines[:_SHOWN], *([f"and {more} more"] if more > 0 else [])]
 
@@ -171,7 +172,7 @@ def _title(instrument: Instrument) -> str:
 
 
 def _is_rescaled(instrument: Instrument, score: str) -> bool:
-    """Whether a score is made of one other score alone: every rank test of both is the same."""
+    """Return whether a score is computed from one other score alone; rank tests of both agree."""
     names = names_in(instrument.formulas[score])
     return len(names) == 1 and names <= instrument.formulas.keys()
 

@@ -1,4 +1,4 @@
-"""Latency and limb together: means, analysis of variance, a mixed model, carry-over."""
+"""Tests of latency and limb together: analysis of variance, mixed model and carry-over."""
 
 from collections.abc import Iterator, Sequence
 
@@ -44,7 +44,7 @@ _TOO_MANY = (
 
 
 def model_results(measure: Measure, alpha: float) -> Iterator[Said]:
-    """Of measures with a unit: latency x limb by analysis of variance and by a mixed model."""
+    """Yield an analysis of variance and a mixed model of latency x limb."""
     if len(measure.limbs) < _FEWEST_LIMBS:
         return
     for test, key, title in (
@@ -58,7 +58,7 @@ def model_results(measure: Measure, alpha: float) -> Iterator[Said]:
 
 
 def carry_over_result(measure: Measure) -> Iterator[Said]:
-    """Whether what came before made a difference: a diagnostic, no test of a hypothesis."""
+    """Yield a diagnostic of order, period and carry-over effects; it is not a hypothesis test."""
     places, key = measure.places, "carry_over"
     title = "Order, period and carry-over (diagnostic)"
     if places["participant_code"].nunique() > MOST_FOR_MODELS:
@@ -99,7 +99,7 @@ def carry_over_result(measure: Measure) -> Iterator[Said]:
 
 
 def _why(error: Exception) -> str:
-    """Why there is no model; a fit that breaks down has nothing left that chance could explain."""
+    """Return why no model was fitted; a numerical failure means that no residual variance is left."""
     if isinstance(error, StatisticsError):
         return str(error)
     return "Participants, latencies and limbs explain the measure fully; nothing is left to chance."

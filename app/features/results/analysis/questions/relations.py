@@ -1,4 +1,4 @@
-"""What goes with what: looked at, not tested. Every table is labelled exploratory."""
+"""Exploratory relations between measures, and between scores and demographics."""
 
 from collections.abc import Iterator, Sequence
 
@@ -37,14 +37,14 @@ _CATEGORIES = ("choice", "boolean")
 
 
 def group_of(part: str) -> str:
-    """Finger, hand, arm, toes, foot, leg, or trunk and head."""
+    """Return the group of a body part: finger, hand, arm, toes, foot, leg, or trunk and head."""
     if any(finger in part for finger in _FINGERS):
         return "finger"
     return next((group for word, group in _GROUPS.items() if part.endswith(word)), _ORDER[-1])
 
 
 def contact_share_results(material: Material) -> Iterator[Said]:
-    """The share of contact time by finger, hand and arm, at each latency; one result a limb."""
+    """Yield, for each limb, the share of contact time by group of body parts at each latency."""
     tested = completed(material)
     phases, contacts = tested.counting(tested.phases), tested.counting(tested.contacts)
     tasks = phases[phases["phase_kind"].isin(COUNTED_KINDS)]
@@ -102,7 +102,10 @@ def _shares_said(limb: str, rows: Sequence[tuple[str, ...]]) -> Said:
 
 
 def subjective_objective(measures: Sequence[Measure]) -> Iterator[Said]:
-    """Every score against contact time, completions and joint error, at each latency."""
+    """Yield correlations of every score with contact time, completions and joint error.
+
+    They are computed at each latency.
+    """
     scores = [one for one in measures if not one.continuous]
     others = [one for one in measures if one.key in OBJECTIVE]
     known = [
@@ -139,7 +142,7 @@ def subjective_objective(measures: Sequence[Measure]) -> Iterator[Said]:
 def _correlation_rows(
     known: Sequence[tuple[str, str, float, Spearman]],
 ) -> list[tuple[str, ...]]:
-    """Adjusted over all of them together."""
+    """Return a table row per correlation, with p adjusted over all of them together."""
     adjusted = holm([found.p for _, _, _, found in known])
     return [
         (
@@ -169,7 +172,7 @@ def _pair(score: Measure, other: Measure, latency: float) -> Spearman | None:
 
 
 def demographics(material: Material, measures: Sequence[Measure]) -> Iterator[Said]:
-    """Each score, averaged over everything, by what people said of themselves beforehand."""
+    """Yield the relation of each score, averaged over all cells, to answers outside the blocks."""
     tested = completed(material)
     answers = tested.counting(tested.answers)
     about = answers[answers["limb"].isna() & answers["block"].isna()]

@@ -1,4 +1,4 @@
-"""Whether the items of a questionnaire go together, at each latency and limb."""
+"""The internal consistency of questionnaires at each latency and limb."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -13,7 +13,7 @@ from app.science.statistics import ConstantData, StatisticsError, cronbach_alpha
 
 
 def reliability(material: Material) -> Iterator[Said]:
-    """Cronbach's alpha of the scored items of each questionnaire, cell by cell of the design."""
+    """Yield Cronbach's alpha of the scored items of each questionnaire, by cell of the design."""
     tested = completed(material)
     answers = tested.counting(tested.answers)
     asked = answers[answers["item_type"].eq("likert")].dropna(subset=["limb"])

@@ -1,8 +1,8 @@
-"""Numbers and means as papers print them, and results as they travel.
+"""Format numbers, p values and intervals as papers print them, and build the reported results.
 
 p has three decimals and no zero before the point; so have other numbers that cannot exceed 1.
-Nothing is called significant: p is compared with alpha, and the comparison is told. Intervals come
-from a fixed seed, so whoever computes them again gets the same.
+Nothing is called significant: p is compared with alpha, and the comparison is reported. Intervals
+are drawn with a fixed seed, so that computing them again gives the same ones.
 """
 
 import math
@@ -34,7 +34,7 @@ SEED, DRAWS = 20_260_101, 1999
 
 @dataclass(frozen=True)
 class Brief:
-    """A result in the few signs of a table cell; `way` of a trend: where the measure goes."""
+    """A result short enough for a table cell; `way`: the direction of a trend."""
 
     text: str
     way: Direction | None = None
@@ -42,9 +42,9 @@ class Brief:
 
 @dataclass(frozen=True)
 class Said:
-    """A result before it travels; see `ResultView`.
+    """The report of one test; see `ResultView`.
 
-    `brief`: None where it could not be tested.
+    `brief`: None if the test could not be computed.
     """
 
     key: str
@@ -60,7 +60,7 @@ class Said:
     brief: Brief | None = None
 
     def view(self) -> ResultView:
-        """As it travels; doubled warnings are told once."""
+        """Return the report as a `ResultView`, without duplicate warnings."""
         return ResultView(
             key=self.key,
             title=self.title,
@@ -76,19 +76,19 @@ class Said:
 
 
 def p_words(p: float) -> str:
-    """ "p = .012", "p < .001"."""
+    """Return p for running text: "p = .012" or "p < .001"."""
     if math.isnan(p):
         return "p unknown"
     return "p < .001" if p < _SMALLEST_P else f"p = {bounded(p)}"
 
 
 def p_cell(p: float) -> str:
-    """The same for a table: ".012", "< .001"."""
+    """Return p for a table cell: ".012" or "< .001"."""
     return p_words(p).removeprefix("p ").removeprefix("= ")
 
 
 def bounded(value: float, digits: int = _BOUNDED_DIGITS) -> str:
-    """A number within -1 and 1 without the zero before its point; others as they are."""
+    """Return a number as text, without the zero before the point if it is between -1 and 1."""
     if math.isnan(value):
         return NONE
     text = f"{value:.{digits}f}".replace("-", "−")
@@ -96,24 +96,24 @@ def bounded(value: float, digits: int = _BOUNDED_DIGITS) -> str:
 
 
 def number(value: float | None, digits: int = 2) -> str:
-    """A number with so many decimals; a dash for none."""
+    """Return a number with this many decimals, or a dash for a missing value."""
     if value is None or math.isnan(value):
         return NONE
     return f"{value:.{digits}f}".replace("-", "−")
 
 
 def df_words(value: float) -> str:
-    """Degrees of freedom: whole numbers without decimals."""
+    """Return degrees of freedom as text, without decimals for whole numbers."""
     return f"{value:.0f}" if abs(value - round(value)) < 0.05 else f"{value:.1f}"
 
 
 def against(p: float, alpha: float) -> str:
-    """How p compares with alpha, in words that claim nothing more."""
+    """Return a comparison of p with alpha in words that make no further claim."""
     return f"{p_words(p)} {'is at most' if p <= alpha else 'exceeds'} α = {bounded(alpha, 2)}"
 
 
 def measured(test: str) -> str:
-    """What was measured of a test on data without an effect, where that must be told."""
+    """Return a warning if a test's error rate in simulated studies was too high, else nothing."""
     rates = _rates()
     row = None if rates is None else rates.of(test)
     if row is None or row.warning not in ("rejects_too_often", "covers_too_seldom"):
@@ -131,7 +131,7 @@ def _rates() -> ErrorRates | None:
 
 
 def mean_words(values: FloatArray) -> str:
-    """The mean and its interval in brackets; without an interval where there is too little."""
+    """Return the mean with its interval in brackets, or the mean alone if n is too small."""
     found = _found(values)
     if found is None:
         return number(float(values.mean())) if values.size else number(None)
@@ -139,7 +139,7 @@ def mean_words(values: FloatArray) -> str:
 
 
 def interval_words(values: FloatArray) -> str:
-    """The interval of the mean; a dash where there is too little."""
+    """Return the interval of the mean, or a dash if n is too small."""
     found = _found(values)
     return number(None) if found is None else _ends(found)
 

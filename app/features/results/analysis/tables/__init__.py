@@ -1,11 +1,10 @@
-"""The record as tidy tables: SQL in, pandas out, one function each.
+"""Read the record as tidy tables: SQL in, pandas data frames out, one function per table.
 
-Every function takes a study and a kind (people, simulated, test or all) and gives a DataFrame whose
-columns are those of the codebook, in their order. Nothing is left out: redone phases, superseded
-forms, broken-off sessions and those that do not count by their study's rules are there with `valid`
-false. Texts are `object`, whole numbers
-`Int64`, numbers `float64`, booleans `bool` (`boolean` where one is missing), times
-`datetime64[us, UTC]`; missing values are NA.
+Every function takes a study and a kind (people, simulated, test or all) and returns a DataFrame
+whose columns are those of the codebook, in their order. No row is left out: redone phases,
+superseded forms, broken-off sessions and sessions that are not valid by their study's rules are
+included with `valid` false. Texts are `object`, integers `Int64`, numbers `float64`, booleans
+`bool` (`boolean` if one is missing), times `datetime64[us, UTC]`; missing values are NA.
 """
 
 from app.features.results.analysis.schemas import Kind

@@ -1,9 +1,9 @@
-"""The clocks of a session's client runs, brought to UTC from the probes in the record.
+"""Map the clocks of a session's client runs to UTC, from the recorded clock probes.
 
-A run's clock is mapped on the server's monotonic clock (`app.science.clock`). UTC is fixed to that
-clock once per session, by the first probes: where the server's wall clock is set in mid-session, no
-duration changes and only `server_utc_step_ms` tells of it. It is fixed anew only where the server's
-machine was started again between two runs, so that its monotonic clock began again.
+A run's clock is mapped to the server's monotonic clock (`app.science.clock`). UTC is fixed to that
+clock once per session, by the first probes: if the server's wall clock is set in mid-session, no
+duration changes, and only `server_utc_step_ms` shows it. UTC is fixed again only if the server's
+machine was restarted between two runs, because its monotonic clock then began again.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,7 +26,7 @@ _EPOCH_UTC = datetime(1970, 1, 1, tzinfo=UTC)
 
 
 class Reading(NamedTuple):
-    """A probe as it is stored; times without an answer are None."""
+    """A clock probe as stored; the times are None if it was not answered."""
 
     epoch: int
     client_sent_s: float
@@ -38,11 +38,11 @@ class Reading(NamedTuple):
 
 @dataclass(frozen=True)
 class RunClock:
-    """The clock of one client run.
+    """The clock of one client run, mapped to the server's clock and to UTC.
 
     Attributes:
-        mapping: from the client's time divided by `time_scale` to the server's monotonic time less
-            `base_s`, both in s.
+        mapping: From the client's time divided by `time_scale` to the server's monotonic time less
+          `base_s`, both in s.
         anchor_s: UTC at the server's time `base_s`, in s since 1970 and since `base_utc`.
     """
 
@@ -56,10 +56,10 @@ class RunClock:
     def to_utc(
         self, client_s: npt.NDArray[np.float64]
     ) -> tuple[npt.NDArray[np.datetime64], npt.NDArray[np.float64]]:
-        """UTC, to the microsecond, and its uncertainty in ms of client times (k,).
+        """Return UTC, to the microsecond, and its uncertainty in ms for client times (k,).
 
-        The uncertainty is that of the two monotonic clocks; UTC itself is what the server's wall
-        clock said. NaT and NaN where there is no probe.
+        The uncertainty is that of the two monotonic clocks; UTC itself is that of the server's wall
+        clock. NaT and NaN where there is no probe.
         """
         server_s, uncertainty_s = self.mapping.to_server(client_s / self.time_scale)
         known = np.isfinite(uncertainty_s)
@@ -71,7 +71,7 @@ class RunClock:
 
 
 def run_clocks(db: Session, session_id: str) -> dict[int, RunClock]:
-    """The clocks of a session's client runs, by epoch; runs without a probe are not there."""
+    """Return the clocks of a session's client runs by epoch; runs without a probe are left out."""
     query = (
         select(
             ClockProbe.epoch,
@@ -93,9 +93,9 @@ def run_clocks(db: Session, session_id: str) -> dict[int, RunClock]:
 
 
 def add_utc(db: Session, frame: pd.DataFrame, seconds: str, name: str) -> None:
-    """Add to a table with `session_id` and `epoch` the UTC of its client times `seconds`.
+    """Add the UTC times of the column `seconds` to a table with `session_id` and `epoch`.
 
-    `name` is the new column; `clock_uncertainty_ms` comes beside it.
+    `name` is the new column; the column `clock_uncertainty_ms` is added, too.
     """
     frame[name] = pd.Series(pd.NaT, index=frame.index, dtype="datetime64[us]")
     frame["clock_uncertainty_ms"] = np.nan
@@ -121,7 +121,7 @@ def _fitted(answered: Sequence[Reading], scale: float) -> Iterator[RunClock]:
         if before is None or last is None or _started_again(last, own[0]):
             anchor_s = mapping.wall_s
         else:
-            # What undid jumps of the server's clock in that run is part of the readings of this.
+            # The shift that undid jumps of the server's clock in that run also applies to this one.
             anchor_s = before.anchor_s + before.mapping.segments[-1].server_shift_s
         before = RunClock(epoch, mapping, base_ns / NS_PER_S, base_utc, anchor_s, scale)
         last = own[-1]
@@ -129,8 +129,12 @@ def _fitted(answered: Sequence[Reading], scale: float) -> Iterator[RunClock]:
 
 
 def _in_order(readings: list[Reading]) -> list[Reading]:
-    """As they were made. They come by the client's time, which a clock that was set back spoils;
-    the order of storing then tells, which a wall clock that was set back could spoil."""
+    """Return the readings in the order in which they were made.
+
+    They are read in the order of the client's time, which is wrong if the client's clock was set
+    back.
+    Then the order of the server's wall clock is used, which could be wrong if that was set back.
+    """
     server = [reading.server_received_ns or 0 for reading in readings]
     if server == sorted(server):
         return readings
@@ -138,9 +142,10 @@ def _in_order(readings: list[Reading]) -> list[Reading]:
 
 
 def _started_again(last: Reading, first: Reading) -> bool:
-    """Whether the server's machine was started between two readings.
+    """Return whether the server's machine was restarted between two readings.
 
-    Its monotonic clock is behind, or so little ahead that it began after the earlier reading.
+    If it was, its monotonic clock is behind, or so little ahead that it began after the first
+    reading.
     """
     then_ns, now_ns = last.server_received_ns or 0, first.server_received_ns or 0
     began = first.server_utc - timedelta(microseconds=now_ns / 1000)
@@ -150,7 +155,7 @@ def _started_again(last: Reading, first: Reading) -> bool:
 def _probes(
     readings: Sequence[Reading], base_ns: int, base_utc: datetime, scale: float
 ) -> ClockProbes:
-    """Readings less their common base, in s; the client's in real seconds."""
+    """Return the readings in s since their common base, the client's in real seconds."""
 
     def server(ns: int | None) -> float:
         return np.nan if ns is None else (ns - base_ns) / NS_PER_S

@@ -1,4 +1,4 @@
-"""What rows are joined with: whose they are, where in the design, and whether they count."""
+"""Tables that other tables are joined with: sessions, steps and phases, and whether they are valid."""
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager
@@ -29,9 +29,9 @@ _shared: ContextVar[Contexts | None] = ContextVar("shared_contexts", default=Non
 
 @contextmanager
 def shared_contexts(kept: Contexts) -> Iterator[None]:
-    """Within it, what several tables are joined with is read once and put into `kept`.
+    """Read each context table only once inside this context manager, and store it in `kept`.
 
-    Only for tables of one database whose data stand still for as long as `kept` is used.
+    Only for tables of one database whose data do not change while `kept` is used.
     """
     token = _shared.set(kept)
     try:
@@ -41,7 +41,7 @@ def shared_contexts(kept: Contexts) -> Iterator[None]:
 
 
 def _once(context: Context) -> Context:
-    """Read a context only once where contexts are shared."""
+    """Decorate a function that reads a context, so that it reads once where contexts are shared."""
 
     @wraps(context)
     def read_once(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
@@ -57,9 +57,9 @@ def _once(context: Context) -> Context:
 
 
 def of_kind(study: Study, kind: Kind) -> ColumnElement[bool]:
-    """The sessions of a study of one kind; `all` must be asked for by name.
+    """Return the condition for a study's sessions of one kind, or of every kind (`all`).
 
-    Experts look a study over and give advice: they are in no table, `all` included.
+    Expert sessions are reviews of a study and are in no table, not even with `all`.
     """
     if kind not in KINDS:
         raise ValueError(f"unknown kind {kind!r}; valid are {', '.join(KINDS)}")
@@ -69,13 +69,16 @@ def of_kind(study: Study, kind: Kind) -> ColumnElement[bool]:
 
 
 def read(db: Session, query: Select[*tuple[Any, ...]], names: Sequence[str]) -> pd.DataFrame:
-    """The rows of a query under these column names; objects as the database gave them."""
+    """Return the rows of a query under these column names, with objects as the database gave them."""
     rows = [tuple(row) for row in db.execute(query)]
     return pd.DataFrame(rows, columns=list(names), dtype=object)
 
 
 def finished(frame: pd.DataFrame, table: str) -> pd.DataFrame:
-    """The columns of `table` in the codebook's order and types; a missing column is a KeyError."""
+    """Return the columns of `table` in the codebook's order and types.
+
+    Raises KeyError if a column is missing.
+    """
     columns = columns_of(table)
     shaped = frame[[column.name for column in columns]].reset_index(drop=True)
     for column in columns:
@@ -105,7 +108,7 @@ def _cast(values: "pd.Series[Any]", kind: ColumnType) -> "pd.Series[Any]":
 
 @_once
 def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per session, oldest first: the columns that every table begins with, and status."""
+    """Return one row per session, oldest first: the common first columns and the status."""
     study = study_by_key(db, study_key)
     query = (
         select(
@@ -133,15 +136,15 @@ def sessions_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def _counts(sessions: pd.DataFrame) -> "pd.Series[Any]":
-    """Whether each session counts: not broken off, and nothing missing that its study demands."""
+    """Return whether each session counts: neither broken off nor short of what its study requires."""
     lacking = [bool(found) for found in sessions["shortfalls"]]
     return ~(sessions["session_status"].isin(BROKEN_OFF) | pd.Series(lacking, sessions.index))
 
 
 def has_rules(db: Session, study: Study, used: Collection[int] = ()) -> bool:
-    """Whether versions of the study say when a session counts (`valid_when`).
+    """Return whether versions of the study have rules for valid sessions (`valid_when`).
 
-    `used`: the numbers of the versions that are looked at; all where there are none.
+    `used`: the numbers of the versions to consider; all if empty.
     """
     versions = [one for one in versions_of(db, study) if not used or one.number in used]
     return any(protocol_of(version).valid_when is not None for version in versions)
@@ -149,7 +152,7 @@ def has_rules(db: Session, study: Study, used: Collection[int] = ()) -> bool:
 
 @_once
 def steps_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per step of every session: its place in the design and the attempt that counts."""
+    """Return one row per step of every session: its place in the design and its valid attempt."""
     study = study_by_key(db, study_key)
     rows = []
     for session in db.scalars(select(StudySession).where(of_kind(study, kind))):
@@ -193,7 +196,7 @@ STEP_COLUMNS = (
 
 @_once
 def phases_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per phase: whose, where in the design, and whether it counts."""
+    """Return one row per phase: its session, its place in the design, and whether it is valid."""
     sessions = sessions_context(db, study_key, kind)
     steps = steps_context(db, study_key, kind)[["session_id", "step_index", "position"]]
     query = (
@@ -228,9 +231,9 @@ def phases_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 @_once
 def doubts_context(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per doubt, by session and phase: what of the record cannot be true.
+    """Return one row per doubt, by session and phase: recorded data that cannot be true.
 
-    Where it is about one phase, that phase does not count; else nothing of the session does.
+    A doubt about a phase makes that phase invalid, a doubt without a phase the whole session.
     """
     doubts = doubts_of_sessions(db, of_kind(study_by_key(db, study_key), kind))
     rows = [(key, *astuple(one)) for key, of_session in doubts.items() for one in of_session]
@@ -241,13 +244,13 @@ DOUBT_COLUMNS = ("session_id", "phase_id", "doubt", "words", "claimed", "possibl
 
 
 def doubted_sessions(db: Session, study_key: str, kind: Kind) -> list[str]:
-    """The sessions of which nothing counts, since what is known to be untrue is about them all."""
+    """Return the sessions that are entirely invalid because of a doubt that is not about one phase."""
     doubts = doubts_context(db, study_key, kind)
     return sorted(set(doubts.loc[doubts["phase_id"].isna(), "session_id"]))
 
 
 def phase_limbs(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per session and limb of its phases."""
+    """Return one row per session and limb of its phases."""
     query = (
         select(Phase.session_id, Phase.limb)
         .join(StudySession, StudySession.id == Phase.session_id)
@@ -258,7 +261,7 @@ def phase_limbs(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def _positions(plan: Sequence[Step]) -> dict[tuple[int | None, str | None], int]:
-    """Place of each task within its block, counted from 1; steps outside blocks have none."""
+    """Return the position of each task in its block, from 1; steps outside blocks have none."""
     positions: dict[tuple[int | None, str | None], int] = {}
     for step in plan:
         if step.spec.counts:

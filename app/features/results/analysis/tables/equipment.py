@@ -1,4 +1,4 @@
-"""The tables of the equipment: clock readings, what was made of them, and calibrations."""
+"""The tables of the equipment: clock probes, clock mappings and calibrations."""
 
 import numpy as np
 import pandas as pd
@@ -17,7 +17,7 @@ PPM = 1e6
 
 
 def clock_probes_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per probe, by session, run and the client's time."""
+    """Return one row per clock probe, by session, run and the client's time."""
     query = (
         select(
             ClockProbe.session_id,
@@ -49,7 +49,7 @@ def clock_probes_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def clock_mapping_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per segment of a mapping, by session, run and the order of the segments."""
+    """Return one row per segment of a clock mapping, by session, run and the order of the segments."""
     sessions = sessions_context(db, study_key, kind)
     rows = [
         {"session_id": session_id, **row}
@@ -65,7 +65,7 @@ def clock_mapping_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame
 
 
 def _segments(clock: RunClock) -> list[dict[str, object]]:
-    """The segments in the client's own seconds and the server's full time."""
+    """Return the segments of a clock, in the client's own seconds and the server's monotonic time."""
     rows: list[dict[str, object]] = []
     for number, segment in enumerate(clock.mapping.segments, start=1):
         from_s = segment.client_from_s * clock.time_scale
@@ -98,7 +98,7 @@ def _number(values: "pd.Series[float]") -> "pd.Series[float]":
 
 
 def calibrations_table(db: Session) -> pd.DataFrame:
-    """One row per measurement, by equipment, the newest first; retired ones are included."""
+    """Return one row per calibration, retired ones included, by equipment and newest first."""
     rows = [view.model_dump() for view in calibrations(db)]
     names = ("equipment", "motion_to_photon_ms", "sd_ms", "samples", "method", "measured_on")
     more = ("current", "note", "at", "retired_at", "retired_reason")

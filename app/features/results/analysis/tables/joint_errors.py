@@ -1,4 +1,4 @@
-"""The tables of joint errors, in degrees: over each phase, and how they went within it."""
+"""The tables of joint errors in degrees: per phase, and by bin of active time."""
 
 import math
 from itertools import chain
@@ -22,7 +22,7 @@ _PLACES = {"present": 0, "command": 1}
 
 
 def joint_angles_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """Of the joint errors, the angles to the present pose: an eighth of the rows."""
+    """Return only the joint errors that are angles to the present pose, an eighth of all rows."""
     return _errors(
         db,
         study_key,
@@ -32,7 +32,7 @@ def joint_angles_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def joint_errors_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per phase, reference, joint and axis, in the body's order."""
+    """Return one row per phase, reference, joint and axis, in the order of the body's joints."""
     return _errors(db, study_key, kind, true())
 
 
@@ -57,7 +57,7 @@ def _errors(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool]
     )
     names = ("reference", "joint", "axis", *(f"{name}_rad" for name in _FIGURES))
     errors = read(db, query, (*_KEYS, *names, "clipped_share", "samples", "excluded"))
-    # Without a single number, the column would not be one of numbers.
+    # If all values are missing, the column is not numeric yet.
     errors["clipped_share"] = errors["clipped_share"].astype("float64")
     places = _places()
     keys = zip(errors["reference"], errors["joint"], errors["axis"], strict=True)
@@ -79,12 +79,12 @@ def _places() -> dict[tuple[str, str, str], int]:
 
 
 def present_course_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """Of the courses, those to the present pose: half of the rows."""
+    """Return only the courses of joint errors to the present pose, half of all rows."""
     return _courses(db, study_key, kind, JointErrorCourseRow.reference == "present")
 
 
 def joint_error_course_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per phase, reference and bin, in order of time."""
+    """Return one row per phase, reference and bin of active time, in order of time."""
     return _courses(db, study_key, kind, true())
 
 
@@ -108,7 +108,7 @@ def _courses(db: Session, study_key: str, kind: Kind, wanted: ColumnElement[bool
 
 
 def _bins(courses: pd.DataFrame) -> pd.DataFrame:
-    """One row a bin instead of one a course."""
+    """Expand the courses from one row per course to one row per bin."""
     counts = courses["samples"].map(len).to_numpy(dtype=np.int64)
     rows = courses.drop(columns=_LISTS).loc[courses.index.repeat(counts)]
     first = np.repeat(np.cumsum(counts) - counts, counts)

@@ -1,4 +1,4 @@
-"""The tables of phases: what each came to, how good its streams were, and what alarmed."""
+"""The tables of phases, of the quality of their streams, of doubts and of alarms."""
 
 import pandas as pd
 from sqlalchemy import case, func, select
@@ -36,7 +36,7 @@ _STREAMS = {"target": 0, "actual": 1}
 
 
 def phases_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per phase, in order of session and phase."""
+    """Return one row per phase, by session and phase."""
     study = study_by_key(db, study_key)
     frame = phases_context(db, study_key, kind)
     for more in (_details, _completions, _red, _latencies):
@@ -87,7 +87,7 @@ def _latencies(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
             PhaseLatency.achieved_s * MS_PER_S,
             PhaseLatency.low_s * MS_PER_S,
             PhaseLatency.high_s * MS_PER_S,
-            # Nothing is known to be off where nothing is known.
+            # Null if there is no achieved latency.
             case((PhaseLatency.achieved_s.is_not(None), PhaseLatency.flagged)),
             PhaseLatency.reason,
             PhaseLatency.movement_s,
@@ -124,7 +124,7 @@ def _red(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
 
 
 def quality_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per phase that was finished and stream, target first."""
+    """Return one row per finished phase and stream, target first."""
     query = (
         select(*(getattr(PhaseQuality, name) for name in (*_KEYS, *_FIGURES)))
         .join(StudySession, StudySession.id == PhaseQuality.session_id)
@@ -138,13 +138,13 @@ def quality_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def doubts_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per doubt about what a headset said, by session and phase."""
+    """Return one row per doubt about data of a headset, by session and phase."""
     doubts = doubts_context(db, study_key, kind)
     return finished(sessions_context(db, study_key, kind).merge(doubts, on="session_id"), "doubts")
 
 
 def alarms_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per alarm raised and one per alarm cleared, by session and time."""
+    """Return one row per alarm raised and one per alarm cleared, by session and time."""
     query = (
         select(AlarmRow.session_id, *(getattr(AlarmRow, name) for name in _ALARM))
         .join(StudySession, StudySession.id == AlarmRow.session_id)

@@ -1,4 +1,4 @@
-"""The tables of answers, scores and corrections: long, one row per item, score or correction."""
+"""The tables of answers, scores and corrections in long form: one row each."""
 
 from collections.abc import Mapping
 
@@ -30,7 +30,7 @@ from app.science.instruments import Instrument
 
 
 def answers_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per item of every stored form; items in the order in which they were shown."""
+    """Return one row per item of every stored form, in the order in which the items were shown."""
     study = study_by_key(db, study_key)
     query = (
         select(Answer.submission_id, Answer.item, Answer.position, Answer.value_number)
@@ -55,7 +55,7 @@ def answers_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def _put_times(frame: pd.DataFrame) -> None:
-    """When and how long each item was answered; numbers throughout, also where nothing is known."""
+    """Add the columns of response times and changes, numeric even where nothing is known."""
     timed = list(zip(frame["timings"], frame["item"], strict=True))
     traced = [
         traces.get(item, {}) if isinstance(traces, dict) else {}
@@ -73,7 +73,7 @@ def _put_times(frame: pd.DataFrame) -> None:
 def _put_corrections(
     frame: pd.DataFrame, corrected: Mapping[tuple[str, str], AnswerCorrection]
 ) -> None:
-    """The values that count in the place of those given first."""
+    """Replace answers as first given by their latest corrections."""
     rows = [corrected.get(key) for key in zip(frame["submission_id"], frame["item"], strict=True)]
     frame["corrected"] = [row is not None for row in rows]
     for name in ("value_number", "value_text"):
@@ -92,7 +92,7 @@ def _submissions(study: Study, kind: Kind) -> Select[str]:
 
 
 def scores_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per score of every stored form, in the instrument's order."""
+    """Return one row per score of every stored form, in the instrument's order."""
     study = study_by_key(db, study_key)
     query = (
         select(ScoreValue.submission_id, ScoreValue.score, ScoreValue.value)
@@ -119,7 +119,10 @@ def scores_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
 
 
 def _forms(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
-    """One row per stored form, by session and time: whose, where in the design, if it counts."""
+    """Return one row per stored form, by session and time.
+
+    The rows have the session's columns, the place in the design and whether the form is valid.
+    """
     query = (
         select(
             Submission.session_id,
@@ -162,7 +165,7 @@ def _instruments(db: Session) -> dict[str, Instrument]:
 
 
 def corrections_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per correction, by session and in the order in which they were made."""
+    """Return one row per correction, by session and in the order in which they were made."""
     query = (
         select(
             Submission.session_id,

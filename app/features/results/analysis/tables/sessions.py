@@ -1,4 +1,4 @@
-"""The tables of sessions and of their events, the audit trail as it stands in the log."""
+"""The tables of sessions and of the events in their logs."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -35,7 +35,7 @@ IN_DOUBT = "what the headset said cannot be true (doubts.csv)"
 
 
 def sessions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per session, oldest first."""
+    """Return one row per session, oldest first."""
     study = study_by_key(db, study_key)
     frame = sessions_context(db, study_key, kind).rename(columns={"session_status": "status"})
     frame = frame.merge(_details(db, study, kind), on="session_id")
@@ -64,7 +64,7 @@ def _reasons(stored: Sequence[Mapping[str, Any]] | None, more: str | None) -> st
 
 
 def reasons_in_words(stored: Sequence[Mapping[str, Any]] | None) -> str | None:
-    """What a session lacks in order to count, in one cell; None where it lacks nothing."""
+    """Return why a completed session is not valid, in one cell; None if it is valid."""
     return "; ".join(one.words() for one in shortfalls_of(stored)) or None
 
 
@@ -97,7 +97,7 @@ def _details(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
 
 
 def _heights(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
-    """The newest heights of each session; none once they were erased."""
+    """Return the newest heights of each session; sessions whose heights were erased have no row."""
     contents = db.scalars(
         select(SessionContent)
         .join(StudySession, StudySession.id == SessionContent.session_id)
@@ -115,7 +115,7 @@ def _heights(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
 
 
 def _consents(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
-    """Whether and when consent was given, from the steps and the event log: yes or no, no words."""
+    """Return whether and when consent was given, from steps and event log, without any texts."""
     events = db.execute(
         select(SessionEvent.session_id, SessionEvent.payload, SessionEvent.recorded_at)
         .join(StudySession, StudySession.id == SessionEvent.session_id)
@@ -139,7 +139,7 @@ def _consents(db: Session, study: Study, kind: Kind) -> pd.DataFrame:
 
 
 def _latencies(db: Session, study: Study) -> dict[tuple[int, str], float]:
-    """Added latency in ms by study version and condition."""
+    """Return the added latency in ms by study version and condition."""
     return {
         (version.number, condition.key): condition.latency_ms
         for version in versions_of(db, study)
@@ -148,7 +148,7 @@ def _latencies(db: Session, study: Study) -> dict[tuple[int, str], float]:
 
 
 def events_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per event, by session and seq."""
+    """Return one row per event, by session and sequence number."""
     query = (
         select(
             SessionEvent.session_id,

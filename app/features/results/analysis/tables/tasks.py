@@ -1,4 +1,4 @@
-"""The tables of contacts and completed tasks, and when the sides of boxes were red."""
+"""The tables of contacts and completed tasks, and the times at which sides of boxes were red."""
 
 from collections.abc import Iterable
 
@@ -18,10 +18,10 @@ _KEYS = ["session_id", "phase_id"]
 
 
 def red_spans(contacts: Iterable[tuple[str, float, float]]) -> dict[str, tuple[Span, ...]]:
-    """Spans in which each side was red, such as "hand/2/left": the union over body parts.
+    """Return the spans in which each side, such as "hand/2/left", was red.
 
-    `contacts` are (surface, begin_active_s, end_active_s) of one phase; the bars of a rim are one
-    side.
+    Each is the union over body parts. `contacts` are (surface, begin_active_s, end_active_s) of one
+    phase; the bars of a rim are one side.
     """
     by_side: dict[str, list[Span]] = {}
     for surface, begin_s, end_s in contacts:
@@ -30,17 +30,20 @@ def red_spans(contacts: Iterable[tuple[str, float, float]]) -> dict[str, tuple[S
 
 
 def total_s(spans: Iterable[Span]) -> float:
-    """Length of disjoint spans together, in s."""
+    """Return the total length of disjoint spans, in s."""
     return sum((end - begin for begin, end in spans), 0.0)
 
 
 def contact_spans_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """The same without UTC, which costs the most and which no figure shows."""
+    """Return one row per contact interval without UTC times.
+
+    Mapping to UTC takes longest, and no figure needs it.
+    """
     return _contacts(db, study_key, kind, in_utc=False)
 
 
 def contacts_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per contact interval, by phase and begin."""
+    """Return one row per contact interval, by phase and start time."""
     return _contacts(db, study_key, kind, in_utc=True)
 
 
@@ -79,7 +82,7 @@ def _contacts(db: Session, study_key: str, kind: Kind, *, in_utc: bool) -> pd.Da
 
 
 def completions_table(db: Session, study_key: str, kind: Kind) -> pd.DataFrame:
-    """One row per completed task, by phase and number."""
+    """Return one row per completed task, by phase and number."""
     query = (
         select(
             Completion.session_id,

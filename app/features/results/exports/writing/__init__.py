@@ -1,6 +1,6 @@
-"""Writing an export: its files in pieces, as a folder, as an archive, or in a process of its own.
+"""Write an export in pieces, as a folder, as an archive, or in a worker process; loads pandas.
 
-It shows one moment of the database, and memory does not grow with what is written. Loads pandas.
+An export shows one moment of the database, and its memory does not grow with the amount of data.
 """
 
 from app.features.results.exports.writing.contents import Member

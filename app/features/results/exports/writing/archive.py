@@ -1,4 +1,4 @@
-"""An export as one ZIP file, sent while it is made: neither disk nor memory holds the whole."""
+"""Write an export as a ZIP file while it is sent, without holding all of it in memory or on disk."""
 
 import io
 import zipfile
@@ -13,7 +13,7 @@ SEND_FROM_BYTES = 256 * 1024
 
 
 def zip_pieces(members: Iterable[Member], now: datetime) -> Iterator[bytes]:
-    """The archive in pieces; one that breaks off has no directory, so no reader takes it."""
+    """Yield the archive in pieces; one that breaks off has no directory, so no program opens it."""
     sink = _Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED, compresslevel=LEVEL) as archive:
         for member in members:
@@ -29,25 +29,25 @@ def zip_pieces(members: Iterable[Member], now: datetime) -> Iterator[bytes]:
 
 
 class _Sink(io.RawIOBase):
-    """Where the archive is written: what is in it is sent and forgotten."""
+    """The file object that the archive is written to; it buffers bytes until they are sent."""
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
         self.waiting = 0
 
     def writable(self) -> bool:
-        """It can be written to, but not searched: sizes stand behind each file."""
+        """Return True; without seeking, sizes are written after each file."""
         return True
 
     def write(self, data: object) -> int:
-        """Keep the bytes until they are taken."""
+        """Buffer the bytes until they are taken."""
         part = bytes(data)  # type: ignore[call-overload]  # any buffer
         self._parts.append(part)
         self.waiting += len(part)
         return len(part)
 
     def take(self) -> bytes:
-        """Everything written since the last time."""
+        """Return and clear everything in the buffer."""
         taken = b"".join(self._parts)
         self._parts, self.waiting = [], 0
         return taken

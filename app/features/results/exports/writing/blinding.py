@@ -1,10 +1,10 @@
-"""What an export leaves out of a session whose condition must not be known yet.
+"""Remove from an export what would reveal the condition of a blinded session.
 
-The session stays in the export with what its participant said and did; only what tells its
-condition is taken out. Cells are emptied where a column names the condition, the latency that the
-avatar had, or a hash: with three latencies to try, a hash tells which it was. Rows are left out
-where a table holds what the avatar did beside what the participant did, since the one lags behind
-the other by the latency. Of the frames only the participant's own stay.
+The session stays in the export with what its participant answered and did; only what reveals its
+condition is removed. Cells are emptied if a column names the condition, the avatar's latency, or a
+hash: with three possible latencies, trying them on the hash finds the right one. Rows are left out
+if a table has what the avatar did beside what the participant did, since the one lags behind the
+other by the latency. Of the frames only the participant's own remain.
 """
 
 import json
@@ -34,9 +34,9 @@ EMPTIED = frozenset(
 
 
 def without_conditions(table: str, frame: pd.DataFrame, hidden: Collection[str]) -> pd.DataFrame:
-    """The rows of a table as they may leave; `hidden` are ids of sessions. `frame` stays as it is.
+    """Return a table without what reveals the condition of the `hidden` sessions (ids).
 
-    Columns and their types are the same whether or not anything was taken out.
+    `frame` is not modified. Columns and types are the same whether or not anything was removed.
     """
     rows = frame["session_id"].isin(list(hidden))
     if not rows.any():

@@ -1,8 +1,8 @@
-"""CSV cells: numbers in full, texts that no spreadsheet will run.
+"""Write CSV cells: numbers with full precision, texts protected from running as formulas.
 
-A spreadsheet runs a text cell that begins with = + - @ as a formula, also behind white space or a
-quotation mark. An apostrophe in front makes it text (OWASP, CSV injection). Only texts are treated:
-a number stays a number, also a negative one.
+A spreadsheet runs a text cell that begins with = + - @ as a formula, also after white space or a
+quotation mark. An apostrophe in front makes it text (OWASP, CSV injection). Only texts are changed:
+numbers, including negative ones, stay numbers.
 """
 
 import csv
@@ -16,19 +16,19 @@ import pandas as pd
 from app.features.results.analysis.codebook import ColumnType, columns_of
 
 ROWS_AT_ONCE = 2000
-# The full-width forms are read as the narrow ones by some spreadsheets.
+# Some spreadsheets treat the full-width forms like the ASCII ones.
 _RUNS = re.compile("^(?:[\\t\\r\\n]|[\\s\"'\ufeff\u200b]*[=+\\-@\uff1d\uff0b\uff0d\uff20])")
 
 
 def safe_text(text: str) -> str:
-    """The text, with an apostrophe in front if a spreadsheet would run it."""
+    """Return the text, with an apostrophe in front if a spreadsheet would run it as a formula."""
     return f"'{text}" if _RUNS.match(text) else text
 
 
 def csv_pieces(table: str, frame: pd.DataFrame, *, rules: bool = True) -> Iterator[bytes]:
-    """A table as CSV: UTF-8, LF, quoted as in RFC 4180, missing values empty; in pieces.
+    """Yield a table as CSV in pieces: UTF-8, LF, quoted as in RFC 4180, missing values empty.
 
-    `rules`: with the columns that only studies with rules of validity have.
+    `rules`: include the columns that exist only for studies with `valid_when` rules.
     """
     columns = columns_of(table, rules=rules)
     yield _lines([[column.name for column in columns]])
@@ -65,7 +65,10 @@ def _lines(rows: Sequence[Sequence[str]]) -> bytes:
 
 
 def _line_with_returns(row: Sequence[str]) -> bytes:
-    """Python up to 3.12 quotes a carriage return only if lines end with one; readers need it."""
+    """Return a line with carriage returns quoted, as readers need.
+
+    Python up to 3.12 quotes a carriage return only if lines end with one.
+    """
     buffer = io.StringIO(newline="")
     csv.writer(buffer, lineterminator="\r\n").writerow(row)
     return buffer.getvalue().removesuffix("\r\n").encode() + b"\n"

@@ -1,7 +1,7 @@
-"""What an export holds: each file with its pieces, in the order in which they are written.
+"""The files of an export, each with its content in pieces, in the order in which they are written.
 
-Folder and archive are two ways of writing the same members, so they cannot differ. A member is read
-from the database while it is written; only the README at the end knows what came of it.
+An export as a folder and as an archive writes the same members, so they cannot differ. A member is
+read from the database while it is written; the README is written last, because it lists the others.
 """
 
 import hashlib
@@ -74,7 +74,7 @@ TOP_LEVEL = frozenset(
 
 @dataclass(frozen=True)
 class Member:
-    """A file of an export: its path inside, made by us, and its bytes in pieces."""
+    """A file of an export: its path inside the export and its bytes in pieces."""
 
     path: str
     pieces: Iterator[bytes]
@@ -82,11 +82,11 @@ class Member:
 
 @dataclass
 class Contents:
-    """The members of one export. Iterate once; `files` and `sessions` fill as members are used.
+    """The members of one export; iterate once, since `files` and `sessions` fill up meanwhile.
 
-    `only`: leave out every session but these, as for one participant's own copy. Of sessions in
-    `hidden` nothing is written that tells their condition, whoever the copy is for; `revealed` are
-    those that are not completed and whose condition is told, since somebody had it shown.
+    `only`: leave out all other sessions, as for a participant's own copy. For sessions in `hidden`,
+    nothing that reveals their condition is written, whoever the copy is for; `revealed` are open
+    sessions whose condition is included because somebody had it shown.
     """
 
     db: Session
@@ -105,7 +105,7 @@ class Contents:
         self.hidden = hidden_sessions(self.db, study_by_key(self.db, self.study_key))
 
     def members(self) -> Iterator[Member]:
-        """Tables, codebook, frames and receipt of each session, and the README last."""
+        """Yield the tables, the codebook, each session's frames and receipt, and last the README."""
         sessions = self._table("sessions", sessions_table)
         self.sessions = len(sessions)
         study = study_by_key(self.db, self.study_key)
@@ -126,7 +126,7 @@ class Contents:
             )
             yield self._member(samples_path(code, session_id), samples.pieces())
             yield self._member(receipt_path(code, session_id), self._receipt(session_id))
-        # Apart from every table, since nothing here ran them; a person's own copy is of sessions.
+        # Imported answers stay apart from the tables; a participant's own copy has only sessions.
         if self.kind in ("people", "all") and self.only is None:
             for name, body in import_files(self.db, study):
                 yield self._member(f"imported/{name}", iter([body]))
@@ -140,7 +140,7 @@ class Contents:
         return without_conditions(name, own, self.hidden)
 
     def _receipt(self, session_id: str) -> Iterator[bytes]:
-        """What of the session is there, and the proof; told by this very export's record."""
+        """Yield the receipt of a session as JSON, computed in the transaction of this export."""
         receipt = receipt_of(self.db, session_id)
         told = receipt.without_latencies() if session_id in self.hidden else receipt
         yield json.dumps(told.as_json(), indent=2).encode() + b"\n"
@@ -149,7 +149,7 @@ class Contents:
         return Member(path, self._counted(path, pieces))
 
     def _counted(self, path: str, pieces: Iterator[bytes]) -> Iterator[bytes]:
-        """The same pieces; what they came to is noted once the last is out."""
+        """Yield the same pieces, and add the file's line count and hash to `files` after the last."""
         digest, lines = hashlib.sha256(), 0
         for piece in pieces:
             digest.update(piece)

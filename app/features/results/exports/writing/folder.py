@@ -1,7 +1,7 @@
-"""An export as a folder: written beside its place, moved in whole.
+"""Write an export as a folder, in a temporary folder first, and then rename it.
 
-Whoever looks at the place sees the export before or the one after, never half of one. An export
-replaces an earlier one of ours; anything else that stands there is refused.
+A reader sees either the previous export or the new one, never an incomplete one. An export replaces
+an earlier Reembody export; any other existing content is refused.
 """
 
 from collections.abc import Callable, Iterable
@@ -16,7 +16,7 @@ Progress = Callable[[str], None]
 
 
 def silent(path: str) -> None:
-    """The progress callback that reports nothing."""
+    """Ignore the progress (the default callback)."""
 
 
 Beside = Callable[[Path], AbstractContextManager[Path]]
@@ -26,9 +26,9 @@ Beside = Callable[[Path], AbstractContextManager[Path]]
 def write_folder(
     members: Iterable[Member], to: Path, *, beside: Beside, progress: Progress = silent
 ) -> None:
-    """Write `members` to `to`, telling each path to `progress` as it is begun.
+    """Write `members` to the folder `to`, and call `progress` with each path before it is written.
 
-    Raises Conflict where something else is at `to`, and OSError where it cannot be written; then
+    Raises Conflict if something else is at `to`, and OSError if it cannot be written; in both cases
     nothing has changed.
     """
     to = to.absolute()
@@ -47,7 +47,7 @@ def write_folder(
 
 
 def check_target(to: Path) -> None:
-    """Refuse a place that holds anything but nothing, an empty folder or an export of ours."""
+    """Raise Conflict unless `to` is missing, an empty folder or an earlier Reembody export."""
     if to.is_symlink() or (to.exists() and not to.is_dir()):
         raise _refused(to, "is not a folder")
     if not to.exists() or not any(to.iterdir()):

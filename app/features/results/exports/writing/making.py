@@ -1,9 +1,9 @@
-"""Making an export as a file, in a process of its own.
+"""Make an export as a file, in a worker process.
 
-A thread of the server would hold up running sessions, since Python computes in one thread at a
-time; the process steps back where they want the processor. It looks at one moment of the database
-(a read transaction: nobody waits for it) and writes the archive piece by piece, so its memory does
-not grow with what it writes. The file gets its name once it is complete and on the disk.
+A thread of the server would delay running sessions, since Python computes in one thread at a time;
+the process has a lower priority. It reads one moment of the database (a read transaction, which
+blocks nobody) and writes the archive piece by piece, so that its memory does not grow with the
+amount of data. The file gets its final name once it is complete and on the disk.
 """
 
 import hashlib
@@ -30,11 +30,11 @@ LOOK_EVERY_BYTES = 32 * 1024**2
 
 
 class _DiskNearlyFullError(Exception):
-    """The rest of the disk is for running sessions."""
+    """The disk has only as much space left as is reserved for running sessions."""
 
 
 def made(order: Order) -> Made | NotMade:
-    """Write the file, or say why not; an unfinished file is left for whoever ordered it."""
+    """Write the file, or return why it could not be made; the caller removes an unfinished file."""
     try:
         return _made(order)
     except _DiskNearlyFullError:
@@ -73,7 +73,7 @@ def _made(order: Order) -> Made:
 
 
 def watched(members: Iterable[Member], progress: Progress) -> Iterator[Member]:
-    """The same members; rows and sessions are counted as they are used up."""
+    """Yield the same members, and count rows and sessions in `progress` as they are written."""
     for member in members:
         yield (
             Member(member.path, _counted(member.pieces, progress))
@@ -92,7 +92,10 @@ def _counted(pieces: Iterator[bytes], progress: Progress) -> Iterator[bytes]:
 
 
 def _expect(db: Session, order: Order, progress: Progress) -> None:
-    """How many sessions and rows there are to write: where a stream is longer, rows are its."""
+    """Set the totals of sessions and rows in `progress`.
+
+    The rows of a session's run are those of its longer stream.
+    """
     study = study_by_key(db, order.study_key)
     which = select(StudySession.id).where(of_kind(study, order.kind))
     if order.session_id is not None:

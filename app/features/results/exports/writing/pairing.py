@@ -1,4 +1,4 @@
-"""Two streams side by side: frames with the same seq in one row, in pieces, in constant memory."""
+"""Join two streams frame by frame, on equal seq, in pieces and with constant memory."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,7 +16,8 @@ Piece = tuple[int, Frames]
 class Side:
     """One stream's part of a piece of n rows.
 
-    `present` (n,) says in which rows it has a frame; the other arrays hold only those frames.
+    `present` (n,) marks the rows in which it has a frame; the other arrays contain only those
+    frames.
     """
 
     present: NDArray[np.bool_]
@@ -28,7 +29,7 @@ class Side:
 
 @dataclass(frozen=True)
 class Rows:
-    """n rows in order of `seq` (n,), each with a frame of the target, the actual stream or both."""
+    """n rows in order of `seq` (n,), each with a frame of at least one of the two streams."""
 
     seq: NDArray[np.int64]
     target: Side
@@ -38,18 +39,18 @@ class Rows:
 def paired_rows(target: Iterator[Piece], actual: Iterator[Piece]) -> Iterator[Rows]:
     """Join the pieces of two streams of one epoch, each in order of seq.
 
-    Rows are given as soon as neither stream can have an earlier one, so at most one piece of each
-    is held, however far apart the streams are.
+    Rows are yielded as soon as neither stream can have an earlier one, so at most one piece of each
+    is in memory, however far apart the streams are.
     """
     left, right = _Buffer(target), _Buffer(actual)
     while left.fill() | right.fill():
-        # An exhausted stream holds nothing back.
+        # An exhausted stream does not limit the rows.
         until = min(buffer.last_seq for buffer in (left, right) if buffer.frames is not None)
         yield _joined(left.take(until), right.take(until))
 
 
 class _Buffer:
-    """The piece of a stream that is being used up."""
+    """The current piece of a stream, without the frames that were taken from it."""
 
     def __init__(self, pieces: Iterator[Piece]) -> None:
         self._pieces = pieces
@@ -58,11 +59,11 @@ class _Buffer:
 
     @property
     def last_seq(self) -> int:
-        """Seq of the last frame held."""
+        """Return the seq of the last buffered frame, -1 if there is none."""
         return -1 if self.frames is None else int(self.frames.seq[-1])
 
     def fill(self) -> bool:
-        """Hold the next piece if none is left; whether there is one."""
+        """Load the next piece if the buffer is empty; return whether there are frames."""
         while self.frames is None or len(self.frames) == 0:
             self.frames = None
             piece = next(self._pieces, None)
@@ -72,7 +73,7 @@ class _Buffer:
         return True
 
     def take(self, until_seq: int) -> Piece:
-        """The frames up to and with `until_seq`; they are held no longer."""
+        """Remove and return the frames up to and including `until_seq`."""
         if self.frames is None:
             return self.phase_id, _NONE
         count = int(np.searchsorted(self.frames.seq, until_seq, side="right"))

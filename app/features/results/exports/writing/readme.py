@@ -1,4 +1,4 @@
-"""The README that travels with an export."""
+"""The README file of an export."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -50,10 +50,10 @@ _UNCOUNTED = (
 
 @dataclass(frozen=True)
 class Origin:
-    """Where an export comes from: `versions` maps numbers to content hashes.
+    """The origin of an export; `versions` maps version numbers to content hashes.
 
     `audit_head`: the newest entry of the audit trail at that moment. `blinded`: how many of its
-    sessions may not tell their condition yet.
+    sessions are written without their condition.
     """
 
     study_key: str
@@ -67,7 +67,7 @@ class Origin:
 
 @dataclass(frozen=True)
 class FileCount:
-    """What a file came to; `lines` counts the header and the line breaks inside of quotes too."""
+    """The size and hash of a file; `lines` includes the header and line breaks inside quotes."""
 
     path: str
     lines: int
@@ -75,9 +75,9 @@ class FileCount:
 
 
 def readme_text(origin: Origin, files: Sequence[FileCount], *, rules: bool = True) -> str:
-    """The text: version, study with content hashes, when, kind, counts, files with hashes.
+    """Return the README: Reembody's version, study with content hashes, time, kind, counts, files.
 
-    `rules`: there are sessions of a version that says when a session counts.
+    `rules`: some sessions are of a version that has rules for valid sessions.
     """
     reading = _READING.replace(_BROKEN_OFF, _BROKEN_OFF + _NOT_VALID) if rules else _READING
     reading += _UNCOUNTED

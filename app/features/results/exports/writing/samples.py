@@ -1,9 +1,8 @@
-"""The frames of a session as one wide CSV, written while it is read.
+"""Write the frames of a session as one wide CSV while they are read.
 
-A session of eight minutes has eight million numbers, so they are printed by one call a piece: the
-JSON writer of pydantic prints numbers, true, false and null in C, and with the brackets taken off
-its lists are CSV rows. Nothing but numbers and our own words stands in these files, so no cell
-needs quotes.
+A session of eight minutes has eight million numbers, so they are printed by one call per piece: the
+JSON writer of pydantic prints numbers, true, false and null in C, and without their brackets its
+lists are CSV rows. These files contain only numbers and fixed words, so no cell needs quotes.
 """
 
 from collections.abc import Iterator
@@ -27,15 +26,18 @@ _MISSING: list[float | None] = [None] * VALUES_PER_FRAME
 
 
 def shortest_doubles(values: NDArray[np.float32]) -> NDArray[np.float64]:
-    """The doubles, of the same shape, whose shortest text is that of the single `values`.
+    """Return the doubles, of the same shape, whose shortest text is that of the single `values`.
 
-    0.1 in single precision is 0.100000001490116..., but "0.1" already names it. Six significant
-    digits name at most one single-precision number, nine always suffice (Steele and White 1990),
+    0.1 in single precision is 0.100000001490116..., but "0.1" already identifies it. Six
+    significant
+    digits identify at most one single-precision number, nine always suffice (Steele and White
+    1990),
     so each value is rounded to 6, 7, 8 and 9 digits, for all values at once, and the first decimal
-    that converts back to the value is taken. It is given as the double nearest to that decimal,
-    whose own shortest text is the decimal: any printer of doubles then prints it.
+    that converts back to the value is taken. The result is the double nearest to that decimal,
+    whose
+    own shortest text is the decimal: any printer of doubles then prints it.
 
-    Zeros keep their sign; values that are not finite stay as they are.
+    Zeros keep their sign; values that are not finite are unchanged.
     """
     exact = values.astype(np.float64)
     size = np.abs(exact)
@@ -58,7 +60,7 @@ def shortest_doubles(values: NDArray[np.float32]) -> NDArray[np.float64]:
 
 @dataclass(frozen=True)
 class SampleFile:
-    """A session's file: `pieces()` reads it from the database as it goes; `rows` counts.
+    """The samples file of a session, read from the database while it is written.
 
     `blinded`: without the avatar's frames, which lag behind the participant's by the latency.
     """
@@ -70,7 +72,7 @@ class SampleFile:
     blinded: bool = False
 
     def pieces(self) -> Iterator[bytes]:
-        """The file in pieces of about a second of movement."""
+        """Yield the file in pieces of about a second of movement."""
         yield (",".join(column.name for column in columns_of("samples")) + "\n").encode()
         start = f"{'true' if self.simulated else 'false'},{self.avatar},"
         for epoch in self._epochs():
@@ -101,7 +103,7 @@ def _csv(rows: Rows, start: bytes) -> bytes:
 
 
 def _head(rows: Rows) -> list[tuple[int, int, float, bool, bool]]:
-    """seq, phase_id, t_s, active and flagged of each row; of the target where it has a frame."""
+    """Return seq, phase_id, t_s, active and flagged of each row, from the target if it has a frame."""
     count = len(rows.seq)
     phase_id = np.zeros(count, np.int64)
     t_s = np.zeros(count)
@@ -118,7 +120,7 @@ def _head(rows: Rows) -> list[tuple[int, int, float, bool, bool]]:
 
 
 def _values(side: Side) -> list[list[float | None]]:
-    """The numbers of each row; empty cells where the stream has no frame."""
+    """Return the numbers of each row; the cells are empty where the stream has no frame."""
     if not len(side.values):
         return [_MISSING] * len(side.present)
     own = iter(shortest_doubles(side.values).tolist())

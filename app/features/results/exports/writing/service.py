@@ -1,4 +1,4 @@
-"""Exporting a study: one consistent look at the database, as a folder or as an archive."""
+"""Export a study from one consistent snapshot of the database, as a folder or as an archive."""
 
 from collections.abc import Generator, Iterable, Iterator
 from dataclasses import dataclass
@@ -23,9 +23,9 @@ from app.platform.half_made import Notes, made_beside
 
 @dataclass(frozen=True)
 class Exported:
-    """What was written where, and the head of the audit trail then.
+    """The result of an export to a folder, with the head of the audit trail at that time.
 
-    `revealed`: sessions of a blinded study that are not completed and tell their condition.
+    `revealed`: open sessions of a blinded study whose condition the export shows.
     """
 
     to: Path
@@ -48,10 +48,10 @@ def export_study(
 ) -> Exported:
     """Write the study's sessions of one kind to the folder `to`.
 
-    `notes` keep a note of it while it is made, so that nothing half-made outlives an erasure.
-
-    Raises NotFound for an unknown study, Conflict where something else is at `to`, OSError where it
-    cannot be written; in each case nothing has changed.
+    `notes` record the temporary folder while the export is made, so that an erasure also removes an
+    unfinished one. Raises NotFound for an unknown study, Conflict if something else is at `to`,
+    OSError
+    if it cannot be written; in each case nothing has changed.
     """
     contents = Contents(db, study_key, kind, now)
     beside = partial(made_beside, "export", now=now, notes=notes, study_key=study_key)
@@ -69,7 +69,10 @@ def export_study(
 def study_archive(
     database: Database, study_key: str, kind: Kind, *, now: datetime
 ) -> Generator[bytes]:
-    """The same as one ZIP file, in pieces; close the iterator to stop early."""
+    """Yield the study's sessions of one kind as a ZIP file in pieces.
+
+    Close the iterator to stop early.
+    """
     with database.reading() as db:
         yield from zip_pieces(Contents(db, study_key, kind, now).members(), now)
 
@@ -83,16 +86,17 @@ def person_archive(
     *,
     now: datetime,
 ) -> Iterator[bytes]:
-    """`more` and the files of these sessions only, as one ZIP file in pieces."""
+    """Return the pieces of a ZIP file with the files of these sessions and the members `more`."""
     contents = Contents(db, study_key, kind, now, only=sessions)
     return zip_pieces(chain(more, contents.members()), now)
 
 
 def usual_kind(db: Session, study_key: str) -> Kind:
-    """The kind to export when none was named: people, or what there is if there are no people.
+    """Return the default kind to export: people if there are any, else simulated or test sessions.
 
-    So a rehearsed study can be exported without a word, and simulated sessions never stand beside
-    people's unless somebody asks for all.
+    So a rehearsed study can be exported without naming a kind, and simulated sessions are never
+    mixed
+    with those of people unless the kind is `all`.
     """
     study = study_by_key(db, study_key)
     there = set(db.scalars(select(StudySession.kind).where(StudySession.study_id == study.id)))
