@@ -464,7 +464,7 @@ def test_an_alarm_takes_two_edited_files(tmp_path: Path) -> None:
         """
 from app.features.record.alarms import WatchLimits
 from app.features.record.alarms.silence_watch import SilenceWatch
-(found,) = SilenceWatch(WatchLimits(), 0.0).look(1.0)
+(found,) = SilenceWatch(WatchLimits(), 0.0).check(1.0)
 answer = [found.code, found.severity]
 """,
     )

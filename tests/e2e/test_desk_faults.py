@@ -78,7 +78,7 @@ def test_of_two_tablets_with_one_code_one_holds_the_session(
     pages = [page_factory((1180, 820)) for _ in range(2)]
     for page in pages:
         page.goto(f"{url}/tablet?code={code}", wait_until="commit")
-    agree, refused = "I agree to take part", "this code was used already"
+    agree, refused = "I agree to take part", "this code was already used"
     for page in pages:
         held = page.get_by_role("button", name=agree)
         told = page.get_by_text(refused, exact=False)

@@ -1,4 +1,4 @@
-"""How slow the equipment itself is: measurements of its motion-to-photon delay."""
+"""Calibrations: measurements of the equipment's own motion-to-photon delay."""
 
 from app.features.record.calibrations.service import calibrations
 

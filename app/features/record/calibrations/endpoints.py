@@ -1,4 +1,4 @@
-"""Calibrations over HTTP."""
+"""HTTP endpoints for calibrations."""
 
 from fastapi import APIRouter
 
@@ -17,23 +17,23 @@ router = APIRouter(prefix="/calibrations", tags=["calibrations"])
 
 @router.get("")
 def get_calibrations(db: Reading, _: SignedIn) -> list[CalibrationView]:
-    """Every measurement, by equipment, the newest first."""
+    """Return all calibrations, sorted by equipment and then newest first."""
     return calibrations(db)
 
 
 @router.post("", status_code=201)
 def post_calibration(
-    wish: NewCalibration, db: Writing, context: Context, caller: SignedIn
+    body: NewCalibration, db: Writing, context: Context, caller: SignedIn
 ) -> CalibrationView:
-    """Record a measurement of an equipment's own delay."""
-    return add_calibration(db, wish, by=caller.actor, now=context.clock.utc_now())
+    """Store a measurement of the motion-to-photon delay of a piece of equipment."""
+    return add_calibration(db, body, by=caller.actor, now=context.clock.utc_now())
 
 
 @router.post("/{calibration_id}/retire")
 def post_retirement(
-    calibration_id: str, wish: Retirement, db: Writing, context: Context, caller: SignedIn
+    calibration_id: str, body: Retirement, db: Writing, context: Context, caller: SignedIn
 ) -> CalibrationView:
-    """Say that a measurement was a mistake; it stays in the history."""
+    """Mark a calibration as a mistake; it remains in the history."""
     return retire_calibration(
-        db, calibration_id, wish, by=caller.actor, now=context.clock.utc_now()
+        db, calibration_id, body, by=caller.actor, now=context.clock.utc_now()
     )

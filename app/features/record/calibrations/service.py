@@ -1,7 +1,7 @@
-"""Calibrations: appended, never edited.
+"""Calibrations: measurements of motion-to-photon delay, appended and never edited.
 
-The newest measurement of an equipment that was not retired is the one that holds. What latency a
-study adds comes on top of it, so an export carries these numbers beside the data.
+The newest measurement of a piece of equipment that was not retired is the current one. A study's
+added latency comes on top of it, so an export contains these numbers along with the data.
 """
 
 from datetime import date, datetime
@@ -19,9 +19,9 @@ Line = Annotated[str, StringConstraints(strip_whitespace=True, min_length=1, max
 
 
 class NewCalibration(BaseModel):
-    """A measurement of one equipment's own delay from movement to picture.
+    """A measurement of the motion-to-photon delay of one piece of equipment.
 
-    `sd_ms` is the standard deviation over the `samples` single measurements.
+    `sd_ms` is the standard deviation over the `samples` individual measurements.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -36,7 +36,7 @@ class NewCalibration(BaseModel):
 
 
 class Retirement(BaseModel):
-    """Why a measurement must not be used any more."""
+    """The reason why a calibration must no longer be used."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -44,7 +44,7 @@ class Retirement(BaseModel):
 
 
 class CalibrationView(BaseModel):
-    """A stored measurement; `current` marks the one of its equipment that holds."""
+    """A stored calibration; `current` marks the one in force for its equipment."""
 
     id: str
     equipment: str
@@ -64,29 +64,29 @@ class CalibrationView(BaseModel):
 
 MS_PER_S = 1000.0
 _MS_DIGITS = 6
-"""What is left after the way through seconds; far below what anybody can measure."""
+"""Removes the rounding errors of the conversion from seconds; far finer than can be measured."""
 
 
 def add_calibration(
-    db: Session, wish: NewCalibration, *, by: str, now: datetime
+    db: Session, body: NewCalibration, *, by: str, now: datetime
 ) -> CalibrationView:
-    """Store a measurement. Raises InvalidInput where it lies in the future."""
-    if wish.measured_on > now.date():
+    """Store a measurement; raises InvalidInput if its date is in the future."""
+    if body.measured_on > now.date():
         raise InvalidInput(
-            "the measurement lies in the future",
-            value=wish.measured_on.isoformat(),
+            "the date of the measurement is in the future",
+            value=body.measured_on.isoformat(),
             valid=f"up to {now.date().isoformat()}",
             remedy="Give the day on which it was measured.",
         )
     row = Calibration(
         id=new_id(),
-        equipment=wish.equipment,
-        motion_to_photon_s=wish.motion_to_photon_ms / MS_PER_S,
-        sd_s=wish.sd_ms / MS_PER_S,
-        samples=wish.samples,
-        method=wish.method,
-        measured_on=wish.measured_on.isoformat(),
-        note=wish.note.strip(),
+        equipment=body.equipment,
+        motion_to_photon_s=body.motion_to_photon_ms / MS_PER_S,
+        sd_s=body.sd_ms / MS_PER_S,
+        samples=body.samples,
+        method=body.method,
+        measured_on=body.measured_on.isoformat(),
+        note=body.note.strip(),
         by=by,
         at=now,
     )
@@ -96,7 +96,7 @@ def add_calibration(
 
 
 def calibrations(db: Session) -> list[CalibrationView]:
-    """Every measurement, by equipment, the newest first."""
+    """Return all calibrations, sorted by equipment and then newest first."""
     rows = list(
         db.scalars(
             select(Calibration).order_by(
@@ -115,9 +115,9 @@ def calibrations(db: Session) -> list[CalibrationView]:
 
 
 def retire_calibration(
-    db: Session, calibration_id: str, wish: Retirement, *, by: str, now: datetime
+    db: Session, calibration_id: str, body: Retirement, *, by: str, now: datetime
 ) -> CalibrationView:
-    """Mark a measurement as a mistake. Raises NotFound, and Conflict where it was retired."""
+    """Mark a calibration as a mistake; raises NotFound, or Conflict if it was already retired."""
     row = db.get(Calibration, calibration_id, with_for_update=True)
     if row is None:
         raise NotFound("there is no such calibration", value=calibration_id)
@@ -127,7 +127,7 @@ def retire_calibration(
             value=row.retired_at.isoformat(),
             remedy="It stays in the history with its first reason.",
         )
-    row.retired_at, row.retired_by, row.retired_reason = now, by, wish.reason
+    row.retired_at, row.retired_by, row.retired_reason = now, by, body.reason
     db.flush()
     return _one(db, row.id)
 

@@ -1,4 +1,4 @@
-"""What operators see of sessions and what they order: views, commands, live news."""
+"""The operator's cockpit: views of sessions, commands, and live updates."""
 
 from app.features.record.cockpit.schemas import LimbName, PhaseStatus
 from app.features.record.cockpit.watching import router

@@ -1,4 +1,4 @@
-"""From an operator's request to an engine command, storing the words that come with it."""
+"""Convert an operator's request into an engine command, and store the texts that come with it."""
 
 from sqlalchemy.orm import Session
 
@@ -20,33 +20,35 @@ from app.protocol import Step
 _NEEDS_REASON = ("redo", "skip", "abort", "withdraw", "override_stop", "reopen_consent")
 _STARTS = ("start", "begin_phase")
 _ENDS = ("pause", "skip", "complete_step", "abort", "withdraw")
-"""What stops filling the disk: it is done on a full one, too."""
+"""Commands that end recording, so they are accepted even when the disk is full."""
 
 
 def command_of(
     db: Session, context: AppContext, session: StudySession, request: CommandRequest, actor: str
 ) -> Command:
-    """The engine's command; raises InvalidInput where words are missing, and NotDurable where
-    something would start that cannot be stored.
+    """Convert a request into an engine command, and store its texts.
+
+    Raises InvalidInput if a required text is missing, and NotDurable if the command would start
+    something that cannot be stored.
     """
-    _look_at_storage(context, request.type)
+    _check_storage(context, request.type)
     reason = (request.reason or "").strip()
     if request.type in _NEEDS_REASON:
-        reason_given(reason, request.type)
+        require_reason(reason, request.type)
     store = _Store(db, context, session, actor)
     connected = context.hub.headset_connected(session.id)
     if request.type in _NEEDS_REASON:
         return _with_reason(request, store.put("reason", reason))
     match request.type:
         case "complete_step":
-            content = _completing(store, request)
+            content = _completion_content(store, request)
             return c.CompleteStep(by="operator", step=request.step_index, content=content)
         case "begin_phase":
             return c.BeginPhase(headset_connected=connected)
         case "materialise":
             return c.Materialise(by="operator", headset_connected=connected)
         case "pause":
-            # Asking again adds no event, so there would be nothing to hold the words.
+            # A second pause request adds no event that could refer to its reason.
             phase = state_of(session).phase
             new = bool(reason) and not (phase is not None and phase.pausing)
             return c.Pause(content=store.put("reason", reason) if new else None)
@@ -58,15 +60,15 @@ def command_of(
             return c.Start()
 
 
-def _look_at_storage(context: AppContext, kind: str) -> None:
+def _check_storage(context: AppContext, kind: str) -> None:
     if kind in _STARTS:
         context.storage.require_storage()
     if kind in _ENDS:
         context.storage.make_room()
 
 
-def reason_given(reason: str, what: str) -> str:
-    """The words of a reason; raises InvalidInput where there are none."""
+def require_reason(reason: str, what: str) -> str:
+    """Return a reason without surrounding spaces; raises InvalidInput if it is empty."""
     if not reason.strip():
         raise InvalidInput(
             f"{what} needs a reason",
@@ -93,8 +95,8 @@ def _with_reason(request: CommandRequest, reason: ContentRef) -> Command:
             return c.Stop(status="withdrawn", content=reason)
 
 
-def _completing(store: "_Store", request: CommandRequest) -> ContentRef | None:
-    """What comes with a step that is done: a consent's record, or the heights."""
+def _completion_content(store: "_Store", request: CommandRequest) -> ContentRef | None:
+    """Store what comes with a completed step (a consent or heights), and return its reference."""
     step = store.current_step()
     late = step is not None and request.step_index not in (None, step.index)
     if step is not None and step.kind == "consent" and not late:
@@ -104,14 +106,17 @@ def _completing(store: "_Store", request: CommandRequest) -> ContentRef | None:
 
 
 class _Store:
-    """Puts words beside the log, in the caller's transaction: a refusal leaves none behind."""
+    """Store texts next to the event log, in the caller's transaction.
+
+    If the command is rejected, the transaction is rolled back, so no text remains.
+    """
 
     def __init__(self, db: Session, context: AppContext, session: StudySession, actor: str) -> None:
         self._db, self._context, self._session, self._actor = db, context, session, actor
         self.consents = ConsentDesk(db, context, session, actor)
 
     def current_step(self) -> Step | None:
-        """The step that the session stands at, if it stands anywhere."""
+        """Return the current step of the session, or None."""
         current = state_of(self._session).current
         return None if current is None else plan_of(self._db, self._session)[current]
 

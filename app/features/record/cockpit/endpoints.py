@@ -1,11 +1,11 @@
-"""Sessions over HTTP: joining, the cockpit's view, commands, the log."""
+"""HTTP endpoints for sessions: creating them, the cockpit's view, commands, events, and answers."""
 
 from fastapi import APIRouter
 from sqlalchemy import select
 
 from app.errors import Conflict
 from app.features.design.studies import study_by_key
-from app.features.record.cockpit.commands import command_of, reason_given
+from app.features.record.cockpit.commands import command_of, require_reason
 from app.features.record.cockpit.schemas import (
     NEVER_STALE,
     CommandRequest,
@@ -49,7 +49,7 @@ router = APIRouter(tags=["sessions"])
 def create_session(
     key: str, request: NewSession, db: Writing, context: Context, caller: SignedIn
 ) -> SessionView:
-    """Join a study: take the next slot of the ledger for a participant."""
+    """Create a session of a study, which takes the next slot of the ledger."""
     session = join(
         db,
         context,
@@ -66,13 +66,13 @@ def create_session(
 def get_sessions(
     key: str, db: Reading, caller: SignedIn, kind: Kind | None = None
 ) -> list[SessionSummary]:
-    """The sessions of a study, newest first."""
+    """Return the sessions of a study, newest first."""
     return list_sessions(db, study_by_key(db, key), kind, caller)
 
 
 @router.get("/sessions/{session_id}")
 def get_session(session_id: str, db: Reading, context: Context, caller: SignedIn) -> SessionView:
-    """A session as the cockpit shows it."""
+    """Return a session as the cockpit shows it."""
     return session_view(db, context, session_by_id(db, session_id), caller)
 
 
@@ -80,10 +80,10 @@ def get_session(session_id: str, db: Reading, context: Context, caller: SignedIn
 def post_command(
     session_id: str, request: CommandRequest, db: Writing, context: Context, caller: SignedIn
 ) -> SessionView:
-    """Do something with a session. A repeated `command_id` changes nothing.
+    """Apply a command to a session. A repeated `command_id` changes nothing.
 
-    A command that was decided on an older version is refused as stale, unless it is a note or
-    stops something.
+    A command that was decided on an older version of the session is rejected as stale, unless it is
+    a note or stops something.
     """
     session = session_by_id(db, session_id, lock=True)
     if is_repeated(db, session_id, request.command_id):
@@ -103,7 +103,7 @@ def post_command(
 
 @router.get("/sessions/{session_id}/events")
 def get_events(session_id: str, db: Reading, caller: SignedIn) -> list[EventView]:
-    """The event log, oldest first."""
+    """Return the event log of a session, oldest first."""
     return event_views(db, session_by_id(db, session_id), caller)
 
 
@@ -111,13 +111,13 @@ def get_events(session_id: str, db: Reading, caller: SignedIn) -> list[EventView
 def post_reveal(
     session_id: str, request: Reveal, db: Writing, context: Context, caller: SignedIn
 ) -> SessionView:
-    """Show a blinded session's condition before it is known, for a reason that goes on record.
+    """Show the condition of a blinded session early, for a reason that is recorded.
 
-    Asking again changes nothing. An operator stays blind. Raises Conflict where another session has
-    this one's slot by now: its condition would be shown, too.
+    Repeating the request changes nothing. Operators stay blinded. Raises Conflict if another
+    session has taken this one's slot, because its condition would be revealed, too.
     """
     session = session_by_id(db, session_id, lock=True)
-    reason = reason_given(request.reason, "showing the condition")
+    reason = require_reason(request.reason, "showing the condition")
     if is_blind(db, caller, protocol_of_session(db, session), session):
         content = store_content(
             db,
@@ -139,13 +139,13 @@ def post_reveal(
 
 @router.get("/sessions/{session_id}/answers")
 def get_answers(session_id: str, db: Reading, _: SignedIn) -> list[StoredAnswers]:
-    """Every stored form with answers and scores."""
+    """Return all stored forms of a session with their answers and scores."""
     return stored_answers(db, session_by_id(db, session_id))
 
 
 @router.get("/sessions/{session_id}/administration")
 def get_administration(session_id: str, db: Reading, _: SignedIn) -> Administration | None:
-    """The form that is due now, for entry by the operator."""
+    """Return the form that is due now, for the operator to fill in; null if none is."""
     return current_administration(db, session_by_id(db, session_id))
 
 
@@ -153,14 +153,14 @@ def get_administration(session_id: str, db: Reading, _: SignedIn) -> Administrat
 def post_submission(
     session_id: str, request: SubmissionRequest, db: Writing, context: Context, caller: SignedIn
 ) -> Receipt:
-    """Store a form that the operator filled in from what the participant said."""
+    """Store a form that the operator filled in with the participant's spoken answers."""
     session = session_by_id(db, session_id, lock=True)
     return submit(db, context, session, request, mode="operator", actor=caller.actor)
 
 
 @router.get("/sessions/{session_id}/streams")
 def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
-    """How much of each stream of each run of the headset is on disk."""
+    """Return how much of each stream is on disk, for every epoch of the headset."""
     session_by_id(db, session_id)
     return [
         StreamView(
@@ -180,5 +180,5 @@ def get_streams(session_id: str, db: Reading, _: SignedIn) -> list[StreamView]:
 
 @router.get("/sessions/{session_id}/consent")
 def get_consent(session_id: str, db: Reading, _: SignedIn) -> ConsentRecord | None:
-    """The newest consent of a session with everything it was given to; null where there is none."""
+    """Return the latest consent of a session with everything it covers; null if there is none."""
     return consent_record(db, session_by_id(db, session_id))

@@ -1,4 +1,4 @@
-"""What happened in each phase so far, for the cockpit."""
+"""Summarise each phase of a session for the cockpit."""
 
 from collections.abc import Sequence
 from typing import TypedDict
@@ -14,7 +14,7 @@ _MS_DIGITS = 3
 
 
 class _Latency(TypedDict):
-    """The fields of a phase's view about its achieved latency."""
+    """The fields of `PhaseView` that describe the achieved latency."""
 
     achieved_latency_ms: float | None
     achieved_low_ms: float | None
@@ -25,7 +25,7 @@ class _Latency(TypedDict):
 
 
 def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[PhaseView]:
-    """Every phase in order; latencies are left out for a blinded operator."""
+    """Return all phases of a session in order; latencies are omitted for a blinded operator."""
     completions = dict(
         db.execute(
             select(Completion.phase_id, func.count())
@@ -63,14 +63,14 @@ def phase_views(db: Session, session: StudySession, *, blinded: bool) -> list[Ph
 
 
 def _latency(row: PhaseLatency | None, *, blinded: bool) -> _Latency:
-    """What was measured; a blinded operator is not told numbers, nor reasons that name lags."""
-    told = None if blinded else row
+    """Return a phase's measured latency, without numbers or reasons for a blinded operator."""
+    shown = None if blinded else row
     return _Latency(
-        achieved_latency_ms=_ms(told.achieved_s if told else None),
-        achieved_low_ms=_ms(told.low_s if told else None),
-        achieved_high_ms=_ms(told.high_s if told else None),
+        achieved_latency_ms=_ms(shown.achieved_s if shown else None),
+        achieved_low_ms=_ms(shown.low_s if shown else None),
+        achieved_high_ms=_ms(shown.high_s if shown else None),
         latency_off=row.flagged if row and row.achieved_s is not None else None,
-        latency_reason=told.reason if told else None,
+        latency_reason=shown.reason if shown else None,
         movement_s=row.movement_s if row else None,
     )
 
@@ -80,9 +80,10 @@ def _ms(time_s: float | None) -> float | None:
 
 
 def _side_contacts(db: Session, session: StudySession) -> dict[int, tuple[int, float]]:
-    """By phase: how often a side turned red, and for how long in all.
+    """Return, for each phase, how many times a side turned red and for how long in total.
 
-    A side is red while at least one body part touches it, so parts' intervals are united first.
+    A side is red while at least one body part touches it, so the intervals of the parts are merged
+    first.
     """
     spans: dict[int, dict[str, list[tuple[float, float]]]] = {}
     for phase_id, surface, begin_s, end_s in db.execute(

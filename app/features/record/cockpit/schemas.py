@@ -1,4 +1,4 @@
-"""A session as pages and clients see it."""
+"""Request and response models of the session endpoints."""
 
 from datetime import datetime
 from typing import Any, Literal, Self
@@ -33,15 +33,17 @@ CommandType = Literal[
 ]
 
 NEVER_STALE: tuple[CommandType, ...] = ("note", "pause", "abort", "withdraw")
-"""Commands that are taken on any version of the session. A note cannot clash with anything. Whoever
-stops wants it to stop, whatever was written or reported meanwhile: a participant who feels sick
-must not wait for a page to be drawn anew."""
+"""Commands that are accepted on any version of the session.
+
+A note cannot conflict with anything. A stop must take effect whatever was written or reported in
+the meantime: a participant who feels sick must not wait for a page to reload.
+"""
 
 AllowedType = CommandType | Literal["enter_answers"]
 
 
 class NewSession(BaseModel):
-    """A request to join a study."""
+    """A request to create a session of a study."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -61,9 +63,9 @@ class Height(BaseModel):
 
 
 class CommandRequest(BaseModel):
-    """An operator's command, decided on what their page showed (`expected_version`).
+    """An operator's command, with the version of the session that their page showed.
 
-    Those of `NEVER_STALE` are taken on any version and may leave it out.
+    Commands in `NEVER_STALE` apply to any version and may omit `expected_version`.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -80,12 +82,12 @@ class CommandRequest(BaseModel):
     @model_validator(mode="after")
     def _on_a_version(self) -> Self:
         if self.expected_version is None and self.type not in NEVER_STALE:
-            raise ValueError(f"expected_version is missing: {self.type} is decided on a version")
+            raise ValueError(f"expected_version is missing: {self.type} applies to one version")
         return self
 
 
 class Reveal(BaseModel):
-    """Why the condition of a blinded session must be known before it is over."""
+    """The reason for showing the condition of a blinded session before the session has ended."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -93,7 +95,7 @@ class Reveal(BaseModel):
 
 
 class SlotInfo(BaseModel):
-    """The session's row of the ledger."""
+    """The slot of the ledger that a session occupies."""
 
     index: int
     block: int
@@ -101,7 +103,7 @@ class SlotInfo(BaseModel):
 
 
 class StepView(BaseModel):
-    """One step of the procedure; fields that do not apply are null."""
+    """A step of the procedure; fields that do not apply are null."""
 
     index: int
     key: str
@@ -122,7 +124,7 @@ class StepView(BaseModel):
 
 
 class CurrentView(BaseModel):
-    """The current step; `status` is ready or that of its phase."""
+    """The current step of a session; `status` is `ready` or the status of its phase."""
 
     index: int
     status: CurrentStatus
@@ -134,7 +136,7 @@ class CurrentView(BaseModel):
 
 
 class HeldView(BaseModel):
-    """Which stop rule holds the session: the limit `stop_at` on a score, or on its rise."""
+    """The stop rule that holds a session: the limit `stop_at` on a score, or on its rise."""
 
     rule: int
     instrument: str
@@ -144,9 +146,9 @@ class HeldView(BaseModel):
 
 
 class RefusalView(BaseModel):
-    """The participant does not want to take part: said at the consent of this step, at this time.
+    """A participant's refusal to take part, given at the consent step `step` at the time `at`.
 
-    `at` is null in a log that was restored without its alarms.
+    `at` is null if the event log was restored without its alarms.
     """
 
     step: int
@@ -154,7 +156,7 @@ class RefusalView(BaseModel):
 
 
 class DeviceView(BaseModel):
-    """A paired device."""
+    """A device that is paired with a session."""
 
     id: str
     kind: Literal["tablet", "headset"]
@@ -165,14 +167,16 @@ class DeviceView(BaseModel):
 
 
 class PhaseView(BaseModel):
-    """A phase that was prepared, with what happened in it so far.
+    """A phase that has been prepared, with what has happened in it so far.
 
-    `side_contacts` counts how often a side turned red, `side_contact_s` sums how long (active s).
+    `side_contacts` counts how many times a side turned red; `side_contact_s` is the total duration,
+    in seconds of active time.
 
-    The achieved latency is measured once the phase is over: `movement_s` is null until then. It
-    comes with its 95 % interval; where nothing can be said it is null and `latency_reason` says
-    why. `latency_off`: by more than 10 ms and more than one frame. A blinded operator is only told
-    whether it is off.
+    The achieved latency is measured once the phase has ended; `movement_s` is null until then. It
+    has a 95 % interval; if it cannot be determined, it is null and `latency_reason` says why.
+    `latency_off`:
+    whether it deviates by more than 10 ms and more than one frame, which is all that a blinded
+    operator is shown.
     """
 
     phase_id: int
@@ -197,7 +201,7 @@ class PhaseView(BaseModel):
 
 
 class NoteView(BaseModel):
-    """A note of the lab."""
+    """A note that the lab wrote during a session."""
 
     id: str
     text: str
@@ -206,10 +210,10 @@ class NoteView(BaseModel):
 
 
 class SessionSummary(BaseModel):
-    """A row of a list of sessions.
+    """A row in a list of sessions.
 
-    `shortfalls`: what a completed session lacks by its study's rules; it counts if there are none.
-    Null where the study has no rules, or the session is not completed.
+    `shortfalls`: the rules of its study that a completed session does not meet; it is valid if
+    there are none. Null if the study has no rules, or the session is not completed.
     """
 
     id: str
@@ -226,9 +230,10 @@ class SessionSummary(BaseModel):
 
 
 class SessionView(SessionSummary):
-    """Everything a cockpit shows. `sequence` and latencies are null where the reader is `blinded`.
+    """Everything the cockpit shows of a session.
 
-    `alarms`: those that are open, the oldest first.
+    `sequence` and latencies are null if the reader is `blinded`. `alarms`: the open alarms, oldest
+    first.
     """
 
     blinded: bool
@@ -253,7 +258,7 @@ class SessionView(SessionSummary):
 
 
 class EventView(BaseModel):
-    """A row of the event log."""
+    """An event of a session's log."""
 
     seq: int
     type: str
@@ -264,7 +269,7 @@ class EventView(BaseModel):
 
 
 class StreamView(BaseModel):
-    """How much of one stream of one run of the headset is on disk."""
+    """How much of one stream is on disk, for one epoch of the headset."""
 
     stream: str
     epoch: int

@@ -1,4 +1,4 @@
-"""Drawing a session for a page, from its snapshot and rows."""
+"""Build the cockpit's views of sessions from their snapshots and rows."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -46,7 +46,7 @@ from app.protocol import Step, StudyProtocol
 def session_view(
     db: Session, context: AppContext, session: StudySession, caller: Caller
 ) -> SessionView:
-    """The whole session, as `caller` may see it."""
+    """Return the full view of a session, without what `caller` may not see."""
     version = kept_row(db, StudyVersion, session.study_version_id)
     protocol = protocol_of(version)
     blinded = is_blind(db, caller, protocol, session)
@@ -82,7 +82,7 @@ def session_view(
 def list_sessions(
     db: Session, study: Study, kind: str | None, caller: Caller
 ) -> list[SessionSummary]:
-    """All sessions of a study, newest first; orders are left out where `caller` is blind."""
+    """Return all sessions of a study, newest first; orders are omitted if `caller` is blinded."""
     query = (
         select(StudySession, Participant.code, LedgerSlot.sequence)
         .join(Participant, Participant.id == StudySession.participant_id)
@@ -90,7 +90,8 @@ def list_sessions(
         .join(LedgerSlot, LedgerSlot.id == SlotAttempt.slot_id)
         .where(StudySession.study_id == study.id)
         .order_by(StudySession.created_at.desc())
-        # A thousand snapshots, or the protocol a thousand times over, would be most of the work.
+        # Loading a snapshot and the protocol with each of a thousand rows would be most of the
+        # work.
         .options(defer(StudySession.snapshot, raiseload=True))
     )
     if kind is not None:
@@ -107,9 +108,10 @@ def list_sessions(
 
 
 def event_views(db: Session, session: StudySession, caller: Caller) -> list[EventView]:
-    """The event log for reading.
+    """Return the event log of a session, oldest first.
 
-    Who is blind gets no latencies, and no hashes: with three latencies to try, a hash tells which.
+    Blinded callers get no latencies and no hashes: from a hash, the latency can be found by trying
+    the few possible values.
     """
     version = kept_row(db, StudyVersion, session.study_version_id)
     blinded = is_blind(db, caller, protocol_of(version), session)
@@ -236,7 +238,7 @@ def _notes(db: Session, session: StudySession) -> list[NoteView]:
 
 
 def _reasons(db: Session, session: StudySession) -> dict[int, str]:
-    """Why steps were skipped or done over, by step index; the newest reason of each."""
+    """Return the latest reason for which each step was skipped or repeated, by step index."""
     bodies = {
         row.id: content_body(row) for row in contents_of(db, session.id, "reason") if row.body
     }
@@ -250,7 +252,7 @@ def _reasons(db: Session, session: StudySession) -> dict[int, str]:
 
 
 def _refusal(state: SessionState, alarms: Sequence[AlarmView]) -> RefusalView | None:
-    """The refusal that holds the session; None where there is none, or the session is over."""
+    """Return the refusal that holds the session; None if there is none or the session has ended."""
     if state.refused_consent is None or state.current is None:
         return None
     since = (alarm.since for alarm in alarms if alarm.code == "consent_refused")
@@ -260,7 +262,7 @@ def _refusal(state: SessionState, alarms: Sequence[AlarmView]) -> RefusalView | 
 def held_view(
     db: Session, version: StudyVersion, protocol: StudyProtocol, state: SessionState
 ) -> HeldView | None:
-    """The stop rule that was met; None where the session is not held."""
+    """Return the stop rule that holds the session; None if the session is not held."""
     if state.held is None or protocol.safety is None:
         return None
     rule = protocol.safety.stop_rules[state.held.rule]

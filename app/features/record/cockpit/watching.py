@@ -1,4 +1,4 @@
-"""Live news of a session for the console, as server-sent events."""
+"""Live updates of a session for the console, as server-sent events."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -17,36 +17,39 @@ from app.platform.dependencies import Context, SignedIn, get_caller
 
 router = APIRouter(tags=["sessions"])
 HEARTBEAT_S = 10.0
-LOOK_AGAIN_S = 5.0
-"""A login that was ended elsewhere is noticed at once, one that expires within this time."""
+RECHECK_S = 5.0
+"""How often access is checked.
+
+A login that is ended elsewhere is noticed immediately, one that expires within this time.
+"""
 
 
-def _known_session(session_id: str, context: Context) -> str:
-    """The id of a session that exists: a stream cannot say otherwise once it has begun."""
+def _existing_session(session_id: str, context: Context) -> str:
+    """Return the id of an existing session; raises an error before the stream has begun."""
     with context.database.reading() as db:
         return session_by_id(db, session_id).id
 
 
-KnownSession = Annotated[str, Depends(_known_session)]
+ExistingSession = Annotated[str, Depends(_existing_session)]
 
 
 class Reader:
-    """Who reads a stream, as they are now: they may be shut out, or unblinded, while they read."""
+    """The reader of a live stream, who may lose access or be unblinded while reading."""
 
     def __init__(self, request: Request, context: AppContext, session_id: str) -> None:
         self._request, self._context, self._session_id = request, context, session_id
-        self._looked_s = float("-inf")
+        self._checked_s = float("-inf")
         self.blinded = True
 
-    async def may_go_on(self, *, now: bool = False) -> bool:
-        """Whether the login still opens this session; asks the database every few seconds."""
-        looked_s = asyncio.get_running_loop().time()
-        if not now and looked_s - self._looked_s < LOOK_AGAIN_S:
+    async def has_access(self, *, now: bool = False) -> bool:
+        """Return whether the reader still has access; queries the database every few seconds."""
+        now_s = asyncio.get_running_loop().time()
+        if not now and now_s - self._checked_s < RECHECK_S:
             return True
-        self._looked_s = looked_s
-        return await asyncio.to_thread(self._look)
+        self._checked_s = now_s
+        return await asyncio.to_thread(self._check)
 
-    def _look(self) -> bool:
+    def _check(self) -> bool:
         try:
             caller = get_caller(self._request, self._context)
         except ReembodyError:
@@ -57,7 +60,7 @@ class Reader:
         return True
 
     async def session(self) -> ServerSentEvent:
-        """The session as this reader may see it."""
+        """Return the session as an event, without what this reader may not see."""
         return await asyncio.to_thread(self._session)
 
     def _session(self) -> ServerSentEvent:
@@ -69,7 +72,7 @@ class Reader:
         return ServerSentEvent(data=view, event="session", id=str(view.version))
 
 
-def _reader(request: Request, context: Context, _: SignedIn, session_id: KnownSession) -> Reader:
+def _reader(request: Request, context: Context, _: SignedIn, session_id: ExistingSession) -> Reader:
     return Reader(request, context, session_id)
 
 
@@ -77,24 +80,24 @@ def _reader(request: Request, context: Context, _: SignedIn, session_id: KnownSe
 async def get_live(
     session_id: str, reader: Annotated[Reader, Depends(_reader)], context: Context
 ) -> AsyncIterator[ServerSentEvent]:
-    """News of a session: `session` on every change, `telemetry` a few times a second, and
-    `storage` at first and when the record ceases to be written, or the disk gets low, and
-    `background` when something that runs beside the requests fails or works again.
+    """Stream live updates of a session until the login ends.
 
-    Ends when the login does.
+    Events: `session` on every change; `telemetry` a few times a second; `storage` at the start, and
+    when the record can no longer be written or the disk is almost full; `background` when a
+    background job fails or recovers.
     """
     with context.hub.subscribe(session_id, "telemetry") as subscription:
         news: dict[str, Any] = {"session": None}
-        told, failing_before = None, tuple[Failing, ...]()
-        while await reader.may_go_on(now="access" in news):
+        sent_storage, sent_failing = None, tuple[Failing, ...]()
+        while await reader.has_access(now="access" in news):
             storage = await asyncio.to_thread(context.storage.state)
-            if storage != told:
+            if storage != sent_storage:
                 yield ServerSentEvent(data=storage, event="storage")
-                told = storage
+                sent_storage = storage
             failing = context.background.failing()
-            if failing != failing_before:
+            if failing != sent_failing:
                 yield ServerSentEvent(data=failing, event="background")
-                failing_before = failing
+                sent_failing = failing
             if "session" in news:
                 try:
                     event = await reader.session()
@@ -110,7 +113,11 @@ async def get_live(
 
 
 def live_figures(figures: dict[str, Any], *, blinded: bool) -> dict[str, Any]:
-    """What a reader sees; joint errors grow with the latency, so they would tell the condition."""
+    """Return the live figures that a reader may see.
+
+    Joint errors are omitted for blinded readers: they grow with the latency and so reveal the
+    condition.
+    """
     if not blinded:
         return figures
     return {name: value for name, value in figures.items() if name != "joint_error_deg"}

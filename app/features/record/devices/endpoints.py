@@ -1,4 +1,4 @@
-"""Pairing devices over HTTP."""
+"""HTTP endpoints for pairing and unpairing devices."""
 
 from datetime import datetime
 from typing import Literal
@@ -19,7 +19,7 @@ DeviceKind = Literal["tablet", "headset"]
 
 
 class NewPairing(BaseModel):
-    """A wish to pair a device."""
+    """A request for a code to pair a device."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -27,12 +27,12 @@ class NewPairing(BaseModel):
 
 
 class PairingView(BaseModel):
-    """A code that works once, until `expires_at`; `url` and `qr_svg` open the page with it.
+    """A single-use pairing code, valid until `expires_at`.
 
-    Both are null where no other device can reach the server. A headset's client is given the
-    address of the server and types the code; it has no page to scan, so its `qr_svg` is null.
-    `help_url` is the page on which a device that comes for the first
-    time gets the lab's certificate; null where there is nothing to install.
+    `url` and `qr_svg` open the page with the code; both are null if no other device can reach the
+    server. A headset's client is given the address of the server and the code is typed in; it has
+    no page to scan, so its `qr_svg` is null. `help_url` is the page from which a new device gets
+    the lab's certificate; null if there is nothing to install.
     """
 
     device: DeviceKind
@@ -45,7 +45,7 @@ class PairingView(BaseModel):
 
 
 class PairRequest(BaseModel):
-    """A code, typed or scanned."""
+    """A pairing code, typed or scanned, and the name of the device."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -54,7 +54,7 @@ class PairRequest(BaseModel):
 
 
 class PairedView(BaseModel):
-    """A paired device. Only headsets see their token; a tablet holds it in a cookie."""
+    """A device that was paired. Only headsets receive their token; a tablet has it in a cookie."""
 
     device: DeviceKind
     session_id: str
@@ -67,24 +67,24 @@ TABLET_COOKIE_DAYS = 2
 
 @router.post("/sessions/{session_id}/pairings", status_code=201)
 def post_pairing(
-    session_id: str, wish: NewPairing, request: Request, db: Writing, context: Context, _: SignedIn
+    session_id: str, body: NewPairing, request: Request, db: Writing, context: Context, _: SignedIn
 ) -> PairingView:
-    """Show a new code for a device of this session; an older unused code stops working."""
+    """Create a code to pair a device with this session; an older unused code stops working."""
     context.storage.require_storage()
     session = session_by_id(db, session_id)
     made = new_code(
         db,
         session_id=session.id,
-        kind=wish.device,
+        kind=body.device,
         now=context.clock.utc_now(),
         minutes=context.settings.pairing_minutes,
     )
     reach = context.network.reach
     base = reach.for_devices(str(request.base_url))
-    tablet = wish.device == "tablet" and base is not None
+    tablet = body.device == "tablet" and base is not None
     url = f"{base}/tablet?code={made.code}" if tablet else base
     return PairingView(
-        device=wish.device,
+        device=body.device,
         code=made.code,
         url=url,
         qr_svg=qr_svg(url) if tablet and url is not None else None,
@@ -98,7 +98,10 @@ def post_pairing(
 def post_pair(
     request_body: PairRequest, request: Request, response: Response, context: Context
 ) -> PairedView:
-    """Use a code up. Guessing is slowed down, and takes no turn at writing."""
+    """Pair a device by its code, which can be used once.
+
+    Attempts are rate-limited, and a wrong code never opens a write transaction.
+    """
     context.storage.require_storage()
     address = request.client.host if request.client else "unknown"
     network, now = network_of(address), context.clock.utc_now()
@@ -131,7 +134,7 @@ def post_pair(
 def delete_device(
     session_id: str, device_id: str, db: Writing, context: Context, caller: SignedIn
 ) -> None:
-    """Unpair a device: its token stops working at once."""
+    """Unpair a device: its token stops working immediately."""
     now = context.clock.utc_now()
     revoke(db, session_id=session_id, device_id=device_id, now=now)
     subject = f"session:{session_id}"

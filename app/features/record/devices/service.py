@@ -1,4 +1,4 @@
-"""A device pairs once by a short code and then holds a token for its own session only."""
+"""Pair devices: a short single-use code gives a device a token for one session only."""
 
 import secrets
 from dataclasses import dataclass
@@ -11,16 +11,16 @@ from app.errors import Gone, NotFound
 from app.models import Device, PairingCode
 from app.platform.tokens import hash_token
 
-# No vowels (no words), no 0/O, 1/I/L, 2/Z, 5/S, 8/B: read aloud and typed without doubt.
+# No vowels (so no words), and no 0/O, 1/I/L, 2/Z, 5/S, 8/B: unambiguous when read aloud or typed.
 CODE_ALPHABET = "3467CDFGHJKMNPQRTVWXY9"
 CODE_LENGTH = 6
 TABLET_SILENT_AFTER_S = 30.0
-"""A tablet is told every 10 s that the server is there; after three misses it counts as away."""
+"""A tablet receives a heartbeat every 10 s; after missing three it counts as disconnected."""
 
 
 @dataclass(frozen=True)
 class NewCode:
-    """A code to show; it is stored as a hash."""
+    """A new pairing code in plain text; only its hash is stored."""
 
     code: str
     kind: str
@@ -29,14 +29,14 @@ class NewCode:
 
 @dataclass(frozen=True)
 class Paired:
-    """A device that has just been paired; the token leaves here once."""
+    """A newly paired device with its token, which is available in plain text only here."""
 
     device: Device
     token: str
 
 
 def new_code(db: Session, *, session_id: str, kind: str, now: datetime, minutes: float) -> NewCode:
-    """Make a single-use code for a tablet or headset of a session; older ones stop working."""
+    """Create a single-use code for pairing a tablet or headset; older codes stop working."""
     db.execute(
         update(PairingCode)
         .where(
@@ -62,27 +62,27 @@ def new_code(db: Session, *, session_id: str, kind: str, now: datetime, minutes:
 
 
 def usable_code(db: Session, code: str, now: datetime, *, lock: bool = False) -> PairingCode:
-    """The code; raises NotFound for an unknown one and Gone for one that was used or is too old."""
+    """Return the pairing code; raises NotFound if it is unknown, and Gone if used or expired."""
     plain = "".join(ch for ch in code.upper() if ch.isalnum())
     query = select(PairingCode).where(PairingCode.code_hash == hash_token(plain))
     row = db.scalar(query.with_for_update() if lock else query)
     if row is None:
         raise NotFound(
-            "no session waits for this code", value=code, remedy="Check the code on the console."
+            "no session has this pairing code", value=code, remedy="Check the code on the console."
         )
     if row.used_at is not None or row.expires_at <= now:
         raise Gone(
-            "this code was used already or is too old",
+            "this code was already used or has expired",
             value=code,
-            remedy="Ask the experimenter to show a new code; the device paired first goes on.",
+            remedy="Ask the experimenter to show a new code; a paired device keeps working.",
         )
     return row
 
 
 def pair(db: Session, *, code: str, name: str, now: datetime) -> Paired:
-    """Use a code up. A device of the same kind that was paired before is replaced.
+    """Pair a device by its code, replacing a paired device of the same kind.
 
-    Raises NotFound for an unknown code and Gone for one that was used or is too old.
+    Raises NotFound for an unknown code, and Gone for one that was used or has expired.
     """
     row = usable_code(db, code, now, lock=True)
     row.used_at = now
@@ -110,7 +110,7 @@ def pair(db: Session, *, code: str, name: str, now: datetime) -> Paired:
 
 
 def devices_of_session(db: Session, session_id: str) -> list[Device]:
-    """The devices that are paired now."""
+    """Return the devices that are currently paired with a session."""
     query = (
         select(Device)
         .where(Device.session_id == session_id, Device.revoked_at.is_(None))

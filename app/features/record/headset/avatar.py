@@ -1,8 +1,9 @@
-"""The physics avatar of a session: built for the participant, put on record, handed to the headset.
+"""The physics avatar of a session: built for the participant, recorded, and sent to the headset.
 
 The model follows from configuration, stature and scene. It is recorded as a whole all the same: a
-later version of the product may build another, and what a participant met must stay known. It tells
-the participant's measures, so it is content beside the event log and goes with an erasure.
+later version of the product may build a different model, and what a participant met must remain
+known. The model reveals the participant's measurements, so it is stored as content next to the
+event log and is removed by an erasure.
 """
 
 from collections.abc import Mapping
@@ -36,10 +37,10 @@ Length = Annotated[float, Field(gt=0.0, le=3.0, allow_inf_nan=False)]
 
 
 class AvatarWish(BaseModel):
-    """Whose body it is: the participant's stature, and what else was measured of it.
+    """A request for a physics avatar: the participant's stature and any other lengths measured.
 
-    `segments_m`: lengths by the names of docs/avatar-configuration.md; the others follow from the
-    stature.
+    `segments_m`: lengths by the names of docs/avatar-configuration.md; lengths left out follow from
+    the stature.
     """
 
     model_config = ConfigDict(extra="forbid")
@@ -49,13 +50,14 @@ class AvatarWish(BaseModel):
 
 
 class SessionAvatar(BaseModel):
-    """A physics avatar in its study's scene, to be simulated as it stands.
+    """A physics avatar in its study's scene, ready to be simulated.
 
     `mjcf` is the MuJoCo model with the boxes of all tasks, each named after its surface; the client
-    shows those of the present phase. `model_hash` is the SHA-256 of its bytes and
-    `configuration_hash` that of the configuration, both as they are on record. Added latency is set
-    while it runs, up to `longest_delay_s`. `standing_hips_m`: how high its hips are when it stands;
-    a model may have other legs than the participant, whose hips' height is scaled to it.
+    shows those of the current phase. `model_hash` is the SHA-256 of its bytes and
+    `configuration_hash` that of the configuration, both as recorded. Added latency is set while the
+    simulation runs, up to `longest_delay_s`. `standing_hips_m`: the height of the model's hips when
+    it stands; since a model may have other leg lengths than the participant, the participant's hip
+    height is scaled to it.
     """
 
     stature_m: float
@@ -68,23 +70,23 @@ class SessionAvatar(BaseModel):
 
 
 CONTENT = "avatar"
-"""Kind of the contents that hold models."""
+"""The kind of stored content that contains avatar models."""
 MS_PER_S = 1000.0
 
 
 @dataclass(frozen=True)
-class Prepared:
-    """A model that was built, and not yet recorded."""
+class PreparedAvatar:
+    """A physics avatar that was built but not recorded yet."""
 
-    told: SessionAvatar
+    avatar: SessionAvatar
     segments_m: Mapping[str, float]
 
 
-def prepare(db: Session, session_id: str, wish: AvatarWish) -> Prepared:
-    """Build the session's avatar; done before the writing turn, which others wait for.
+def prepare(db: Session, session_id: str, request: AvatarWish) -> PreparedAvatar:
+    """Build the session's physics avatar; call this before opening the write transaction.
 
-    Raises Conflict where the session's avatar is none of physics, InvalidInput for lengths that no
-    body has.
+    Building takes too long for a write transaction, which others wait for. Raises Conflict if the
+    session's avatar is not a physics avatar, and InvalidInput for lengths that no body has.
     """
     session = session_by_id(db, session_id)
     if session.avatar_configuration_hash is None:
@@ -95,12 +97,12 @@ def prepare(db: Session, session_id: str, wish: AvatarWish) -> Prepared:
         )
     configuration = configuration_by_hash(db, session.avatar_configuration_hash)
     protocol = protocol_of_session(db, session)
-    latest_s = max(one.latency_ms for one in protocol.conditions) / MS_PER_S
-    longest_s = max(latest_s, DEFAULT_OPTIONS.longest_delay_s)
-    stature_m = round(wish.stature_m, 3)
+    largest_s = max(one.latency_ms for one in protocol.conditions) / MS_PER_S
+    longest_s = max(largest_s, DEFAULT_OPTIONS.longest_delay_s)
+    stature_m = round(request.stature_m, 3)
     figure = figure_by_hash(db, configuration.humanoid)
-    model = _built(configuration, figure, stature_m, wish.segments_m, protocol.tasks, longest_s)
-    told = SessionAvatar(
+    model = _built(configuration, figure, stature_m, request.segments_m, protocol.tasks, longest_s)
+    avatar = SessionAvatar(
         stature_m=stature_m,
         configuration_hash=session.avatar_configuration_hash,
         configuration=file_of(configuration),
@@ -109,33 +111,33 @@ def prepare(db: Session, session_id: str, wish: AvatarWish) -> Prepared:
         longest_delay_s=longest_s,
         standing_hips_m=model.body.parts["Hips"].joint_m[1],
     )
-    return Prepared(told, wish.segments_m)
+    return PreparedAvatar(avatar, request.segments_m)
 
 
-def put_on_record(
-    db: Session, context: AppContext, session_id: str, prepared: Prepared, actor: str
+def record_avatar(
+    db: Session, context: AppContext, session_id: str, prepared: PreparedAvatar, actor: str
 ) -> None:
-    """Record a model, unless it is the one that was recorded last.
+    """Record the model of an avatar, unless it is the same as the last one recorded.
 
-    Raises Withdrawn and the like, as for everything that a headset sends.
+    Raises Withdrawn and the other errors that apply to everything a headset sends.
     """
     session = session_by_id(db, session_id, lock=True)
     require_capture(db, session_id)
-    told = prepared.told
+    avatar = prepared.avatar
     recorded = [content_body(row) for row in contents_of(db, session.id, CONTENT)]
     last = recorded[-1] if recorded else None
-    if isinstance(last, dict) and last.get("model_hash") == told.model_hash:
+    if isinstance(last, dict) and last.get("model_hash") == avatar.model_hash:
         return
     body = {
-        "stature_m": told.stature_m,
+        "stature_m": avatar.stature_m,
         "segments_m": dict(prepared.segments_m),
-        "configuration_hash": told.configuration_hash,
-        "model_hash": told.model_hash,
-        "mjcf": told.mjcf,
+        "configuration_hash": avatar.configuration_hash,
+        "model_hash": avatar.model_hash,
+        "mjcf": avatar.mjcf,
     }
     now = context.clock.utc_now()
     content = store_content(db, session_id=session.id, kind=CONTENT, body=body, by=actor, now=now)
-    command = RecordAvatar(configuration_hash=told.configuration_hash, content=content)
+    command = RecordAvatar(configuration_hash=avatar.configuration_hash, content=content)
     apply_command(db, context, session, command, actor=actor)
 
 

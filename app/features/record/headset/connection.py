@@ -1,7 +1,8 @@
-"""One headset's open socket: a reader, a talker, a follower, a watch; the writer stores it all.
+"""The connection of one headset: tasks that read, send, push the session's state, and monitor.
 
-Reading stops while too many messages wait for the disk: the client then feels TCP's backpressure
-and its journal grows visibly instead of anything being dropped.
+Everything received is stored by the telemetry writer. Reading stops while too many messages wait
+for the disk: the client then feels TCP's backpressure and its journal grows visibly, instead of
+anything being dropped.
 """
 
 import asyncio
@@ -53,18 +54,18 @@ from app.wire import (
 
 log = logging.getLogger(__name__)
 MAX_IN_FLIGHT = 64
-"""Two seconds of messages; more would let one reconnecting client starve the others."""
+"""About two seconds of messages; more would let one reconnecting client starve the others."""
 HELLO_DEADLINE_S = 10.0
-ANSWERS_KEPT = 64
+MAX_PROBE_ANSWERS = 64
 ECHO_NS = 1_000_000
-"""A client whose numbers are doubles may echo a time this much off."""
-Told = TypeVar("Told")
+"""Tolerance of an echoed time: a client that stores numbers as doubles rounds nanoseconds."""
+Argument = TypeVar("Argument")
 CLOSE_REFUSED = 4400
 
 
 @dataclass(eq=False)
 class HeadsetConnection:
-    """One open socket. Methods called by the writer are safe from its thread."""
+    """An open socket of a headset. The methods that the writer calls are safe from its thread."""
 
     socket: WebSocket
     context: AppContext
@@ -77,14 +78,14 @@ class HeadsetConnection:
     _outbox: asyncio.Queue[Message] = field(default_factory=asyncio.Queue)
     _in_flight: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MAX_IN_FLIGHT))
     _unanswered: int = 0
-    _answers: deque[ProbeAnswer] = field(default_factory=lambda: deque(maxlen=ANSWERS_KEPT))
+    _answers: deque[ProbeAnswer] = field(default_factory=lambda: deque(maxlen=MAX_PROBE_ANSWERS))
 
     def deliver(self, outcome: Outcome) -> None:
-        """Called by the writer: these are on disk."""
+        """Handle messages that are now on disk; called by the writer."""
         self._call(self._delivered, outcome)
 
     def fail(self, error: Exception) -> None:
-        """Called by the writer: the session's messages cannot be stored."""
+        """Report to the headset that its messages cannot be stored; called by the writer."""
         message = Failure(code="not_stored", message=str(error)[:300], remedy="Reconnect.")
         if isinstance(error, Withdrawn):
             message = Failure(code=error.code, message=error.message, remedy=error.remedy)
@@ -92,14 +93,14 @@ class HeadsetConnection:
 
     async def run(self) -> None:
         """Serve the socket until it closes."""
-        await self._greet()
+        await self._handshake()
         with self.context.hub.subscribe(self.session_id) as subscription:
             self.context.hub.headset_joined(self.session_id)
             self.context.hub.publish(self.session_id, "session")
             tasks = [
                 asyncio.create_task(self._read()),
-                asyncio.create_task(self._talk()),
-                asyncio.create_task(self._follow(subscription)),
+                asyncio.create_task(self._send_outbox()),
+                asyncio.create_task(self._push_state(subscription)),
                 asyncio.create_task(self.monitor.run(lambda: not self._in_flight.locked())),
             ]
             try:
@@ -120,8 +121,8 @@ class HeadsetConnection:
         self.monitor.leave(connected=connected)
         self.context.hub.publish(self.session_id, "session")
 
-    async def _greet(self) -> None:
-        """Take the hello and answer it."""
+    async def _handshake(self) -> None:
+        """Receive the hello message and answer it with a welcome."""
         received = await asyncio.wait_for(self.socket.receive(), HELLO_DEADLINE_S)
         if received["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(received.get("code", 1005))
@@ -143,8 +144,9 @@ class HeadsetConnection:
         now = self.context.clock.utc_now()
         with self.context.database.writing() as db:
             answer = welcome(db, self.session_id, hello, now)
-        # For an avatar of physics this loads compiled code: neither in the writing turn nor in the
-        # event loop.
+        # For a physics avatar this loads compiled code, so it runs neither in the write transaction
+        # nor in
+        # the event loop.
         with self.context.database.reading() as db:
             return answer, live_telemetry(db, self.session_id)
 
@@ -155,18 +157,18 @@ class HeadsetConnection:
                 raise WebSocketDisconnect(received.get("code", 1005))
             message = received.get("bytes")
             if message is not None:
-                await self._take_batch(message)
+                await self._handle_batch(message)
             else:
-                await self._take_text(received.get("text") or "")
+                await self._handle_text(received.get("text") or "")
 
-    async def _take_batch(self, message: bytes) -> None:
+    async def _handle_batch(self, message: bytes) -> None:
         batch = decode_batch(message)
         self._require_epoch(batch.header.epoch)
         await self._store(BatchContent(batch, message))
         # The live view does not wait for the commit.
         self.monitor.batch(batch)
 
-    async def _take_text(self, text: str) -> None:
+    async def _handle_text(self, text: str) -> None:
         received_ns = self.context.clock.monotonic_ns()
         message = parse_message(text)
         match message:
@@ -184,9 +186,11 @@ class HeadsetConnection:
                 await self._send(answer)
             case Probed():
                 self.monitor.probed(message)
-                if not can_be(message, self._answers):
-                    words = f"the clock reading of {message.client_sent_s:.3f} s is not what it was"
-                    self.monitor.observe(words)
+                if not can_be_true(message, self._answers):
+                    sent_s = f"{message.client_sent_s:.3f} s"
+                    self.monitor.report_impossible(
+                        f"the clock probe sent at {sent_s} does not match the server's answer"
+                    )
                 await self._store(ProbeContent(self.epoch, message))
             case Produced():
                 self._require_epoch(message.epoch)
@@ -204,7 +208,7 @@ class HeadsetConnection:
         self.writer.submit(Arrival(self.session_id, self, content))
 
     def _delivered(self, outcome: Outcome) -> None:
-        # One delivery answers everything that was in the same commit.
+        # One outcome acknowledges all messages of the same commit.
         for _ in range(min(outcome.messages, self._unanswered)):
             self._in_flight.release()
         self._unanswered = max(0, self._unanswered - outcome.messages)
@@ -214,7 +218,7 @@ class HeadsetConnection:
         for notice in outcome.notices:
             self._outbox.put_nowait(notice)
 
-    async def _talk(self) -> None:
+    async def _send_outbox(self) -> None:
         while True:
             message = await self._outbox.get()
             await self._send(message)
@@ -222,9 +226,10 @@ class HeadsetConnection:
                 await self.socket.close(CLOSE_REFUSED)
                 return
 
-    async def _follow(self, subscription: Subscription) -> None:
+    async def _push_state(self, subscription: Subscription) -> None:
         """Send the session's state on every change; close when the pairing was revoked."""
-        # Not the same for all: else those that came together would all ask at once, for ever.
+        # Staggered, so that connections opened together do not query the database simultaneously
+        # for ever.
         pairing_checked_s = 10.0 + int(self.session_id[:4], 16) / 0x2000
         while True:
             news = await subscription.next(timeout_s=pairing_checked_s)
@@ -257,19 +262,22 @@ class HeadsetConnection:
         if self.socket.application_state is WebSocketState.CONNECTED:
             await self.socket.send_text(message.model_dump_json())
 
-    def _call(self, function: Callable[[Told], object], told: Told) -> None:
+    def _call(self, function: Callable[[Argument], object], argument: Argument) -> None:
         try:
-            self._loop.call_soon_threadsafe(function, told)
-        except RuntimeError:  # the loop has closed: nobody is left to tell
+            self._loop.call_soon_threadsafe(function, argument)
+        except RuntimeError:  # the event loop has closed, so there is no connection left
             return
 
 
-def can_be(reading: Probed, answers: Iterable[ProbeAnswer]) -> bool:
-    """Whether a reading of the clocks echoes an answer, and came back after it was asked for."""
-    sent_s, back_s = reading.client_sent_s, reading.client_received_s
-    if back_s is None or reading.server_received_ns is None or reading.server_sent_ns is None:
+def can_be_true(reading: Probed, answers: Iterable[ProbeAnswer]) -> bool:
+    """Return whether a clock probe can be true: it echoes an answer of ours, in a possible order.
+
+    A probe that was not answered is always possible.
+    """
+    sent_s, received_s = reading.client_sent_s, reading.client_received_s
+    if received_s is None or reading.server_received_ns is None or reading.server_sent_ns is None:
         return True
-    return back_s >= sent_s and any(
+    return received_s >= sent_s and any(
         answer.client_sent_s == sent_s
         and abs(answer.server_received_ns - reading.server_received_ns) <= ECHO_NS
         and abs(answer.server_sent_ns - reading.server_sent_ns) <= ECHO_NS
@@ -278,7 +286,7 @@ def can_be(reading: Probed, answers: Iterable[ProbeAnswer]) -> bool:
 
 
 def parse_message(text: str) -> ClientMessages:
-    """The client's message; raises InvalidInput with the first thing that does not fit."""
+    """Parse a client's message; raises InvalidInput, which names the first invalid field."""
     require_text_in_json(text)
     try:
         return CLIENT_MESSAGE.validate_json(text)

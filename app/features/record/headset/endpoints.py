@@ -1,4 +1,4 @@
-"""What a headset asks the server for: its socket, and the avatar of its session."""
+"""Endpoints for headsets: the WebSocket, and the physics avatar of the session."""
 
 import asyncio
 import logging
@@ -8,7 +8,7 @@ from sqlalchemy.exc import DBAPIError
 from starlette.websockets import WebSocketDisconnect, WebSocketState
 
 from app.errors import InvalidInput, NotSignedIn, ReembodyError
-from app.features.record.headset.avatar import AvatarWish, SessionAvatar, prepare, put_on_record
+from app.features.record.headset.avatar import AvatarWish, SessionAvatar, prepare, record_avatar
 from app.features.record.headset.connection import CLOSE_REFUSED, HeadsetConnection
 from app.features.record.telemetry import TelemetryWriter
 from app.platform.context import AppContext
@@ -20,12 +20,12 @@ router = APIRouter(prefix="/vr", tags=["headset"])
 log = logging.getLogger(__name__)
 CLOSE_NOT_PAIRED = 4401
 CLOSE_TRY_AGAIN = 1013
-MOST_REASON_BYTES = 123
+MAX_REASON_BYTES = 123
 
 
 @router.websocket("/stream")
 async def vr_stream(socket: WebSocket) -> None:
-    """The headset's socket; see docs/protocol.md."""
+    """Serve the WebSocket of a headset; see docs/protocol.md."""
     context: AppContext = socket.app.state.context
     try:
         await serve_headset(socket, context, context.part(TelemetryWriter))
@@ -34,18 +34,18 @@ async def vr_stream(socket: WebSocket) -> None:
 
 
 @router.post("/avatar")
-def post_avatar(wish: AvatarWish, context: Context, headset: PairedHeadset) -> SessionAvatar:
-    """Build the session's physics avatar for this participant and put it on record."""
+def post_avatar(request: AvatarWish, context: Context, headset: PairedHeadset) -> SessionAvatar:
+    """Build the session's physics avatar for this participant and record it."""
     context.storage.require_storage()
     with context.database.reading() as db:
-        prepared = prepare(db, headset.session_id, wish)
+        prepared = prepare(db, headset.session_id, request)
     with context.database.writing() as db:
-        put_on_record(db, context, headset.session_id, prepared, f"headset:{headset.id}")
-    return prepared.told
+        record_avatar(db, context, headset.session_id, prepared, f"headset:{headset.id}")
+    return prepared.avatar
 
 
 async def serve_headset(socket: WebSocket, context: AppContext, writer: TelemetryWriter) -> None:
-    """Accept, authenticate and serve one headset; every refusal says why before it closes."""
+    """Accept, authenticate and serve one headset; send the reason before closing on an error."""
     token = _token(socket)
     await socket.accept(subprotocol=SUBPROTOCOL)
     try:
@@ -65,12 +65,12 @@ async def serve_headset(socket: WebSocket, context: AppContext, writer: Telemetr
             InvalidInput(str(error), remedy="See docs/protocol.md for the layout of a batch."),
         )
     except DBAPIError:
-        # Nothing can be read or stored just now: the headset comes again by itself.
+        # The database is unavailable at the moment; the headset reconnects automatically.
         if socket.application_state is WebSocketState.CONNECTED:
             await socket.close(CLOSE_TRY_AGAIN)
     except TimeoutError:
         await _close(
-            socket, CLOSE_REFUSED, InvalidInput("no hello came", remedy="Send hello first.")
+            socket, CLOSE_REFUSED, InvalidInput("no hello was sent", remedy="Send hello first.")
         )
 
 
@@ -93,9 +93,9 @@ async def _close(socket: WebSocket, code: int, error: ReembodyError) -> None:
         await socket.send_text(failure.model_dump_json())
         await socket.close(code, reason=_reason(error.message))
     except (RuntimeError, WebSocketDisconnect):
-        log.debug("the headset was gone before it could be told")
+        log.debug("the headset disconnected before the error could be sent to it")
 
 
 def _reason(message: str) -> str:
-    """As much of a message as a close frame holds."""
-    return message.encode()[:MOST_REASON_BYTES].decode(errors="ignore")
+    """Truncate a message to the length that fits in a close frame."""
+    return message.encode()[:MAX_REASON_BYTES].decode(errors="ignore")

@@ -1,7 +1,7 @@
-"""What happens beside storing: figures for the console, and a watch over the quality of the data.
+"""Monitor a headset's connection: live figures for the console, and alarms about data quality.
 
-Nothing here holds up the telemetry: it runs on what has been received, and its alarms go to the
-writer like any message, without anybody waiting for them.
+Nothing here delays the telemetry: the monitor works on what has already been received, and its
+alarms are submitted to the writer like any message, without waiting for them to be stored.
 """
 
 import asyncio
@@ -16,12 +16,12 @@ from app.features.record.telemetry import AlarmContent, Content, LiveTelemetry, 
 from app.platform.context import AppContext
 from app.wire import Batch, HeadsetState, Probed, Produced, Report, Welcome
 
-NEWS_EVERY_S = 1.0
+PUBLISH_EVERY_S = 1.0
 
 
 @dataclass
 class HeadsetMonitor:
-    """The monitor of one connection. `submit` hands something over to the writer."""
+    """The monitor of one connection. `submit` passes content to the telemetry writer."""
 
     context: AppContext
     session_id: str
@@ -30,8 +30,8 @@ class HeadsetMonitor:
     live: LiveTelemetry = field(default_factory=LiveTelemetry)
     poses: PoseFeed = field(init=False)
     watch: QualityWatch = field(init=False)
-    _told_s: float = 0.0
-    _observed: bool = False
+    _published_s: float = 0.0
+    _impossible_reported: bool = False
 
     def __post_init__(self) -> None:
         self.poses = PoseFeed(self.context.hub, self.session_id)
@@ -45,7 +45,7 @@ class HeadsetMonitor:
         return Moment(clock.monotonic_ns() / 1e9, clock.utc_now())
 
     def batch(self, batch: Batch) -> None:
-        """Frames have come and were handed over to the writer."""
+        """Process a batch of frames that was received and submitted to the writer."""
         now = self._now()
         self.context.hub.note_frames(self.session_id, now.monotonic_s)
         self.poses.take(batch, now.monotonic_s)
@@ -55,39 +55,41 @@ class HeadsetMonitor:
         if self._has_listeners():
             figures = self.live.figures(now.monotonic_s)
             if figures is not None or changes:
-                self._tell(figures or {}, now)
+                self._publish_figures(figures or {}, now)
 
     def report(self, report: Report) -> None:
-        """A report has come."""
+        """Process a report of the headset, such as a contact or a completed task."""
         self.live.count(report)
         self.poses.report(report)
 
     def probed(self, reading: Probed) -> None:
-        """A reading of the clocks has come."""
+        """Process a clock probe."""
         self.watch.probed(reading, self._now())
 
-    def observe(self, words: str) -> None:
-        """What has just come cannot be true, and only this connection can see it."""
-        if not self._observed:
-            self._observed = True
-            self.submit(AlarmContent(Change("raised", Condition(OBSERVED, words), self._now().utc)))
+    def report_impossible(self, message: str) -> None:
+        """Raise an alarm for an impossible message, which only this connection can detect."""
+        if not self._impossible_reported:
+            self._impossible_reported = True
+            self.submit(
+                AlarmContent(Change("raised", Condition(OBSERVED, message), self._now().utc))
+            )
 
     def produced(self, message: Produced) -> None:
-        """The client says how far it has come."""
+        """Process the client's report of how many frames it has produced."""
         self.watch.produced(message)
 
     def delivered(self, outcome: Outcome, *, waiting: bool) -> None:
-        """Something is on disk; other messages are `waiting`, or none."""
+        """Process the storing of messages; `waiting` says whether others are still unstored."""
         self.live.flagged(outcome.frames_flagged)
         self.watch.backlog.stored(outcome.positions.values())
         self.watch.backlog.acknowledged(self._now().monotonic_s, waiting=waiting)
 
     def update_state(self, state: HeadsetState) -> None:
-        """The session has changed."""
+        """Apply a new state of the session."""
         self.watch.update_state(state, self._now())
 
     async def run(self, is_reading: Callable[[], bool]) -> None:
-        """Look up now and then, also when nothing comes, until cancelled."""
+        """Run the periodic checks until cancelled, even if no messages arrive."""
         while True:
             await asyncio.sleep(self.watch.limits.check_every_s)
             self._check(reading=is_reading())
@@ -100,21 +102,21 @@ class HeadsetMonitor:
         if result.phase_is_lost:
             self.submit(LossContent("headset_silent"))
         self.context.hub.note_signal(self.session_id, self.watch.signal(now))
-        due = now.monotonic_s - self._told_s >= NEWS_EVERY_S
+        due = now.monotonic_s - self._published_s >= PUBLISH_EVERY_S
         if (result.changes or due) and self._has_listeners():
-            self._tell({}, now)
+            self._publish_figures({}, now)
 
     def leave(self, *, connected: bool) -> None:
-        """The socket has closed; the session has another one that is `connected`, or none."""
+        """Handle the closing of the socket; `connected` if the session still has another one."""
         now = self._now()
         self._store(self.watch.alarms.close("the headset's connection has closed", now))
-        gone: list[Alarm] = []
+        open_alarms: list[Alarm] = []
         if self.watch.recording and not connected:
-            lost = Condition("disconnected", "The headset's connection has broken off")
-            gone = [Alarm(lost, now.utc, now.monotonic_s)]
+            lost = Condition("disconnected", "The headset's connection was lost")
+            open_alarms = [Alarm(lost, now.utc, now.monotonic_s)]
             self._store([Change("raised", lost, now.utc)])
         if not connected:
-            self._publish({"signal": None, "alarms": [_told(alarm) for alarm in gone]})
+            self._publish({"signal": None, "alarms": [_alarm_view(one) for one in open_alarms]})
 
     def _store(self, changes: Iterable[Change]) -> None:
         for change in changes:
@@ -123,18 +125,18 @@ class HeadsetMonitor:
     def _has_listeners(self) -> bool:
         return self.context.hub.has_listeners(self.session_id, "telemetry")
 
-    def _tell(self, figures: dict[str, Any], now: Moment) -> None:
-        """News: figures when there are frames, and always how good the data are."""
-        self._told_s = now.monotonic_s
-        alarms = [_told(alarm) for alarm in self.watch.open]
+    def _publish_figures(self, figures: dict[str, Any], now: Moment) -> None:
+        """Publish figures (if there are any), the signal quality and the open alarms."""
+        self._published_s = now.monotonic_s
+        alarms = [_alarm_view(alarm) for alarm in self.watch.open]
         self._publish({**figures, "signal": self.watch.signal(now), "alarms": alarms})
 
     def _publish(self, news: dict[str, Any]) -> None:
         self.context.hub.publish(self.session_id, "telemetry", news)
 
 
-def _told(alarm: Alarm) -> dict[str, Any]:
-    """An open alarm as the console hears of it."""
+def _alarm_view(alarm: Alarm) -> dict[str, Any]:
+    """Return an open alarm in the form in which the console receives it."""
     condition = alarm.condition
     return {
         "code": condition.code,

@@ -1,8 +1,8 @@
-"""From the headset's messages to what consoles draw, before any commit.
+"""Publish a headset's poses and contacts to consoles, before they are committed.
 
-The feed of one headset's connection publishes the newest frame of each stream at most `RATE_HZ`
-times a second, and only while a console listens. A console that is slow finds the newest frame in
-its slot and never learns of those between, so nobody can hold up the headset (app.platform.hub).
+The feed of one headset's connection publishes the latest frame of each stream at most `RATE_HZ`
+times a second, and only while a console is subscribed. A slow console receives only the latest
+frame and misses those in between, so it cannot delay the headset (app.platform.hub).
 
 A pose message is little-endian binary:
 
@@ -33,14 +33,14 @@ HEADER = struct.Struct("<4sBBHIQd")
 RATE_HZ = 30.0
 TOPICS = {StreamName.TARGET: "pose_target", StreamName.ACTUAL: "pose_actual"}
 TOUCHES = "touches"
-TOUCHES_KEPT = 16
+MAX_TOUCHES = 16
 _CODES = {StreamName.TARGET: 1, StreamName.ACTUAL: 2}
 
 
 class Touch(BaseModel):
-    """A contact that is over, or a completed task (kind `completion`, without surface and part).
+    """A contact that has ended, or a completed task (kind `completion`, without surface and part).
 
-    `number` is unique and grows: the epoch and seq of the headset's report.
+    `number` is unique and increases: the epoch and seq of the headset's report.
     """
 
     model_config = ConfigDict(frozen=True)
@@ -55,25 +55,25 @@ class Touch(BaseModel):
 
 @dataclass
 class PoseFeed:
-    """What one connection of a headset shows to consoles."""
+    """Publish the poses and contacts of one headset connection to consoles."""
 
     hub: Hub
     session_id: str
-    _told_s: dict[StreamName, float] = field(default_factory=dict)
-    _touches: deque[Touch] = field(default_factory=lambda: deque(maxlen=TOUCHES_KEPT))
+    _published_s: dict[StreamName, float] = field(default_factory=dict)
+    _touches: deque[Touch] = field(default_factory=lambda: deque(maxlen=MAX_TOUCHES))
 
     def take(self, batch: Batch, now_s: float) -> None:
-        """Frames have come, at this monotonic time of the server."""
+        """Publish the latest frame of a batch received at the server's monotonic time `now_s`."""
         stream = batch.header.stream
-        if now_s - self._told_s.get(stream, float("-inf")) < 1.0 / RATE_HZ:
+        if now_s - self._published_s.get(stream, float("-inf")) < 1.0 / RATE_HZ:
             return
         topic = TOPICS[stream]
         if self.hub.has_listeners(self.session_id, topic):
-            self._told_s[stream] = now_s
+            self._published_s[stream] = now_s
             self.hub.publish(self.session_id, topic, encode_pose(batch))
 
     def report(self, report: Report) -> None:
-        """A contact or a completed task has come; the last few are told together."""
+        """Publish a contact or a completed task, together with the last few before it."""
         touch = _touch(report)
         if touch is None:
             return
@@ -82,7 +82,7 @@ class PoseFeed:
 
 
 def encode_pose(batch: Batch) -> bytes:
-    """The message of a batch's newest frame."""
+    """Encode the latest frame of a batch as a pose message."""
     header = batch.header
     values = np.ascontiguousarray(batch.values[-1], "<f4")
     return (

@@ -1,4 +1,7 @@
-"""What a headset is told: declarative state that it converges to, never a list of past commands."""
+"""Build what the server sends to a headset: the welcome message and the state of the session.
+
+The state is declarative, and the headset converges to it; no list of past commands is ever sent.
+"""
 
 from datetime import datetime
 
@@ -41,17 +44,17 @@ CENTIMETRES_PER_METRE = 100.0
 
 
 def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcome:
-    """The answer to a hello; one without an epoch takes the next.
+    """Return the answer to a hello message; a client without an epoch is assigned the next one.
 
-    Raises Conflict where the client cannot show the session's avatar.
+    Raises Conflict if the client cannot show the session's avatar.
     """
     session = session_by_id(db, session_id, lock=True)
     require_capture(db, session_id)
     _require_avatar(session, hello)
     protocol = protocol_of(kept_row(db, StudyVersion, session.study_version_id))
     if hello.epoch is not None and not was_given(db, session_id, hello.epoch):
-        words = f"a headset says it is run {hello.epoch}, which the server did not number"
-        observe(db, session_id, words, now)
+        message = f"a headset claims epoch {hello.epoch}, which the server did not assign"
+        record_impossible(db, session_id, message, now)
     return Welcome(
         protocol=PROTOCOL_VERSION,
         session_id=session.id,
@@ -71,9 +74,9 @@ def welcome(db: Session, session_id: str, hello: Hello, now: datetime) -> Welcom
     )
 
 
-def observe(db: Session, session_id: str, words: str, now: datetime) -> None:
-    """Put on record that what a headset has just said cannot be true; the session is in doubt."""
-    store_change(db, session_id, Change("raised", Condition(OBSERVED, words), now))
+def record_impossible(db: Session, session_id: str, message: str, now: datetime) -> None:
+    """Record that a headset has sent something impossible, which puts the session in doubt."""
+    store_change(db, session_id, Change("raised", Condition(OBSERVED, message), now))
 
 
 def _require_avatar(session: StudySession, hello: Hello) -> None:
@@ -87,7 +90,7 @@ def _require_avatar(session: StudySession, hello: Hello) -> None:
 
 
 def headset_state(db: Session, session: StudySession) -> HeadsetState:
-    """Where the session stands for the headset."""
+    """Return the state of a session as sent to its headset."""
     state, plan = state_of(session), plan_of(db, session)
     step = None if state.current is None else plan[state.current]
     active = state.status == "active"
@@ -97,21 +100,26 @@ def headset_state(db: Session, session: StudySession) -> HeadsetState:
         step_index=state.current,
         step_kind=None if step is None else step.kind,
         materialised=state.materialised,
-        recording=active and _records(state, step),
+        recording=active and _is_recording(state, step),
         phase=_phase_order(db, session, state, plan),
         participant=participant_info(db, session),
     )
 
 
-def _records(state: SessionState, step: Step | None) -> bool:
-    """Recording runs from the avatar's appearance to the debriefing, and never of somebody who
-    does not want to take part."""
-    is_after_it = step is not None and not step.spec.records_movement
-    return state.materialised and state.refused_consent is None and not is_after_it
+def _is_recording(state: SessionState, step: Step | None) -> bool:
+    """Return whether movement is recorded: from entering the body until the debriefing.
+
+    Nothing is recorded while the participant refuses to take part.
+    """
+    is_over = step is not None and not step.spec.records_movement
+    return state.materialised and state.refused_consent is None and not is_over
 
 
 def participant_info(db: Session, session: StudySession) -> ParticipantInfo:
-    """Handedness, footedness and height, as far as they were answered; the matched height wins."""
+    """Return the participant's handedness, footedness and height, as far as they are known.
+
+    A matched height takes precedence over a stated one.
+    """
     answers = _demographics(db, session)
     stature_m = None
     stated_cm = answers.get("height_cm")
@@ -163,7 +171,8 @@ def _phase_order(
         preparation_s=step.preparation_s or 0.0,
         duration_s=step.duration_s or 0.0,
         freeze_s=step.freeze_s or 0.0,
-        # A headset that takes over in mid-phase goes on from here, before the loss is noticed too.
+        # A headset that takes over in mid-phase resumes here, even if the loss of the other is
+        # unnoticed.
         active_s=max(
             phase.active_s,
             min(certain_active_s(db, session.id, phase.phase_id), step.duration_s or 0.0),

@@ -44,7 +44,7 @@ def test_a_code_works_once(lab: Lab) -> None:
     first, second = lab.stranger(), lab.stranger()
     ok(use(first, code))
     refusal = error(use(second, code), 410, "gone")
-    assert "the device paired first goes on" in refusal["remedy"]
+    assert "a paired device keeps working" in refusal["remedy"]
     assert first.get("/api/tablet/state").status_code == 200
 
 

@@ -8,8 +8,8 @@ import numpy as np
 from app.features.record.headset.poses import (
     HEADER,
     MAGIC,
+    MAX_TOUCHES,
     TOUCHES,
-    TOUCHES_KEPT,
     PoseFeed,
     encode_pose,
 )
@@ -113,7 +113,7 @@ def test_touches_are_told_together_so_that_none_is_missed() -> None:
             assert touches[-1].kind == "completion"
             return [touch.number for touch in touches]
 
-    assert asyncio.run(run()) == [(1, seq) for seq in range(21 - TOUCHES_KEPT, 21)]
+    assert asyncio.run(run()) == [(1, seq) for seq in range(21 - MAX_TOUCHES, 21)]
 
 
 def test_a_blinded_console_gets_the_participant_alone() -> None:
