@@ -1,4 +1,4 @@
-/** The frame of every screen, and the choice of the screen. */
+/** The frame of every screen, and the choice of which screen is shown. */
 import { Button, SegmentedControl } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
 import type { ConsentForm } from "@shared/api/records";
@@ -59,7 +59,9 @@ export function Screens({ state, connected, refresh }: ScreensProps): JSX.Elemen
   );
 }
 
-/** Another screen is read from its beginning, also by somebody who hears it or goes by keys. */
+/**
+ * Focus the heading of a new screen, so that screen readers and keyboard users start at the top.
+ */
 function useFocusOnNews(state: TabletState, refusal: Refusal) {
   const { screen, step_index, administration } = state;
   const content = useRef<HTMLElement>(null);
@@ -73,7 +75,9 @@ function useFocusOnNews(state: TabletState, refusal: Refusal) {
   return content;
 }
 
-/** Refused is what the participant said last, whether or not the server knows of it yet. */
+/**
+ * Whether the participant's latest word is a refusal, even if the server does not know of it yet.
+ */
 const isRefused = ({ screen }: TabletState, { waiting }: Refusal): boolean =>
   screen !== "finished" && (screen === "refused" || waiting?.refused === true);
 
@@ -134,7 +138,7 @@ function TextSizeButton(): JSX.Element {
   );
 }
 
-/** Whether a consent wants more than one press. */
+/** Whether a consent needs more than one press: statements to tick, or a signature. */
 const asksMore = (form: ConsentForm): boolean =>
   form.signature !== "none" || form.statements.length > 0;
 
@@ -143,7 +147,7 @@ function LanguageChoice({ state }: { readonly state: TabletState }): JSX.Element
   const queries = useQueryClient();
   const choose = useMutation({
     mutationFn: tablet.setLanguage,
-    // The words change at once; the server's texts follow.
+    // The page's own texts change immediately; the server's texts follow.
     onMutate: (language) =>
       queries.setQueryData<TabletState>(STATE_KEY, (known) => known && { ...known, language }),
     onSuccess: (answer) => queries.setQueryData(STATE_KEY, answer),
@@ -165,7 +169,10 @@ interface CallForHelpProps {
   readonly connected: boolean;
 }
 
-/** Always there: one press calls the experimenter, and the bar says that the call has arrived. */
+/**
+ * The bar that is always shown: one press calls the experimenter, and it confirms that the call has
+ * arrived.
+ */
 function CallForHelp({ state, connected }: CallForHelpProps): JSX.Element | null {
   const { t } = useTexts();
   const queries = useQueryClient();

@@ -1,4 +1,4 @@
-/** The participant's tablet: unpaired it asks for a code, paired it shows the session's screen. */
+/** The participant's tablet: it asks for a pairing code or shows the session's screen. */
 import { Center, Loader } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
 import { ApiError, isUnauthorised } from "@shared/api/request";
@@ -63,7 +63,7 @@ function usePairing(onPaired: () => void) {
   });
 }
 
-/** A QR link carries the code once: use it, and take it out of the address and the history. */
+/** Use the pairing code of a QR link once, and remove it from the address and the history. */
 function useCodeOfAddress(pair: (code: string) => void): void {
   const used = useRef(false);
   useEffect(() => {

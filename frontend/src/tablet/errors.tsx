@@ -1,4 +1,4 @@
-/** The tablet's wording around errors: said to a participant, not to an engineer. */
+/** The tablet's wording of errors: written for participants, not for engineers. */
 import { ErrorNotice, type ErrorTexts } from "@shared/ui/Notice";
 import type { JSX } from "react";
 import { useTexts } from "./i18n";

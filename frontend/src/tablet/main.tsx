@@ -7,11 +7,11 @@ mountPage({ translations, children: <Tablet /> });
 void keepForOffline();
 
 /**
- * Lets this page open again without a network: registers the service worker, and asks the browser
- * not to throw away what is kept on the tablet when space gets scarce.
+ * Let this page open without a network: register the service worker, and ask the browser to keep
+ * the tablet's data when storage is scarce.
  *
- * Only where the browser trusts the connection (https, or localhost); elsewhere there is no such
- * thing, and the tablet works as long as its page stays open.
+ * This needs a connection that the browser trusts (https, or localhost); without one there are no
+ * service workers, and the tablet works as long as its page stays open.
  */
 async function keepForOffline(): Promise<void> {
   // The development server builds no worker.
@@ -20,7 +20,7 @@ async function keepForOffline(): Promise<void> {
     await navigator.serviceWorker.register("/tablet-worker.js", { scope: "/tablet" });
     await navigator.storage.persist();
   } catch {
-    // A certificate that was only clicked away, or a browser without room. Nothing else depends on
-    // it, and nobody at the tablet could do anything about it.
+    // The certificate is not trusted, or the browser has no space. Nothing else depends on the
+    // worker, and nobody at the tablet could do anything about it.
   }
 }

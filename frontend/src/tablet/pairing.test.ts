@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { codeCharacters, codeFromAddress, writtenCode } from "./pairing";
 
 describe("a pairing code", () => {
-  it("is read however it is typed", () => {
+  it("is accepted however it is typed", () => {
     expect(codeCharacters(" 4fq-7kp ")).toBe("4FQ7KP");
     expect(codeCharacters("4FQ-7KPX9")).toBe("4FQ7KP");
   });
@@ -16,12 +16,12 @@ describe("a pairing code", () => {
     ]);
   });
 
-  it("is taken out of the address that brought it", () => {
+  it("is removed from the address that contained it", () => {
     const address = new URL("https://lab.example/tablet?code=4FQ-7KP&x=1#top");
     expect(codeFromAddress(address)).toEqual({ code: "4FQ-7KP", rest: "/tablet?x=1#top" });
   });
 
-  it("is not made up where the address has none or half of one", () => {
+  it("is null if the address has none or only half of one", () => {
     expect(codeFromAddress(new URL("https://lab.example/tablet")).code).toBeNull();
     expect(codeFromAddress(new URL("https://lab.example/tablet?code=4FQ")).code).toBeNull();
   });

@@ -1,7 +1,10 @@
-/** Pairing codes, six letters or digits in two groups of three (`4FQ-7KP`), and that one was used. */
+/**
+ * Pairing codes: six letters or digits in two groups of three (`4FQ-7KP`); also remembers that one
+ * was used.
+ */
 export const CODE_LENGTH = 6;
 
-/** The letters and digits of whatever was typed, in capitals, at most a code long. */
+/** The letters and digits that were typed, in capitals, at most as many as a code has. */
 export function codeCharacters(typed: string): string {
   return typed
     .toUpperCase()
@@ -9,12 +12,12 @@ export function codeCharacters(typed: string): string {
     .slice(0, CODE_LENGTH);
 }
 
-/** As it is shown and sent: with its dash as soon as the first group is full. */
+/** A code as it is shown and sent: with its dash as soon as the first group is complete. */
 export function writtenCode(characters: string): string {
   return characters.length <= 3 ? characters : `${characters.slice(0, 3)}-${characters.slice(3)}`;
 }
 
-/** The code a QR link brought along, and the address without it. */
+/** The code in a QR link's address, and the address without it. */
 export function codeFromAddress(address: URL): { code: string | null; rest: string } {
   const characters = codeCharacters(address.searchParams.get("code") ?? "");
   const rest = new URL(address);
@@ -25,7 +28,10 @@ export function codeFromAddress(address: URL): { code: string | null; rest: stri
   };
 }
 
-/** Whether this tablet was paired before: then a refused cookie means that it was disconnected. */
+/**
+ * The key under which it is stored that this tablet was paired: a rejected cookie then means that
+ * it was disconnected.
+ */
 const KEY = "reembody.tablet.paired";
 
 export const rememberPaired = (): void => localStorage.setItem(KEY, "yes");

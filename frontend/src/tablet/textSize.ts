@@ -1,4 +1,4 @@
-/** How large the participant wants to read: kept on this tablet until its page is closed. */
+/** The text size that the participant chose: kept on this tablet until its page is closed. */
 import { useEffect, useState } from "react";
 
 export const TEXT_SIZES = [1, 1.2, 1.45] as const;
@@ -6,12 +6,12 @@ export type TextSize = (typeof TEXT_SIZES)[number];
 
 const KEY = "reembody.tablet.textSize";
 
-/** The size that was chosen; the usual one where none was, or none that there is. */
+/** The stored size; the usual one if none is stored or the stored one is invalid. */
 export function storedSize(stored: string | null): TextSize {
   return TEXT_SIZES.find((size) => String(size) === stored) ?? 1;
 }
 
-/** The next larger size; after the largest the usual one again. */
+/** The next larger size; after the largest, the usual one. */
 export function nextSize(size: TextSize): TextSize {
   return TEXT_SIZES[(TEXT_SIZES.indexOf(size) + 1) % TEXT_SIZES.length] ?? 1;
 }

@@ -1,4 +1,7 @@
-/** The screen the server wants, kept current by its live feed, and on the tablet for bad times. */
+/**
+ * The screen that the server wants shown, kept current by its live feed, and stored on the tablet
+ * for times without a connection.
+ */
 import { tablet } from "@shared/api/endpoints";
 import { type FeedState, openFeed } from "@shared/api/live";
 import { ApiError, isUnauthorised } from "@shared/api/request";
@@ -9,7 +12,7 @@ import { drafts } from "./drafts/useKept";
 
 export const STATE_KEY = ["tablet", "state"] as const;
 
-/** A server that takes longer to answer is treated like one that is not there. */
+/** A server that takes longer to answer is treated as unreachable. */
 const PATIENCE_MS = 4000;
 
 export function useTabletState() {
@@ -18,9 +21,10 @@ export function useTabletState() {
   const query = useQuery({
     queryKey: STATE_KEY,
     queryFn: () => stateIfPaired(queries),
-    // Asked also where the system says there is no network: to fail is what brings the kept screen.
+    // Send the request even if the system reports no network: its failure brings up the stored
+    // screen.
     networkMode: "always",
-    // Without a connection the page goes on asking; with one the feed tells of every change.
+    // Without a connection the page polls; with one the feed reports every change.
     refetchInterval: ({ state }) => (state.error === null ? false : 5000),
   });
   useKeptScreen(query, queries);
@@ -31,7 +35,7 @@ export function useTabletState() {
       url: tablet.liveUrl,
       onState: (state) => {
         setFeed(state);
-        // A closed feed may mean that this tablet was disconnected: the state says so.
+        // A closed feed may mean that this tablet was disconnected: the state shows whether it was.
         if (state === "lost") void queries.invalidateQueries({ queryKey: STATE_KEY });
       },
       on: {
@@ -46,8 +50,8 @@ export function useTabletState() {
 }
 
 /**
- * The screen. A tablet that shows none yet asks first whether it is paired, which is no error in the
- * browser's console, as a refused request would be, every five seconds.
+ * Fetch the screen. A tablet that shows none yet first asks whether it is paired; an unauthorised
+ * request every five seconds would fill the browser's console with errors.
  */
 async function stateIfPaired(queries: QueryClient): Promise<TabletState> {
   const known = queries.getQueryState<TabletState>(STATE_KEY);
@@ -65,10 +69,11 @@ type StateQuery = Pick<
 >;
 
 /**
- * Keeps every screen of the server, and shows the last one when the page starts without an answer.
+ * Store every screen from the server, and show the last one if the page starts without an answer.
  *
- * A kept screen counts like an answer of long ago: the feed finds that there is no connection, the
- * bar says so, and the page goes on asking.
+ * A stored screen counts like an old answer: the feed finds that there is no connection, the bar
+ * says
+ * so, and the page keeps polling.
  */
 function useKeptScreen(
   { data, error, failureReason, isSuccess }: StateQuery,
@@ -96,7 +101,10 @@ function useKeptScreen(
   }, [nothing, failed, queries]);
 }
 
-/** Answers and live events may cross on the line; of one session the higher version stays. */
+/**
+ * The newer of two states: answers and live events may overtake each other, so within one session
+ * the higher version wins.
+ */
 function newer(known: TabletState | undefined, state: TabletState): TabletState {
   const sameSession = known !== undefined && known.session_id === state.session_id;
   return sameSession && known.version > state.version ? known : state;

@@ -1,12 +1,12 @@
 /**
- * Bring one queued form to the server, and say how it ended.
+ * Send one queued form to the server, and return how it ended.
  *
- *     stored       the server has it (or had it already): the tablet forgets it
+ *     stored       the server has it (or had it already): the tablet deletes it
  *     later        no connection, or the server cannot take it now: try again
  *     unpaired     the tablet has lost its session: kept until it is paired again
  *     held         this form is not due now: kept, the experimenter decides
- *     superseded   the experimenter has recorded this form already: the tablet forgets it
- *     refused      the answers do not fit: given back to be mended
+ *     superseded   the experimenter has recorded this form already: the tablet deletes it
+ *     refused      the answers are invalid: returned to be corrected
  */
 import { ApiError } from "@shared/api/request";
 import type { Receipt, Submission } from "@shared/api/types";
@@ -18,10 +18,13 @@ export type Delivery =
 
 export type Submit = (submission: Submission) => Promise<Receipt>;
 
-/** What is on its way or has arrived, by idempotency key: one page sends nothing twice. */
+/** Deliveries that are under way or done, by idempotency key: one page sends no form twice. */
 const sent = new Map<string, Promise<Delivery>>();
 
-/** The form on the screen and the sweep may both ask for it; the second one waits for the first. */
+/**
+ * Deliver a form once: when the screen and the sweep both ask for it, the second waits for the
+ * first.
+ */
 export function deliver(
   store: DraftStore,
   id: string,

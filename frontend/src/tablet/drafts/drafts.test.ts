@@ -39,7 +39,7 @@ beforeEach(async () => {
 });
 
 describe("a draft", () => {
-  it("comes back after a reload, with the key it was given first", async () => {
+  it("is restored after a reload, with its original key", async () => {
     await store.keep(kept.id, DRAFT);
     const again = await new DraftStore(name).open("session", "form#1", new Date());
     expect(again.draft).toEqual(DRAFT);
@@ -47,25 +47,25 @@ describe("a draft", () => {
     expect(again.startedAt).toBe(NOW.toISOString());
   });
 
-  it("belongs to its session and its form alone", async () => {
+  it("belongs to one session and one form only", async () => {
     await store.keep(kept.id, DRAFT);
     expect((await store.open("other", "form#1", NOW)).draft.data).toEqual({});
     expect((await store.open("session", "form#2", NOW)).draft.data).toEqual({});
   });
 
-  it("does not change any more once it is queued", async () => {
+  it("no longer changes once it is queued", async () => {
     await store.queue(kept.id, submissionOf(kept));
     await store.keep(kept.id, { ...DRAFT, data: { q1: 7 } });
     expect((await store.open("session", "form#1", NOW)).draft.data).toEqual({});
   });
 
-  it("is queued once: a second sending repeats the first", async () => {
+  it("is queued once: queuing a second submission returns the first", async () => {
     await store.queue(kept.id, submissionOf(kept, 4));
     const sent = await store.queue(kept.id, submissionOf(kept, 7));
     expect(sent.answers).toEqual({ q1: 4 });
   });
 
-  it("leaves the tablet when it is old, unless it waits to be sent", async () => {
+  it("is deleted from the tablet when it is old, unless it waits to be sent", async () => {
     const waiting = await store.open("session", "form#2", NOW);
     await store.queue(waiting.id, submissionOf(waiting));
     await store.keep(kept.id, DRAFT);
@@ -86,12 +86,12 @@ describe("delivering a form", () => {
     return deliver(store, kept.id, queued, submit);
   };
 
-  it("forgets it when the server has it", async () => {
+  it("deletes it when the server has stored it", async () => {
     expect(await attempt(async () => receipt)).toEqual({ kind: "stored" });
     expect(await store.waiting("session")).toEqual([]);
   });
 
-  it("keeps it while there is no connection or the server is busy, and sends the same again", async () => {
+  it("keeps it while there is no connection or the server is busy, and resends the same content", async () => {
     const keys: string[] = [];
     const offline = async (submission: Submission): Promise<Receipt> => {
       keys.push(submission.idempotency_key);
@@ -104,7 +104,7 @@ describe("delivering a form", () => {
     expect(new Set(keys)).toEqual(new Set([kept.idempotencyKey]));
   });
 
-  it("is sent once, however many ask for it while it is on its way or after it has arrived", async () => {
+  it("sends it once, however many callers ask while it is under way or after it has arrived", async () => {
     const keys: string[] = [];
     const counted = async (submission: Submission): Promise<Receipt> => {
       keys.push(submission.idempotency_key);
@@ -117,19 +117,19 @@ describe("delivering a form", () => {
     expect(keys).toEqual([kept.idempotencyKey]);
   });
 
-  it("keeps it when the tablet was disconnected or the form is not due", async () => {
+  it("keeps it if the tablet was disconnected or the form is not due", async () => {
     expect(await attempt(failing(refusal(401, "not_signed_in")))).toEqual({ kind: "unpaired" });
     expect((await attempt(failing(refusal(409, "not_now")))).kind).toBe("held");
     expect(await store.waiting("session")).toHaveLength(1);
   });
 
-  it("gives it back to be mended when an answer does not fit", async () => {
+  it("returns it for correction if an answer is invalid", async () => {
     expect((await attempt(failing(refusal(422, "invalid_input")))).kind).toBe("refused");
     expect(await store.waiting("session")).toEqual([]);
     expect((await store.open("session", "form#1", NOW)).idempotencyKey).toBe(kept.idempotencyKey);
   });
 
-  it("forgets it when the experimenter has recorded the form already", async () => {
+  it("deletes it if the experimenter has recorded the form already", async () => {
     expect(await attempt(failing(refusal(409, "conflict")))).toEqual({ kind: "superseded" });
     expect(await store.waiting("session")).toEqual([]);
   });
@@ -156,13 +156,13 @@ describe("the last screen", () => {
     ...changed,
   });
 
-  it("comes back after a restart, and the newest one alone", async () => {
+  it("is restored after a restart, and only the newest one is kept", async () => {
     await store.keepScreen(screen());
     await store.keepScreen(screen({ version: 5 }));
     expect((await new DraftStore(name).lastScreen())?.version).toBe(5);
   });
 
-  it("shows a form no more once the server has its answers", async () => {
+  it("no longer shows a form once the server has its answers", async () => {
     await store.keepScreen(screen());
     await store.forget(kept.id);
     const last = await store.lastScreen();
@@ -175,7 +175,7 @@ describe("the last screen", () => {
     expect((await store.lastScreen())?.screen).toBe("form");
   });
 
-  it("goes with the session, and with it what was never sent; what waits to be sent stays", async () => {
+  it("is deleted with the session, as are drafts never submitted; submissions that wait to be sent stay", async () => {
     const waiting = await store.open("session", "form#2", NOW);
     await store.queue(waiting.id, submissionOf(waiting));
     await store.keep(kept.id, DRAFT);
@@ -186,14 +186,14 @@ describe("the last screen", () => {
     expect(await store.waiting("session")).toHaveLength(1);
   });
 
-  it("goes with the pairing", async () => {
+  it("is deleted when the tablet is unpaired", async () => {
     await store.keepScreen(screen());
     await store.forgetScreen();
     expect(await store.lastScreen()).toBeUndefined();
   });
 });
 
-describe("a consent that is being given", () => {
+describe("an unfinished consent", () => {
   const asked = {
     session_id: "session",
     version: 2,
@@ -202,7 +202,7 @@ describe("a consent that is being given", () => {
   } as TabletState;
   const SIGNING = { ticked: [0, 2], name: "", path: "M1 1L90 40", types: false };
 
-  it("comes back after a restart, for its own step alone", async () => {
+  it("is restored after a restart, for its own step only", async () => {
     await store.keepScreen(asked);
     await store.keepSigning(asked, SIGNING);
     const again = new DraftStore(name);
@@ -211,7 +211,7 @@ describe("a consent that is being given", () => {
     expect(await again.signing({ ...asked, session_id: "other" })).toBeUndefined();
   });
 
-  it("stays while its screen is told anew, and leaves the tablet once it was given", async () => {
+  it("stays while its screen is updated, and is deleted from the tablet once it was given", async () => {
     await store.keepSigning(asked, SIGNING);
     await store.keepScreen({ ...asked, version: 3, help_asked: true });
     expect(await store.signing(asked)).toEqual(SIGNING);
@@ -219,7 +219,7 @@ describe("a consent that is being given", () => {
     expect(await store.signing(asked)).toBeUndefined();
   });
 
-  it("goes with the pairing and with the session", async () => {
+  it("is deleted when the tablet is unpaired or the session ends", async () => {
     await store.keepSigning(asked, SIGNING);
     await store.forgetScreen();
     expect(await store.signing(asked)).toBeUndefined();
@@ -229,8 +229,8 @@ describe("a consent that is being given", () => {
   });
 });
 
-describe("a tablet of an older version", () => {
-  it("keeps what it had: its records are read, and what they lack is empty", async () => {
+describe("a database written by an older version", () => {
+  it("keeps its records: they are read, and missing fields are empty", async () => {
     const old = uuid();
     const database = await openDB(old, 1, {
       upgrade: (db) => void db.createObjectStore("kept", { keyPath: "id" }),
@@ -243,10 +243,10 @@ describe("a tablet of an older version", () => {
   });
 });
 
-describe("a refusal that waits", () => {
+describe("a refusal that waits to be sent", () => {
   const wish = (refused: boolean) => ({ wish_id: uuid(), step_index: 0, refused });
 
-  it("comes back after a restart, the newest of its session alone", async () => {
+  it("is restored after a restart, only the newest of its session", async () => {
     const [first, second] = [wish(true), wish(false)];
     await store.keepWish("session", first);
     await store.keepWish("session", second);
@@ -254,7 +254,7 @@ describe("a refusal that waits", () => {
     expect(await store.wish("other")).toBeUndefined();
   });
 
-  it("is forgotten by its own id, so that a late answer leaves a newer one", async () => {
+  it("is deleted by its own id, so that a late answer does not delete a newer one", async () => {
     const [first, second] = [wish(true), wish(false)];
     await store.keepWish("session", first);
     await store.keepWish("session", second);
@@ -264,7 +264,7 @@ describe("a refusal that waits", () => {
     expect(await store.wish("session")).toBeUndefined();
   });
 
-  it("is sent again until the server has looked at it", () => {
+  it("is resent until the server has decided on it", () => {
     const answered = (status: number) => new ApiError(status, { code: "x", message: "x" });
     expect([409, 422].map((status) => isFinal(answered(status)))).toEqual([true, true]);
     for (const status of [401, 429, 500, 503]) expect(isFinal(answered(status))).toBe(false);

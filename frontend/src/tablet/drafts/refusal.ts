@@ -1,10 +1,11 @@
 /**
- * "I do not want to take part", until the server knows of it.
+ * "I do not want to take part", until the server has recorded it.
  *
- * The wish is on the tablet's disk before it is sent, and is sent again until the server has
+ * The refusal is stored on the tablet's disk before it is sent, and is resent until the server has
  * answered: after a lost answer, a reload, or ten minutes without a network. Each press has an id,
- * so the server counts it once. Taking it back replaces a wish that still waits; whatever is on its
- * way arrives before it.
+ * so
+ * the server counts it once. Retracting it replaces a refusal that still waits; one that is already
+ * on its way arrives first.
  */
 import { tablet } from "@shared/api/endpoints";
 import { ApiError } from "@shared/api/request";
@@ -21,9 +22,9 @@ const TOO_MANY = 429;
 const SERVER_AT_FAULT = 500;
 
 export interface Refusal {
-  /** What was said and the server has not confirmed yet; null where nothing waits. */
+  /** The refusal or retraction that the server has not confirmed yet; null if there is none. */
   readonly waiting: RefusalWish | null;
-  /** It could not be sent so far, and will be tried again. */
+  /** Whether sending has failed so far; it will be retried. */
   readonly failed: boolean;
   readonly say: (refused: boolean) => void;
 }
@@ -82,7 +83,7 @@ export function useRefusal({ session_id: sessionId, step_index }: TabletState): 
   return { waiting, failed, say };
 }
 
-/** Whether the server has looked at it and will not take it however often it comes. */
+/** Whether the server has rejected it for good, so that resending is useless. */
 export function isFinal(error: unknown): boolean {
   if (!(error instanceof ApiError)) return false;
   return error.status < SERVER_AT_FAULT && error.status !== UNPAIRED && error.status !== TOO_MANY;

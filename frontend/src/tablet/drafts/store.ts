@@ -1,18 +1,21 @@
 /**
- * What a tablet needs to go on without a network, after its browser was killed (IndexedDB): what a
- * participant has entered but the server has not confirmed, and the screen that was shown last.
+ * The tablet's storage (IndexedDB) for working without a network, even after its browser was
+ * killed: what a
+ * participant has entered and the server has not confirmed, and the last screen.
  *
- * A record goes through two states. A *draft* changes with every answer. *Queued*, its submission is
+ * A record has two states. A *draft* changes with every answer. Once *queued*, its submission is
  * fixed, together with the idempotency key made when the form was first shown: however often it is
- * sent, after a lost answer or a reload, the server stores it once. The record is deleted when the
- * server has confirmed it, and not before.
+ * sent, after a lost answer or a reload, the server stores it once. The record is deleted only when
+ * the server has confirmed it.
  *
- * A refusal to take part waits in the same way until the server knows of it: the newest wish of a
- * session replaces the one before.
+ * A refusal to take part waits in the same way until the server has recorded it: the newest refusal
+ * or
+ * retraction of a session replaces the previous one.
  *
- * The screen is the newest one of the session that the tablet is paired with; it goes with the end
- * of the session or of the pairing. A consent that somebody is about to give is kept with its lines
- * and its signature for as long as it is on the screen, and is never sent by itself.
+ * The screen is the newest one of the session that the tablet is paired with; it is deleted when
+ * the
+ * session or the pairing ends. An unfinished consent is kept with its ticked statements and its
+ * signature for as long as it is on the screen, and is never sent automatically.
  */
 import type { RefusalWish, Submission, TabletState } from "@shared/api/types";
 import { EMPTY_DRAFT, type FormDraft } from "@shared/forms/draft";
@@ -39,7 +42,7 @@ interface Tables extends DBSchema {
   wish: { key: string; value: RefusalWish };
 }
 
-/** There is one screen. */
+/** The key of the only record in this store. */
 const LAST = "last";
 
 const OLD_MS = 48 * 3_600_000;
@@ -61,12 +64,12 @@ export class DraftStore {
         if (before < 3) database.createObjectStore("signing");
         if (before < 4) database.createObjectStore("wish");
       },
-      // A page of a newer version waits to open it.
+      // A page of a newer version is waiting to open the database.
       blocking: (_current, _wanted, event) => (event.target as IDBDatabase).close(),
     });
   }
 
-  /** What is kept of this form; a new record, with a key of its own, when there is nothing yet. */
+  /** The record of this form; a new one, with a key of its own, if there is none yet. */
   async open(sessionId: string, administration: string, now: Date): Promise<Kept> {
     const id = keptId(sessionId, administration);
     const database = await this.#database;
@@ -83,11 +86,11 @@ export class DraftStore {
     };
     if (known === undefined) await transaction.store.put(kept);
     await transaction.done;
-    // An older version may have left it, with less in it.
+    // An older version may have stored it with fewer fields.
     return { ...kept, draft: { ...EMPTY_DRAFT, ...kept.draft } };
   }
 
-  /** Keep the newest answers; a form that is already queued or confirmed is left as it is. */
+  /** Store the newest answers; a form that is already queued or confirmed is left as it is. */
   async keep(id: string, draft: FormDraft): Promise<void> {
     const transaction = (await this.#database).transaction("kept", "readwrite");
     const known = await transaction.store.get(id);
@@ -97,9 +100,10 @@ export class DraftStore {
     await transaction.done;
   }
 
-  /** Fix what will be sent. The first submission of a form stays the only one. */
+  /** Fix the submission to be sent. The first submission of a form is the only one. */
   async queue(id: string, submission: Submission): Promise<Submission> {
-    // Strict: on the disk, not only handed to the system, before the participant is told it is safe.
+    // Strict: written to the disk, not only handed to the system, before the participant is told it
+    // is safe.
     const options = { durability: "strict" } as const;
     const transaction = (await this.#database).transaction("kept", "readwrite", options);
     const known = await transaction.store.get(id);
@@ -110,7 +114,7 @@ export class DraftStore {
     return queued;
   }
 
-  /** Take a queued form back to be edited: the server has looked at it and stored nothing. */
+  /** Return a queued form to editing, after the server has rejected it and stored nothing. */
   async reopen(id: string): Promise<void> {
     const transaction = (await this.#database).transaction("kept", "readwrite");
     const known = await transaction.store.get(id);
@@ -118,13 +122,13 @@ export class DraftStore {
     await transaction.done;
   }
 
-  /** Everything that waits to be sent for this session. */
+  /** The forms of this session that wait to be sent. */
   async waiting(sessionId: string): Promise<readonly Kept[]> {
     const all = await (await this.#database).getAll("kept");
     return all.filter((kept) => kept.sessionId === sessionId && kept.queued !== null);
   }
 
-  /** The server has it: nothing of it stays on the tablet, and its form is not shown again. */
+  /** Delete a form that the server has stored; it is not shown again. */
   async forget(id: string): Promise<void> {
     const transaction = (await this.#database).transaction(["kept", "screen"], "readwrite");
     await transaction.objectStore("kept").delete(id);
@@ -136,18 +140,18 @@ export class DraftStore {
     await transaction.done;
   }
 
-  /** Keep what the server wants to be shown; with the end of the session nothing more is. */
+  /** Store the screen that the server sent, or delete it if the session has ended. */
   async keepScreen(state: TabletState): Promise<void> {
     const tables = ["kept", "screen", "signing", "wish"] as const;
     const transaction = (await this.#database).transaction(tables, "readwrite");
     const signings = transaction.objectStore("signing");
     for (const key of await signings.getAllKeys()) {
-      // It was given, or nobody asks for it any more.
+      // Either the consent was given, or its screen is no longer shown.
       if (state.screen !== "consent" || key !== signingKey(state)) await signings.delete(key);
     }
     const wishes = transaction.objectStore("wish");
     for (const key of await wishes.getAllKeys()) {
-      // The tablet is paired with another session now, or this one is over.
+      // The tablet is paired with another session now, or this one has ended.
       if (key !== state.session_id || state.screen === "finished") await wishes.delete(key);
     }
     const screens = transaction.objectStore("screen");
@@ -162,12 +166,12 @@ export class DraftStore {
     await transaction.done;
   }
 
-  /** What was shown last, for a start without a network. */
+  /** The last screen, for a start without a network. */
   async lastScreen(): Promise<TabletState | undefined> {
     return (await this.#database).get("screen", LAST);
   }
 
-  /** The tablet has lost its session: what that showed is nobody's business any more. */
+  /** Delete the screen, and what belongs to its session, after the tablet was unpaired. */
   async forgetScreen(): Promise<void> {
     const transaction = (await this.#database).transaction(["screen", "signing"], "readwrite");
     await transaction.objectStore("screen").delete(LAST);
@@ -175,17 +179,17 @@ export class DraftStore {
     await transaction.done;
   }
 
-  /** Keep how far the consent on this screen has come. */
+  /** Store the state of the unfinished consent on this screen. */
   async keepSigning(state: TabletState, signing: Signing): Promise<void> {
     await (await this.#database).put("signing", signing, signingKey(state));
   }
 
-  /** How far it had come, before a reload or the browser's end. */
+  /** The stored state of the unfinished consent, after a reload or a restart of the browser. */
   async signing(state: TabletState): Promise<Signing | undefined> {
     return (await this.#database).get("signing", signingKey(state));
   }
 
-  /** Keep what the participant says about taking part, until the server knows of it. */
+  /** Store a refusal or its retraction until the server has recorded it. */
   async keepWish(sessionId: string, wish: RefusalWish): Promise<void> {
     const options = { durability: "strict" } as const;
     const transaction = (await this.#database).transaction("wish", "readwrite", options);
@@ -193,12 +197,12 @@ export class DraftStore {
     await transaction.done;
   }
 
-  /** What still waits to be sent, also after a reload or the browser's end. */
+  /** The refusal or retraction that still waits to be sent, also after a restart of the browser. */
   async wish(sessionId: string): Promise<RefusalWish | undefined> {
     return (await this.#database).get("wish", sessionId);
   }
 
-  /** The server knows of it; a newer wish stays. */
+  /** Delete a refusal that the server has recorded; a newer one stays. */
   async forgetWish(sessionId: string, wishId: string): Promise<void> {
     const transaction = (await this.#database).transaction("wish", "readwrite");
     const known = await transaction.store.get(sessionId);
@@ -206,7 +210,7 @@ export class DraftStore {
     await transaction.done;
   }
 
-  /** Drafts that nobody went on with for two days leave the tablet; what waits to be sent stays. */
+  /** Delete drafts that have not changed for two days; submissions that wait to be sent stay. */
   async forgetOld(now: Date): Promise<void> {
     const transaction = (await this.#database).transaction("kept", "readwrite");
     for (const kept of await transaction.store.getAll()) {
@@ -221,7 +225,7 @@ export class DraftStore {
   }
 }
 
-/** The screen when its form was sent and nobody could say yet what comes. */
+/** The screen to show after its form was sent, until the server sends the next one. */
 const waitingAfter = (state: TabletState): TabletState => ({
   ...state,
   screen: "waiting",

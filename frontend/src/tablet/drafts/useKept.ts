@@ -1,4 +1,4 @@
-/** One form on this tablet: its draft, and the sending of it until the server has it. */
+/** One form on this tablet: its draft, and its delivery until the server has stored it. */
 import { tablet } from "@shared/api/endpoints";
 import type { ApiError } from "@shared/api/request";
 import type { Administration, Answer, Submission, TabletState } from "@shared/api/types";
@@ -22,12 +22,15 @@ const RETRY_MS = 3000;
 interface KeptForm {
   readonly phase: FormPhase;
   readonly keep: (draft: FormDraft) => void;
-  /** Try once more to bring a held form to the server. */
+  /** Try once more to send a held form to the server. */
   readonly again: () => void;
   readonly send: (answers: Readonly<Record<string, Answer>>, draft: FormDraft) => void;
 }
 
-/** `onSettled` is called when the screen may have changed: stored, superseded or unpaired. */
+/**
+ * Keep a form's draft on disk and deliver it; `onSettled` is called when the screen may have
+ * changed: stored, superseded or unpaired.
+ */
 export function useKeptForm(
   sessionId: string,
   administration: Administration,
@@ -126,17 +129,17 @@ function submissionOf(
   };
 }
 
-/** A stroke changes it many times a second. */
+/** A signature changes many times a second, so it is stored after a pause. */
 const KEEP_AFTER_MS = 150;
 
-/** A consent that is being given: its lines and its signature, also after the browser was killed. */
+/** An unfinished consent: its statements and signature, restored after a restart of the browser. */
 export function useKeptSigning(
   state: TabletState,
 ): readonly [signing: Signing, change: (signing: Signing) => void] {
   const [signing, setSigning] = useState<Signing>(UNSIGNED);
   const touched = useRef(false);
   const timer = useRef<ReturnType<typeof setTimeout>>(undefined);
-  // biome-ignore lint/correctness/useExhaustiveDependencies: a consent's page is mounted anew for each step
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a consent's page is remounted for each step
   useEffect(() => {
     void drafts.signing(state).then((kept) => {
       if (kept !== undefined && !touched.current) setSigning(kept);
@@ -153,16 +156,18 @@ export function useKeptSigning(
 }
 
 /**
- * Forms that were sent while nobody could say whether they arrived.
+ * Resend the forms whose delivery was never confirmed.
  *
- * When the answer of the server is lost, the session may have moved on before this tablet knows. So
- * whenever it hears from the server again, what still waits is sent once more: the server knows the
- * key and confirms, and the tablet forgets. A form on the screen looks after itself.
+ * When the server's answer is lost, the session may have moved on before this tablet knows. So
+ * whenever it hears from the server again, forms that still wait are sent once more: the server
+ * recognises the key and confirms, and the tablet deletes them. The form on the screen is delivered
+ * by
+ * its own screen.
  */
 export function useSweep(state: TabletState, connected: boolean): void {
   const { session_id: sessionId, version } = state;
   const shown = state.administration?.key ?? null;
-  // biome-ignore lint/correctness/useExhaustiveDependencies: a new version is a reason to look again
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a new version is a reason to sweep again
   useEffect(() => {
     if (connected) void sweep(sessionId, shown);
   }, [sessionId, version, shown, connected]);

@@ -10,7 +10,7 @@ import { en } from "./en";
 
 export type Key = KeyOf<typeof en>;
 
-/** Until the session says which language it is held in, the browser's own. */
+/** The browser's language, until the session says which language it is held in. */
 export const translations = createTranslations({ en, de }, preferredLanguage(navigator.languages));
 
 export const useTexts = (): Texts<Key> => useTranslations<Key>();

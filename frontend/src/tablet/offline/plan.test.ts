@@ -6,7 +6,7 @@ const plan = (path: string, mode = "cors", method = "GET", origin = HERE) =>
   planFor({ method, mode, url: `${origin}${path}` }, HERE, "/tablet");
 
 describe("what the worker does with a request", () => {
-  it("keeps the tablet's page and hashed files, and nothing else", () => {
+  it("caches the tablet's page and hashed files, and nothing else", () => {
     expect(plan("/tablet", "navigate")).toBe("page");
     expect(plan("/tablet?code=ABC-123", "navigate")).toBe("page");
     expect(plan("/assets/tablet-1.js")).toBe("asset");
@@ -14,7 +14,7 @@ describe("what the worker does with a request", () => {
     expect(plan("/tablets", "navigate")).toBe("leave");
   });
 
-  it("never touches an answer of the server, another site, or what changes something", () => {
+  it("never touches the server's API, another site, or a request that changes something", () => {
     expect(plan("/api/tablet/state")).toBe("leave");
     expect(plan("/api/tablet/live")).toBe("leave");
     expect(plan("/api/tablet/submissions", "cors", "POST")).toBe("leave");
@@ -24,7 +24,7 @@ describe("what the worker does with a request", () => {
 });
 
 describe("a new build", () => {
-  it("gives up all older caches but the one before, and no cache of somebody else", () => {
+  it("deletes all caches but its own and the previous one, and no cache of another application", () => {
     const [first, second, third] = ["1", "2", "3"].map(cacheName) as [string, string, string];
     expect(outdated(["other", first, second, third], third)).toEqual([first]);
     expect(outdated([first, second], second)).toEqual([]);

@@ -1,13 +1,14 @@
 /**
- * What the tablet's service worker does with a request, and which of its caches it gives up.
+ * How the tablet's service worker handles a request, and which of its caches it deletes.
  *
- *     page    the tablet's page: from the server, so that it is the newest, or else as it was kept
- *     asset   a file whose name holds its content's hash: as it was kept, or else from the server
- *     leave   everything else, and above all every answer of /api: not touched and never kept
+ *     page    the tablet's page: from the server, so that it is the newest; offline from the cache
+ *     asset   a file whose name contains its content's hash: from the cache, otherwise from the
+ *     server
+ *     leave   everything else, above all every response of /api: not touched and never cached
  */
 export type Plan = "page" | "asset" | "leave";
 
-/** Put in front of the worker by the build: what belongs to the page, and the hash of all of it. */
+/** Prepended to the worker by the build: the files of the page, and a hash of all of them. */
 export interface Build {
   readonly version: string;
   readonly page: string;
@@ -33,10 +34,11 @@ const PREFIX = "reembody-tablet-";
 export const cacheName = (version: string): string => `${PREFIX}${version}`;
 
 /**
- * The caches to delete when `own` takes over, of all in the order in which they were made.
+ * The caches to delete when the worker with cache `own` takes over; `names` are in order of
+ * creation.
  *
- * The newest of the others stays: a page of that build may be open still and want a part it has not
- * loaded yet.
+ * The newest of the others is kept: a page of that build may still be open and need a part that it
+ * has not loaded yet.
  */
 export function outdated(names: readonly string[], own: string): readonly string[] {
   return names.filter((name) => name.startsWith(PREFIX) && name !== own).slice(0, -1);

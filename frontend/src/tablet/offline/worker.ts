@@ -1,9 +1,9 @@
 /**
- * Opens the tablet's page without a network, also after its browser was killed.
+ * Open the tablet's page without a network, even after its browser was killed.
  *
- * A service worker of a few lines. When it is installed it keeps the page and the hashed files that
- * belong to it; a new build is another worker, which takes over as soon as it has all of its own.
- * What a participant enters is not here: `drafts/store.ts` keeps that.
+ * When this service worker is installed, it caches the page and its hashed files; a new build is a
+ * different worker, which takes over once it has cached all of its own files. What a participant
+ * enters is stored elsewhere: see `drafts/store.ts`.
  */
 import { type Build, cacheName, outdated, planFor } from "./plan";
 
@@ -27,7 +27,7 @@ interface Worker {
 const worker = self as unknown as Worker;
 const build = worker.BUILD;
 const own = cacheName(build.version);
-/** A server that takes longer is treated like one that is not there. */
+/** A server that does not answer within this time is treated as unreachable. */
 const PATIENCE_MS = 3000;
 
 worker.addEventListener("install", (event) => event.waitUntil(install()));
@@ -42,7 +42,7 @@ async function install(): Promise<void> {
   try {
     await keepAll(await caches.open(own));
   } catch (error) {
-    // Half a build is none; the worker before goes on, and the next start tries again.
+    // An incomplete cache is useless; the previous worker stays, and the next start tries again.
     await caches.delete(own);
     throw error;
   }
@@ -52,7 +52,7 @@ async function install(): Promise<void> {
 async function keepAll(cache: Cache): Promise<void> {
   await cache.addAll(build.files);
   const fetched = await fetch(build.page, { cache: "no-cache" });
-  // The server may be of the next build by now; its page needs that build's worker.
+  // The server may have a newer build by now; its page needs that build's worker.
   const script = build.files[0] ?? "";
   if (!fetched.ok || !(await fetched.clone().text()).includes(script)) {
     throw new Error(`${build.page} is not of this worker's build.`);

@@ -1,4 +1,7 @@
-/** A person of thick round strokes: limbs as lines between joints, 200 units tall when upright. */
+/**
+ * A person drawn in thick round strokes: limbs as lines between joints, 200 units tall when
+ * upright.
+ */
 import type { JSX } from "react";
 
 type Point = readonly [x: number, y: number];
@@ -32,15 +35,15 @@ export function Person({ posture }: { readonly posture: Posture }): JSX.Element 
   );
 }
 
-// How the people of the pictures stand, feet near y = 210.
+// Postures of the people in the pictures, with feet near y = 210.
 
-/** Joints as they lie to the right of somebody's middle. */
+/** Joints of a limb, with x measured from the body's middle to the right. */
 type Limb = readonly Point[];
 
 const shifted = (limb: Limb, x: number): Limb => limb.map(([across, y]) => [x + across, y]);
 const mirrored = (limb: Limb): Limb => limb.map(([across, y]) => [-across, y]);
 
-/** Seen from the front: both sides alike. */
+/** Seen from the front, so both sides mirror each other. */
 const facing = (x: number, arm: Limb, leg: Limb): Posture => ({
   head: [x, 28],
   trunk: [
@@ -51,7 +54,7 @@ const facing = (x: number, arm: Limb, leg: Limb): Posture => ({
   legs: [shifted(mirrored(leg), x), shifted(leg, x)],
 });
 
-/** Seen from the side, looking to the right. */
+/** Seen from the side, facing right. */
 const sideways = (x: number, arms: readonly Limb[], legs: readonly Limb[]): Posture => ({
   head: [x + 4, 28],
   trunk: [

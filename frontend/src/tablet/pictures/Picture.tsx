@@ -1,4 +1,4 @@
-/** A picture of the instructions by its name, with words for those who do not see it. */
+/** A picture of the instructions by its name, with a description for screen readers. */
 import { isPicture, type PictureName } from "@shared/pictures";
 import type { JSX } from "react";
 import { useTexts } from "../i18n";
@@ -36,7 +36,7 @@ function Floor(): JSX.Element {
   return <path d="M20 214H460" stroke={QUIET} strokeWidth={3} strokeLinecap="round" />;
 }
 
-/** What the pictures of the instructions show; the accent marks what the words are about. */
+/** The pictures of the instructions; the accent colour marks what the text is about. */
 function Equipment(): JSX.Element {
   const marks = [
     [208, 130],

@@ -1,4 +1,4 @@
-/** Below a text: a question that calls the experimenter, and the way not to take part. */
+/** Below a text: a question that calls the experimenter, and the button for not taking part. */
 import { Button } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
 import type { TabletState } from "@shared/api/types";
@@ -10,7 +10,7 @@ import { STATE_KEY } from "../useTabletState";
 
 type Question = ReturnType<typeof useQuestion>;
 
-/** A question is an alarm on the experimenter's screen until somebody has come. */
+/** Ask a question: it is an alarm on the experimenter's screen until somebody has come. */
 export function useQuestion(state: TabletState) {
   const queries = useQueryClient();
   const call = useMutation({
@@ -20,7 +20,7 @@ export function useQuestion(state: TabletState) {
   return { asked: state.question_asked, call };
 }
 
-/** What became of the question: the experimenter knows, or has to be spoken to. */
+/** The state of the question: whether the experimenter knows, or has to be spoken to. */
 export function QuestionNotice({ question }: { readonly question: Question }): JSX.Element | null {
   const { t } = useTexts();
   const { asked, call } = question;
@@ -49,7 +49,7 @@ export function QuestionNotice({ question }: { readonly question: Question }): J
 
 interface AskingProps {
   readonly question: Question;
-  /** Missing where there is nothing to refuse. */
+  /** Missing if there is nothing to refuse. */
   readonly onRefuse?: (() => void) | undefined;
 }
 

@@ -1,4 +1,6 @@
-/** Consent with lines to tick and a signature: nothing is sent before the participant presses. */
+/**
+ * Consent with statements to tick and a signature: nothing is sent before the participant presses.
+ */
 import { Button, Checkbox, TextInput } from "@mantine/core";
 import { type ConsentForm, consents } from "@shared/api/records";
 import type { TabletState } from "@shared/api/types";
@@ -84,7 +86,7 @@ function Statements({ form, signing, onChange }: PartProps): JSX.Element | null 
       <legend>{t("consent.statements")}</legend>
       {form.statements.map((one, at) => (
         <Checkbox
-          // biome-ignore lint/suspicious/noArrayIndexKey: statements are known by their place
+          // biome-ignore lint/suspicious/noArrayIndexKey: statements are identified by their position
           key={at}
           size="md"
           label={one.text}

@@ -1,4 +1,4 @@
-/** A form, kept on the tablet with every answer until the server has it. */
+/** A form; every answer is kept on the tablet until the server has stored it. */
 import { Button, Center, Loader } from "@mantine/core";
 import type { Administration, TabletState } from "@shared/api/types";
 import { FormView } from "@shared/forms/FormView";
@@ -52,7 +52,7 @@ interface BetweenProps {
   readonly again: () => void;
 }
 
-/** Before the form is there, and after it was sent. */
+/** The screen before the form has loaded, and after it was sent. */
 function Between({ phase, again }: BetweenProps): JSX.Element {
   const { t } = useTexts();
   switch (phase.name) {

@@ -8,7 +8,9 @@ import { useTexts } from "../i18n";
 import { Prose } from "./Prose";
 import classes from "./screens.module.css";
 
-/** Nothing to press here at the moment: say so calmly, and what comes; or a step's own text. */
+/**
+ * Nothing to press at the moment: say so calmly, with what comes next, or show the step's own text.
+ */
 export function Waiting({ state }: { readonly state: TabletState }): JSX.Element {
   const { t } = useTexts();
   return (
@@ -51,12 +53,14 @@ interface RefusedProps {
   readonly refusal: Refusal;
 }
 
-/** The participant does not want to take part: the experimenter knows, and nothing else is asked. */
+/**
+ * The participant does not want to take part: the experimenter knows, and nothing else is asked.
+ */
 export function Refused({ connected, refusal }: RefusedProps): JSX.Element {
   const { t } = useTexts();
   const { waiting, failed, say } = refusal;
   const stuck = failed || !connected;
-  // Said on this tablet, and not known to the experimenter yet.
+  // Refused on this tablet, but the experimenter has not been notified yet.
   const told = waiting?.refused !== true ? "told" : stuck ? "untold" : "telling";
   return (
     <div className={classes.calm} role="status">
@@ -77,7 +81,7 @@ export function Refused({ connected, refusal }: RefusedProps): JSX.Element {
   );
 }
 
-/** The end of the visit. */
+/** The end of the session. */
 export function Finished({ state }: { readonly state: TabletState }): JSX.Element {
   const { t } = useTexts();
   const words = state.is_refused ? "finished.refused" : "finished";

@@ -1,4 +1,6 @@
-/** The first screen: a code, by keys large enough for a thumb, by keyboard, or by the QR link. */
+/**
+ * The first screen: enter the pairing code by large on-screen keys, by keyboard, or by the QR link.
+ */
 import { Button, Loader, Text, Title } from "@mantine/core";
 import { Unreachable } from "@shared/api/request";
 import { Icon } from "@shared/ui/Icon";
@@ -128,7 +130,7 @@ function PairingState({ ended, pending, error, onRetry }: PairingStateProps): JS
     );
   }
   if (error instanceof Unreachable) return <Failure error={error} onRetry={onRetry} />;
-  // A refused code stays refused: another one has to be entered, so there is nothing to retry.
+  // A rejected code stays rejected: another one has to be entered, so there is nothing to retry.
   if (error !== null) return <Failure error={error} />;
   if (!ended) return null;
   return (

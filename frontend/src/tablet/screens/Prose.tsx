@@ -10,7 +10,7 @@ export function Prose({ text }: { readonly text: string }): JSX.Element {
   return (
     <div className={classes.prose}>
       {paragraphs(text).map((paragraph, index) => (
-        // biome-ignore lint/suspicious/noArrayIndexKey: a text has no other names for its parts
+        // biome-ignore lint/suspicious/noArrayIndexKey: the parts of a text have no other identifier
         <Part key={index} paragraph={paragraph} />
       ))}
     </div>
@@ -36,7 +36,7 @@ function Part({ paragraph }: { readonly paragraph: Paragraph }): JSX.Element {
   }
 }
 
-/** Says that there is more to read, until the end of the text has been in sight. */
+/** A hint that there is more to read, until the end of the text has been visible. */
 export function ScrollHint(): JSX.Element {
   const { t } = useTexts();
   const end = useRef<HTMLSpanElement>(null);

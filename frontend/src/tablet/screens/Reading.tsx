@@ -1,4 +1,4 @@
-/** Consent and instructions: a text to read, room for questions, and one button to go on. */
+/** Consent and instructions: a text to read, a way to ask questions, and one button to continue. */
 import { Button } from "@mantine/core";
 import { tablet } from "@shared/api/endpoints";
 import type { TabletState } from "@shared/api/types";

@@ -1,4 +1,4 @@
-/** A surface to sign on by finger, pen or mouse. Who cannot draw types their name instead. */
+/** A surface to sign with finger, pen or mouse. People who cannot draw type their name instead. */
 import { Button } from "@mantine/core";
 import { type JSX, type PointerEvent, useRef } from "react";
 import { useTexts } from "../i18n";
@@ -6,7 +6,7 @@ import classes from "./Consent.module.css";
 
 const WIDTH = 600;
 const HEIGHT = 200;
-/** Points nearer than this add nothing that an eye could see, units of the surface. */
+/** Points nearer than this add nothing visible, units of the surface. */
 const STEP = 2;
 const LONGEST = 39_000;
 
@@ -21,7 +21,7 @@ export function SignaturePad({ path, onChange }: SignaturePadProps): JSX.Element
   const { t } = useTexts();
   const drawn = useRef(path);
   const last = useRef<Point | null>(null);
-  // What was kept of it comes a moment after the page.
+  // The stored signature arrives a moment after the page.
   if (last.current === null) drawn.current = path;
   const put = (next: string) => {
     if (next.length > LONGEST) return;
@@ -72,7 +72,7 @@ export function SignaturePad({ path, onChange }: SignaturePadProps): JSX.Element
   );
 }
 
-/** Where the pointer is on the surface, to a tenth of a unit. */
+/** The position of the pointer on the surface, to a tenth of a unit. */
 function pointOf(event: PointerEvent<SVGSVGElement>): Point {
   const box = event.currentTarget.getBoundingClientRect();
   const on = (share: number, size: number) =>

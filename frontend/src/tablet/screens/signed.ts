@@ -1,17 +1,17 @@
-/** When a consent is complete, and what is sent of it. */
+/** When a consent is complete, and what of it is sent. */
 import type { ConsentForm, ConsentGiven } from "@shared/api/records";
 
 export interface Signing {
   readonly ticked: readonly number[];
   readonly name: string;
   readonly path: string;
-  /** Typing the name in place of drawing it. */
+  /** Whether the name is typed instead of drawn. */
   readonly types: boolean;
 }
 
 export const UNSIGNED: Signing = { ticked: [], name: "", path: "", types: false };
 
-/** Long enough that it is no slip of the finger, in units of the surface. */
+/** Shorter signatures count as accidental, units of the surface. */
 const SHORTEST = 60;
 
 export type Missing = "statements" | "name" | "signature";
@@ -35,7 +35,7 @@ export function givenOf(form: ConsentForm, signing: Signing, stepIndex: number):
   };
 }
 
-/** The length of all strokes together. */
+/** The total length of all strokes. */
 export function lengthOf(path: string): number {
   return path
     .split("M")

@@ -8,7 +8,7 @@ const entry = (seqEnd: number): Entry => {
   return { stream: "target", epoch: 1, seqEnd, message: "x", madeAtMs: 0 };
 };
 
-/** A journal with a door. */
+/** A journal with admission control. */
 function guarded() {
   const door = { places: 0, inside: [] as number[] };
   const journal = {
@@ -21,7 +21,7 @@ function guarded() {
 }
 
 describe("admission", () => {
-  it("keeps the order: nobody passes those who wait, even when there is room again", async () => {
+  it("keeps the order: no call overtakes those that wait, even when there is room again", async () => {
     const { door, admission } = guarded();
     const first = admission.enter(entry(1));
     door.places = 9;
@@ -32,7 +32,7 @@ describe("admission", () => {
     expect(door.inside).toEqual([1, 2]);
   });
 
-  it("lets in only as many as there is room for", () => {
+  it("admits only as many as there is room for", () => {
     const { door, admission } = guarded();
     for (const seqEnd of [1, 2]) void admission.enter(entry(seqEnd));
     door.places = 1;
@@ -40,7 +40,7 @@ describe("admission", () => {
     expect([door.inside, admission.waiting]).toEqual([[1], 1]);
   });
 
-  it("tells everybody who waits when it is over", async () => {
+  it("rejects all waiting calls when the client has failed", async () => {
     const { admission } = guarded();
     const waiting = admission.enter(entry(1));
     admission.refuseAll(CLOSED);

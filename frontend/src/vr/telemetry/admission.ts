@@ -1,4 +1,4 @@
-/** Whoever produces waits here while the journal has no room; first come, first served. */
+/** Makes producers wait while the journal has no room; first come, first served. */
 import { type Failure, TelemetryError } from "./failure";
 import type { Entry } from "./journal/entries";
 import type { Journal } from "./journal/journal";
@@ -21,7 +21,7 @@ export class Admission {
     return this.#calls.length;
   }
 
-  /** Until the message is in the journal. */
+  /** Resolves once the message is in the journal. */
   async enter(entry: Entry): Promise<void> {
     if (this.#calls.length === 0 && this.#journal.hasRoom) {
       this.#journal.add(entry);
@@ -32,7 +32,7 @@ export class Admission {
     });
   }
 
-  /** Let in whom there is room for. */
+  /** Admit the waiting messages that there is room for. */
   admit(): void {
     while (this.#journal.hasRoom) {
       const call = this.#calls.shift();
@@ -42,7 +42,7 @@ export class Admission {
     }
   }
 
-  /** Nobody gets in any more. */
+  /** Reject all waiting and future messages. */
   refuseAll(failure: Failure): void {
     const calls = this.#calls;
     this.#calls = [];

@@ -7,7 +7,7 @@ import { batchBytes } from "./wire/batch";
 const bed = testBed();
 
 describe("a connection that breaks", () => {
-  it("comes back as the same run, and what was not stored is sent again, once", async () => {
+  it("is restored as the same run, and what was not stored is resent, once", async () => {
     const telemetry = await bed.opened();
     bed.server.acknowledges = false;
     await produce(telemetry, 5);
@@ -21,7 +21,7 @@ describe("a connection that breaks", () => {
     expect(bed.server.storedOf("reports", 1)).toEqual(seqs("reports", 1, 2));
   });
 
-  it("is tried again and again while nobody answers", async () => {
+  it("is retried until the server answers", async () => {
     const telemetry = await bed.opened();
     bed.server.isUp = false;
     bed.server.breaks();
@@ -30,7 +30,7 @@ describe("a connection that breaks", () => {
     await eventually(() => telemetry.status.connected);
   });
 
-  it("costs nothing in memory: what waits lies on disk, and comes back from there in order", async () => {
+  it("costs no memory: waiting messages are on disk and are read from there in order", async () => {
     const disk = new MemoryBlocks();
     const telemetry = await bed.opened(disk, { blockBytes: 5000, memoryBytes: 20_000 });
     bed.server.isUp = false;
@@ -43,7 +43,7 @@ describe("a connection that breaks", () => {
     expect(bed.server.storedOf("target", 1)).toEqual(seqs("target", 1, 300));
   });
 
-  it("that says nothing any more counts as broken", async () => {
+  it("is recognised by its silence", async () => {
     const telemetry = await bed.opened(undefined, { silenceS: 0.05, probeEveryS: 0.01 });
     bed.server.answersProbes = false;
     await eventually(() => bed.server.sockets.length > 1);
@@ -51,7 +51,7 @@ describe("a connection that breaks", () => {
     await eventually(() => telemetry.status.connected);
   });
 
-  it("that takes nothing does not fill the memory of the browser", async () => {
+  it("does not fill the browser's memory when the network takes nothing", async () => {
     const telemetry = await bed.opened(undefined, { bufferedBytes: 10_000 });
     bed.server.socket.isStuck = true;
     await produce(telemetry, 50);
@@ -64,8 +64,8 @@ describe("a connection that breaks", () => {
   });
 });
 
-describe("a browser's disk", () => {
-  it("that cannot be read for a moment holds the sending up, and no more", async () => {
+describe("the browser's disk", () => {
+  it("only delays the sending when it cannot be read for a moment", async () => {
     const disk = new MemoryBlocks();
     const telemetry = await bed.opened(disk);
     bed.server.isUp = false;
@@ -81,7 +81,7 @@ describe("a browser's disk", () => {
     expect(bed.server.storedOf("target", 1)).toEqual(seqs("target", 1, 30));
   });
 
-  it("that has lost the journal is a failure, with what to do about it", async () => {
+  it("is reported as a failure with a remedy when it has lost the journal", async () => {
     const disk = new MemoryBlocks();
     const telemetry = await bed.opened(disk);
     bed.server.isUp = false;
@@ -95,7 +95,7 @@ describe("a browser's disk", () => {
   });
 });
 
-describe("a hole", () => {
+describe("a gap", () => {
   it("is filled from the journal", async () => {
     const telemetry = await bed.opened();
     bed.server.acknowledges = false;

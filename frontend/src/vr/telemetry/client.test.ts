@@ -17,7 +17,7 @@ import { batchBytes } from "./wire/batch";
 const bed = testBed();
 
 describe("a client", () => {
-  it("greets, takes its number, and offers the token as a subprotocol", async () => {
+  it("sends hello, takes its epoch, and offers the token as a subprotocol", async () => {
     const telemetry = await bed.opened();
     expect(bed.server.heard[0]).toEqual({
       type: "hello",
@@ -40,7 +40,7 @@ describe("a client", () => {
     expect([telemetry.status.journaledMessages, telemetry.settled]).toEqual([0, true]);
   });
 
-  it("keeps the order of calls that nobody waits for", async () => {
+  it("keeps the order of calls that are not awaited", async () => {
     const telemetry = await bed.opened();
     const sending = [
       telemetry.sendFrames("target", standing(6)),
@@ -56,7 +56,7 @@ describe("a client", () => {
     ]);
   });
 
-  it("tells new states and what the server says of its data", async () => {
+  it("reports new states and the server's notices about its data", async () => {
     const telemetry = await bed.opened();
     const versions: number[] = [];
     const notices: string[] = [];
@@ -81,7 +81,7 @@ describe("a client", () => {
     await eventually(() => telemetry.settled);
   });
 
-  it("refuses what the server would refuse, and goes on with the same number", async () => {
+  it("rejects what the server would reject, and reuses the number", async () => {
     const telemetry = await bed.opened();
     await expect(telemetry.report({ kind: "materialised", t_s: Number.NaN })).rejects.toThrow(
       "t_s",
@@ -96,7 +96,7 @@ describe("a client", () => {
 });
 
 describe("a full journal", () => {
-  it("holds the producer, says so, and lets it go on; nothing is lost", async () => {
+  it("makes the producer wait, reports it, and lets it continue; nothing is lost", async () => {
     const telemetry = await bed.opened(undefined, { journalBytes: 10 * batchBytes(6) });
     const levels = new Set<Level>();
     telemetry.onStatus((status: Status) => levels.add(status.level));
@@ -113,7 +113,7 @@ describe("a full journal", () => {
     expect(bed.server.storedOf("target", 1)).toEqual(seqs("target", 1, 120));
   });
 
-  it("counts what waits as produced: the server learns of it", async () => {
+  it("counts waiting messages as produced, and announces them to the server", async () => {
     const disk = new MemoryBlocks();
     const telemetry = await bed.opened(disk, { journalBytes: 1 });
     bed.server.acknowledges = false;
@@ -125,7 +125,7 @@ describe("a full journal", () => {
     );
   });
 
-  it("lets nobody wait for ever: a failure rejects, and so does closing", async () => {
+  it("lets no call wait forever: a failure rejects it, and so does closing", async () => {
     const telemetry = await bed.opened(undefined, { journalBytes: 1 });
     bed.server.acknowledges = false;
     await telemetry.sendFrames("target", standing(6));
@@ -139,7 +139,7 @@ describe("a full journal", () => {
     await expect(closed).rejects.toThrow("closed");
   });
 
-  it("is behind before it is full", async () => {
+  it("is preceded by the level `behind`", async () => {
     const telemetry = await bed.opened(undefined, { behindAfterS: 0.01 });
     bed.server.acknowledges = false;
     await telemetry.sendFrames("target", standing(6));
@@ -149,7 +149,7 @@ describe("a full journal", () => {
 });
 
 describe("closing", () => {
-  it("tells how far the run has come, and leaves the rest in the journal", async () => {
+  it("announces how far the run has come, and leaves the rest in the journal", async () => {
     const disk = new MemoryBlocks();
     const telemetry = await bed.opened(disk, { producedEveryS: 60 });
     bed.server.acknowledges = false;
@@ -160,7 +160,7 @@ describe("closing", () => {
     await expect(telemetry.report(MATERIALISED)).rejects.toThrow("closed");
   });
 
-  it("ends the waiting for a server that is not there", async () => {
+  it("ends the wait for an unreachable server", async () => {
     bed.server.isUp = false;
     bed.client = await startedClient(bed.server);
     const opening = bed.client.opened();

@@ -19,17 +19,17 @@ import { encodeBatch, type Frames, MalformedBatch, type StreamName } from "./wir
 import { type ReportBody, textOf } from "./wire/fromClient";
 import type { HeadsetState, Welcome } from "./wire/fromServer";
 
-/** What the client stands on; tests put their own in. */
+/** The environment that the client depends on; tests replace it. */
 interface Ground {
   readonly journal: Journal;
   readonly limits: Limits;
   /** The client's monotonic clock, s. */
   readonly clock: () => number;
-  /** Ms since 1970, without steps: how old a message is. */
+  /** Ms since 1970, without steps, from which the age of a message is computed. */
   readonly wallClockMs: () => number;
   readonly makeSocket: MakeSocket;
   readonly onStatus: (status: Status) => void;
-  /** After everything else has ended. */
+  /** Called after everything else has ended. */
   readonly onClosed: () => Promise<void>;
 }
 
@@ -75,7 +75,7 @@ export class DirectClient implements TelemetryClient {
     this.#running = this.#connection.run();
   }
 
-  /** Until the first welcome; rejects if the server refuses. */
+  /** Resolves at the first welcome; rejects if the server rejects the client. */
   async opened(): Promise<this> {
     await this.#until(() => this.#connection.epoch !== null);
     return this;
@@ -231,7 +231,10 @@ export class DirectClient implements TelemetryClient {
   }
 }
 
-/** What is told at once; the rest of a status changes all the time and waits for the next tick. */
+/**
+ * The parts of a status that are reported immediately; the rest changes all the time and waits for
+ * the next tick.
+ */
 const turningPoint = ({ connected, level, settled, reportsMade, failure }: Status): string =>
   `${connected} ${level} ${settled} ${reportsMade} ${failure?.code}`;
 
@@ -253,7 +256,7 @@ interface Waiter {
   readonly reject: (error: TelemetryError) => void;
 }
 
-/** Those who wait until something holds. */
+/** Calls that wait until a condition holds. */
 class Waiters {
   #waiting: readonly Waiter[] = [];
 
@@ -264,7 +267,7 @@ class Waiters {
     });
   }
 
-  /** Something has changed. With a failure nothing will come of the waiting any more. */
+  /** Check all conditions after a change. With a failure, the remaining calls are rejected. */
   look(failure: Failure | null): void {
     const over = this.#waiting.filter((one) => failure !== null || one.isDone());
     if (over.length === 0) return;

@@ -1,4 +1,4 @@
-/** Why nothing more can be sent: in the server's words wherever it said something. */
+/** Why nothing more can be sent: in the server's words if it gave any. */
 export interface Failure {
   /** For programs: the server's code, or one of this client's own. */
   readonly code: string;
@@ -6,7 +6,7 @@ export interface Failure {
   readonly remedy: string;
 }
 
-/** Thrown to whoever still wants to send, and to whoever waits. The journal keeps what it has. */
+/** Thrown by calls that send or wait after the failure. The journal keeps its contents. */
 export class TelemetryError extends Error {
   override readonly name = "TelemetryError";
   readonly failure: Failure;

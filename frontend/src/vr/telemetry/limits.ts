@@ -1,43 +1,49 @@
-/** Every number that decides when the client waits, gives up or tries again. */
+/** Every number that decides when the client waits, gives up or retries. */
 export interface Limits {
-  /** The producer waits while the journal holds this many bytes. */
+  /** The producer waits while the journal contains this many bytes. */
   readonly journalBytes: number;
-  /** The producer waits while so many bytes are not written to the journal's disk yet. */
+  /** The producer waits while so many bytes are not yet written to the journal's disk. */
   readonly memoryBytes: number;
-  /** Messages go to disk together, at most this often; a crash while offline can cost so much. */
+  /**
+   * Messages are written to disk together, at most this often; a crash while offline can lose this
+   * much.
+   */
   readonly flushEveryS: number;
-  /** Or as soon as so many bytes have gathered. */
+  /** Or as soon as so many bytes have accumulated. */
   readonly flushBytes: number;
   /**
-   * Messages lie on disk in blocks of about so many bytes. Chromium keeps values of more than 64 KiB
-   * in files of their own, which cost much more.
+   * Messages are stored on disk in blocks of about this many bytes. Chromium stores values of more
+   * than 64 KiB in separate files, which cost much more.
    */
   readonly blockBytes: number;
-  /** How many blocks are read ahead when an old message is sent again. */
+  /** How many blocks are read ahead when old messages are resent. */
   readonly blocksAhead: number;
-  /** What the browser may still store that the journal leaves untouched, as a share. */
+  /** The fraction of the browser's remaining space that the journal leaves unused. */
   readonly quotaReserve: number;
   /** Most frames in one batch: the server takes messages of up to 256 KiB, which is 702 frames. */
   readonly framesPerBatch: number;
-  /** Sending pauses while the browser holds so many bytes that the network has not taken. */
+  /** Sending pauses while the browser's send buffer contains more than so many bytes. */
   readonly bufferedBytes: number;
-  /** How often the buffer is looked at then. */
+  /** How often the buffer is checked during such a pause. */
   readonly bufferPollS: number;
   /** Pauses between attempts to connect; the last one repeats. */
   readonly retryS: readonly number[];
   /** A connection must be welcomed within this time. */
   readonly openTimeoutS: number;
-  /** A connection on which nothing is heard for so long is dead; probes are answered every second. */
+  /**
+   * A connection on which nothing is received for this long is dead; probes are answered every
+   * second.
+   */
   readonly silenceS: number;
-  /** A hole that the server asks for again sooner than this is the same one. */
+  /** Requests to resend the same gap within this time count as one. */
   readonly resendPauseS: number;
-  /** After so many attempts to fill a hole it is clear that the journal cannot. */
+  /** After so many attempts to fill a gap it is clear that the journal cannot. */
   readonly resendAttempts: number;
   readonly probeEveryS: number;
-  /** An answer that takes longer is told as null. */
+  /** A probe whose answer takes longer is reported as null. */
   readonly probeTimeoutS: number;
   readonly producedEveryS: number;
-  /** From this age of the oldest unacknowledged message on, the client is behind. */
+  /** The client is behind once its oldest unacknowledged message is this old. */
   readonly behindAfterS: number;
   /** How long to wait for another page that has the same journal open. */
   readonly lockTimeoutS: number;

@@ -5,15 +5,15 @@ import { eventually, openedClient, produce, seqs, startedClient, testBed } from 
 
 const bed = testBed();
 
-/** The page is gone from one moment to the next: no timer of it runs, no socket is open. */
+/** Kill the page without warning: none of its timers runs, none of its sockets is open. */
 async function killed(victim: DirectClient): Promise<void> {
   bed.server.acknowledges = false;
   await victim.close();
   bed.server.acknowledges = true;
 }
 
-describe("a page that starts again", () => {
-  it("delivers what the one before left under its own number, then its own", async () => {
+describe("a page that restarts", () => {
+  it("delivers the previous run's messages under their own epoch, then its own", async () => {
     const disk = new MemoryBlocks();
     const first = await openedClient(bed.server, disk);
     bed.server.isUp = false;
@@ -34,7 +34,7 @@ describe("a page that starts again", () => {
     expect(second.settled).toBe(true);
   });
 
-  it("tells how far each run had come, right after the welcome", async () => {
+  it("announces how much each run had produced, right after the welcome", async () => {
     const disk = new MemoryBlocks();
     const first = await openedClient(bed.server, disk);
     bed.server.isUp = false;

@@ -2,7 +2,7 @@ import { uuid } from "@shared/uuid";
 import { expect, it } from "vitest";
 import { takeLock } from "./open";
 
-it("is held by one at a time, and passed on", async () => {
+it("is held by one page at a time, and passed on", async () => {
   const name = uuid();
   const letGo = await takeLock(name, 1);
   expect(letGo).not.toBe(null);
@@ -12,6 +12,6 @@ it("is held by one at a time, and passed on", async () => {
   expect(await next).not.toBe(null);
 });
 
-it("is not there in a browser that has none", async () => {
+it("is missing in a browser without locks", async () => {
   expect(await takeLock("any", 1, undefined)).not.toBe(null);
 });

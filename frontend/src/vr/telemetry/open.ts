@@ -1,4 +1,4 @@
-/** Opening a telemetry client in this thread: a page, or a worker. */
+/** Open a telemetry client in this thread: a page's or a worker's. */
 import type { Status, TelemetryClient, TelemetryOptions } from "./client";
 import { DirectClient } from "./directClient";
 import { TelemetryError } from "./failure";
@@ -6,22 +6,22 @@ import { deleteJournal, IndexedDbBlocks } from "./journal/indexedDb";
 import { Journal } from "./journal/journal";
 import { DEFAULT_LIMITS } from "./limits";
 
-/** What cannot be sent to a worker. */
+/** Options that cannot be sent to a worker. */
 export interface Surroundings {
   /** The client's monotonic clock, s; `performance.now()` unless another is given. */
   readonly clock?: () => number;
-  /** Hears how it goes from the first attempt to connect on. */
+  /** Receives the status from the first attempt to connect onwards. */
   readonly onStatus?: (status: Status) => void;
-  /** Ends the waiting for the server. */
+  /** Aborts the wait for the server. */
   readonly signal?: AbortSignal;
 }
 
 /**
- * Open the journal and connect; returns once the server has answered, however long that takes.
+ * Open the journal and connect; resolves once the server has answered, however long that takes.
  *
- * What an earlier life of the page left in the journal is sent first, under its own epoch: it holds
- * reports without which the session's state does not make sense. Rejects with TelemetryError when the
- * server refuses, or when another page uses the journal.
+ * What a previous run left in the journal is sent first, under its own epoch: it contains reports
+ * without which the session's state would not make sense. Rejects with TelemetryError if the server
+ * rejects the client, or if another page uses the journal.
  */
 export async function openTelemetry(
   options: TelemetryOptions,
@@ -73,15 +73,18 @@ const inUse = (storageKey: string): TelemetryError =>
     remedy: "Close the other page; two headsets in one browser need two storageKeys.",
   });
 
-// One page at a time may use a journal; the browser takes the lock from a page that dies.
+// One page at a time may use a journal; the browser releases the lock of a page that dies.
 
-/** Wait for the lock `name`, at most `timeoutS`; returns what lets go of it, null if it was in vain. */
+/**
+ * Wait for the lock `name`, at most `timeoutS`; return a function that releases it, or null after
+ * the timeout.
+ */
 export async function takeLock(
   name: string,
   timeoutS: number,
   locks: LockManager | undefined = globalThis.navigator?.locks,
 ): Promise<(() => void) | null> {
-  // Browsers hide locks from pages without https; there two pages have to be kept apart by hand.
+  // Browsers offer no locks to pages without https; two such pages have to be kept apart by hand.
   if (locks === undefined) return () => undefined;
   return new Promise((resolve, reject) => {
     const held = () => new Promise<void>((release) => resolve(release));
@@ -92,7 +95,7 @@ export async function takeLock(
   });
 }
 
-/** Bytes that the browser would still store for this site; Infinity where it does not tell. */
+/** Bytes that the browser would still store for this site; Infinity if it does not say. */
 async function storageRoom(storage = globalThis.navigator?.storage): Promise<number> {
   try {
     const { quota, usage } = await storage.estimate();

@@ -1,12 +1,15 @@
-/** What only a page can do for its telemetry: start the worker, notice that it is being left. */
+/**
+ * What only a page can do for its telemetry: start the worker, and notice that it is being left.
+ */
 import type { TelemetryClient, TelemetryOptions } from "./client";
 import type { Surroundings } from "./open";
 import type { FromWorker, Port, ToWorker } from "./port";
 import { WorkerClient } from "./workerClient";
 
 /**
- * Like `openTelemetry`, in a worker: there neither a slow frame nor a browser that lets the timers of
- * hidden pages sleep (as some do while a headset shows the scene) holds up acknowledgements, probes
+ * Like `openTelemetry`, but in a worker: there neither a slow frame nor a browser that suspends the
+ * timers of
+ * hidden pages (as some do while a headset shows the scene) delays acknowledgements, probes
  * and the journal, and draining a long backlog costs the frame loop nothing.
  *
  * The client's clock is the page's `performance.now()`, in seconds.
@@ -15,8 +18,8 @@ export async function openTelemetryInWorker(
   options: TelemetryOptions,
   { onStatus, signal }: Omit<Surroundings, "clock"> = {},
 ): Promise<TelemetryClient> {
-  // Without this a browser that runs out of disk may delete the journal without a word. Some ask the
-  // user first: nobody waits for the answer.
+  // Without this a browser that runs out of disk may silently delete the journal. Some browsers ask
+  // the user first, so the answer is not awaited.
   void navigator.storage?.persist?.().catch(() => false);
   const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
   const port = worker as Port<ToWorker, FromWorker>;
@@ -44,7 +47,7 @@ export async function openTelemetryInWorker(
   return client;
 }
 
-/** The first comes earlier, the second also where nobody is asked. */
+/** `beforeunload` comes earlier; `pagehide` also comes when the user is not asked. */
 const LEAVING = ["beforeunload", "pagehide"] as const;
 
 /** A client whose worker ends with it. */
@@ -58,11 +61,13 @@ class PageClient extends WorkerClient {
 }
 
 /**
- * Bring the journal to disk when the page is hidden or left; returns what ends the watching.
+ * Write the journal to disk when the page is hidden or left; return a function that stops this.
  *
- * A client of the page itself has then asked for everything before the page goes. One in a worker
- * must still be told, and browsers end it without waiting: so it is told as early as possible, and
- * what it has made within `flushEveryS` may be lost.
+ * A client in the page's own thread has issued its write by the time the page is gone. A worker
+ * must
+ * first be notified, and browsers end it without waiting: so it is notified as early as possible,
+ * and
+ * what it produced within `flushEveryS` may be lost.
  */
 export function flushWhenLeft(client: TelemetryClient): () => void {
   const flush = () => void client.flush().catch(() => undefined);

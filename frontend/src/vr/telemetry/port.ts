@@ -1,4 +1,4 @@
-/** What the page and its worker say to each other. */
+/** The messages between the page and its worker. */
 import type { Status, TelemetryOptions } from "./client";
 import type { Notice } from "./connection/connection";
 import type { Failure } from "./failure";
@@ -6,7 +6,7 @@ import type { Frames, StreamName } from "./wire/batch";
 import type { ReportBody } from "./wire/fromClient";
 import type { HeadsetState, Welcome } from "./wire/fromServer";
 
-/** What is asked of the client; each call is answered under its id. */
+/** A method call on the client; it is answered under its id. */
 export type Call =
   | { readonly what: "sendFrames"; readonly stream: StreamName; readonly frames: Frames }
   | { readonly what: "report"; readonly body: ReportBody }
@@ -16,13 +16,13 @@ export type ToWorker =
   | {
       readonly kind: "open";
       readonly options: TelemetryOptions;
-      /** `performance.timeOrigin` of the page, whose clock the client's times are of. */
+      /** `performance.timeOrigin` of the page, whose clock the client's times refer to. */
       readonly timeOriginMs: number;
     }
   | { readonly kind: "giveUp" }
   | { readonly kind: "call"; readonly id: number; readonly call: Call };
 
-/** An error crosses as its words, and as the failure where it has one. */
+/** An error as it is passed between threads: its message, and the failure if it has one. */
 export interface Wrong {
   readonly name: string;
   readonly message: string;

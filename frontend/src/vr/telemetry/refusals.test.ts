@@ -4,8 +4,8 @@ import { eventually, produce, startedClient, testBed } from "./testing/rig";
 
 const bed = testBed();
 
-describe("a refusal", () => {
-  it("is final and told in the server's words, also to those who wait", async () => {
+describe("a rejection by the server", () => {
+  it("is final and reported in the server's words, also to waiting calls", async () => {
     const telemetry = await bed.opened();
     bed.server.acknowledges = false;
     await produce(telemetry, 1);
@@ -37,20 +37,20 @@ describe("a refusal", () => {
     await eventually(() => bed.server.sockets.length === 2 && telemetry.status.connected);
   });
 
-  it("is met at the first attempt: opening rejects", async () => {
+  it("at the first attempt makes opening reject", async () => {
     const error = { type: "error", code: "invalid", message: "too old", remedy: "Update." };
     bed.server.refusal = { code: 4400, error };
     bed.client = await startedClient(bed.server);
     await expect(bed.client.opened()).rejects.toThrow("too old. Update.");
   });
 
-  it("is ours when the server is not understood", async () => {
+  it("comes from the client if it does not understand the server", async () => {
     bed.server.welcomeWith = { positions: undefined as never };
     bed.client = await startedClient(bed.server);
     await expect(bed.client.opened()).rejects.toThrow("positions");
   });
 
-  it("is ours when the server speaks another protocol", async () => {
+  it("comes from the client if the server speaks another protocol", async () => {
     bed.server.welcomeWith = { protocol: 2 };
     bed.client = await startedClient(bed.server);
     await expect(bed.client.opened()).rejects.toThrow("version 2");

@@ -1,4 +1,4 @@
-/** The worker's side: a client in a thread of its own, run by messages. */
+/** The worker's side: a client in a thread of its own, controlled by messages. */
 import type { TelemetryClient } from "./client";
 import { TelemetryError } from "./failure";
 import { openTelemetry } from "./open";

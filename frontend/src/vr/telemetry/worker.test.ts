@@ -14,7 +14,7 @@ let channel: MessageChannel;
 let client: WorkerClient;
 let clock: (() => number) | undefined;
 
-/** Both sides in one thread, on the two ends of a channel: what crosses is copied all the same. */
+/** Both sides in one thread, on the two ends of a channel: messages are copied all the same. */
 beforeEach(() => {
   server = new FakeServer();
   channel = new MessageChannel();
@@ -36,7 +36,7 @@ afterEach(async () => {
   channel.port1.close();
 });
 
-it("is the same client from outside", async () => {
+it("behaves like the client in the page's thread", async () => {
   const telemetry: TelemetryClient = await client.opened();
   await telemetry.sendFrames("target", standing(6));
   await telemetry.sendFrames("actual", standing(6));
@@ -46,7 +46,7 @@ it("is the same client from outside", async () => {
   expect([telemetry.epoch, telemetry.welcome.session_id]).toEqual([1, "session"]);
 });
 
-it("copies the frames at the call: the caller may fill the arrays again", async () => {
+it("copies the frames at the call, so the caller may reuse the arrays", async () => {
   await client.opened();
   const frames = standing(6);
   const sending = client.sendFrames("target", frames);
@@ -57,7 +57,7 @@ it("copies the frames at the call: the caller may fill the arrays again", async 
   expect(server.stored).toHaveLength(6);
 });
 
-it("passes news on, and the state that was told last is the newest", async () => {
+it("passes events on, and its state is the last one received", async () => {
   await client.opened();
   const [states, notices]: [number[], string[]] = [[], []];
   client.onState((state) => states.push(state.version));
@@ -77,14 +77,14 @@ it("is not settled from the call of a report until the worker has heard that it 
   await eventually(() => client.settled);
 });
 
-it("passes errors on by name, and a report that was refused here is not waited for", async () => {
+it("passes errors on by name, and does not wait for a report that was rejected locally", async () => {
   await client.opened();
   const report = client.report({ kind: "materialised", t_s: Number.NaN });
   await expect(report).rejects.toMatchObject({ name: "MalformedMessage" });
   await eventually(() => client.settled);
 });
 
-it("passes the server's refusal on as what it is", async () => {
+it("passes on a rejection by the server unchanged", async () => {
   await client.opened();
   server.refusal = {
     code: 4401,
@@ -102,7 +102,7 @@ it("gives up waiting for the server", async () => {
   await expect(client.opened()).rejects.toThrow("closed");
 });
 
-it("ends everybody's waiting when the worker has failed", async () => {
+it("rejects all waiting calls when the worker has failed", async () => {
   await client.opened();
   server.acknowledges = false;
   await client.sendFrames("target", standing(1));
@@ -114,6 +114,6 @@ it("ends everybody's waiting when the worker has failed", async () => {
 
 it("reads the page's clock, not the worker's own", async () => {
   await client.opened();
-  // The page in this test began a minute before the thread did.
+  // The page in this test was opened a minute before the thread started.
   expect(clock?.()).toBeGreaterThan(60);
 });

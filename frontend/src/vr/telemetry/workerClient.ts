@@ -33,7 +33,7 @@ export class WorkerClient implements TelemetryClient {
   #status = NOTHING_YET;
   #over: Failure | null = null;
 
-  /** `timeOriginMs`: of the page, whose clock the client's times are of. */
+  /** `timeOriginMs`: of the page, whose clock the client's times refer to. */
   constructor(port: Port<ToWorker, FromWorker>, options: TelemetryOptions, timeOriginMs: number) {
     let opening: Pending = { resolve: () => undefined, reject: () => undefined };
     this.#opened = new Promise((resolve, reject) => {
@@ -50,12 +50,12 @@ export class WorkerClient implements TelemetryClient {
     return this;
   }
 
-  /** Ends the waiting for the server. */
+  /** Abort the wait for the server. */
   giveUp(): void {
     this.#port.postMessage({ kind: "giveUp" }, []);
   }
 
-  /** The worker itself has failed; what it had journaled is on disk. */
+  /** Called when the worker itself has failed; what it had journaled is on disk. */
   fail(failure: Failure): void {
     this.#over = failure;
     const error = new TelemetryError(failure);
@@ -82,13 +82,14 @@ export class WorkerClient implements TelemetryClient {
     return this.#status;
   }
 
-  /** The worker may not have heard of the newest reports yet. */
+  /** Whether all reports are stored; the worker may not have heard of the newest ones yet. */
   get settled(): boolean {
     return this.#status.settled && this.#status.reportsMade >= this.#reportsMade;
   }
 
   async sendFrames(stream: StreamName, frames: Frames): Promise<void> {
-    // The arrays are the caller's, who fills them again: copies go over, and need not be copied there.
+    // The caller reuses the arrays, so copies are transferred, which need not be copied a second
+    // time.
     const timesS = frames.timesS.slice();
     const flags = frames.flags.slice();
     const values = frames.values.slice();
@@ -102,7 +103,7 @@ export class WorkerClient implements TelemetryClient {
     try {
       await this.#call({ what: "report", body });
     } catch (error) {
-      // One that was refused before it was made never becomes settled.
+      // A report that was rejected before it was made never becomes settled.
       this.#reportsMade--;
       throw error;
     }

@@ -1,7 +1,7 @@
 /**
- * Telling the server how far the client itself has come, so that it knows what it does not have.
+ * Announce how much the client has produced, so that the server knows what it is missing.
  *
- * Runs of an earlier life of the page are told where something of them may be missing on the server.
+ * Runs from before a reload of the page are announced if the server may be missing parts of them.
  */
 import { keyOf, type Run } from "../journal/entries";
 import type { Journal } from "../journal/journal";
@@ -21,7 +21,7 @@ export class Announcer {
     this.#ticking = setInterval(() => this.tell(), limits.producedEveryS * 1000);
   }
 
-  /** Tell of what has changed since the last time; at first of everything. */
+  /** Announce what has changed since the last time; the first time, everything. */
   tell(): void {
     for (const run of this.#journal.runs) {
       const streams = this.#news(run);

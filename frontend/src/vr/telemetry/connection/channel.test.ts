@@ -34,7 +34,7 @@ afterEach(() => {
 });
 
 describe("a channel", () => {
-  it("that is not answered in time ends as a broken one", async () => {
+  it("ends as broken if it is not answered in time", async () => {
     socket.opens();
     await vi.advanceTimersByTimeAsync(9_900);
     expect(ending).toBe(null);
@@ -43,7 +43,7 @@ describe("a channel", () => {
     expect(socket.readyState).toBe(WebSocket.CLOSED);
   });
 
-  it("stays open as long as something is heard now and then", async () => {
+  it("stays open as long as something is received now and then", async () => {
     socket.opens();
     for (let second = 0; second < 60; second += 5) {
       socket.hears("news");
@@ -54,7 +54,7 @@ describe("a channel", () => {
     expect(ending).toEqual({ code: 1006, reason: "" });
   });
 
-  it("ends with the server's code and words, and says nothing after that", async () => {
+  it("ends with the server's code and reason, and passes nothing on after that", async () => {
     socket.opens();
     socket.breaks(4401, "replaced");
     await vi.advanceTimersByTimeAsync(0);
@@ -64,7 +64,7 @@ describe("a channel", () => {
     expect([heard, channel.isOpen]).toEqual([["open"], false]);
   });
 
-  it("does not wait for the handshake of a dead network when it is closed", async () => {
+  it("does not wait for the closing handshake of a dead network", async () => {
     socket.opens();
     const shut = vi.spyOn(socket, "close").mockImplementation(() => undefined);
     channel.close(1000);
@@ -73,7 +73,7 @@ describe("a channel", () => {
     expect(shut).toHaveBeenCalledWith(1000, "");
   });
 
-  it("waits while the network takes nothing, and no longer than it is open", async () => {
+  it("waits while the network takes nothing, but only while it is open", async () => {
     socket.opens();
     const [first, second] = [vi.fn(), vi.fn()];
     socket.bufferedAmount = DEFAULT_LIMITS.bufferedBytes;

@@ -19,7 +19,7 @@ export interface Address {
 export type MakeSocket = (url: string, protocols: string[]) => WebSocket;
 
 export class Channel {
-  /** Settles once, whatever happened. */
+  /** Resolves once when the channel has ended, for whatever reason. */
   readonly ended: Promise<Ending>;
   readonly #socket: WebSocket;
   readonly #limits: Limits;
@@ -28,7 +28,7 @@ export class Channel {
   #isOpen = true;
   #watchdog: ReturnType<typeof setTimeout> | undefined;
 
-  /** `onOpen` and `onText` are called only until the channel has ended. */
+  /** `onOpen` and `onText` are not called after the channel has ended. */
   constructor(
     address: Address,
     limits: Limits,
@@ -57,7 +57,7 @@ export class Channel {
     if (this.#isOpen && this.#socket.readyState === WebSocket.OPEN) this.#socket.send(message);
   }
 
-  /** Until the browser holds little enough that the network has not taken, or the channel ended. */
+  /** Resolves when the browser's send buffer is small enough, or the channel has ended. */
   async room(): Promise<void> {
     const { bufferedBytes, bufferPollS } = this.#limits;
     while (this.#isOpen && this.#socket.bufferedAmount >= bufferedBytes) {
@@ -69,7 +69,10 @@ export class Channel {
     this.#over({ code, reason });
   }
 
-  /** A network that vanished says nothing, for minutes: who is silent for long is gone. */
+  /**
+   * A network that vanished causes no event for minutes, so a connection that is silent for long is
+   * closed.
+   */
   #watch(silenceS: number): void {
     clearTimeout(this.#watchdog);
     this.#watchdog = setTimeout(() => this.#over(BROKEN), silenceS * 1000);
@@ -85,7 +88,7 @@ export class Channel {
     if (!this.#isOpen) return;
     this.#isOpen = false;
     clearTimeout(this.#watchdog);
-    // The closing handshake of a dead network takes long: nobody waits for it.
+    // The closing handshake of a dead network takes long, so it is not awaited.
     const isOurs = ending.code === 1000 || ending.code >= 3000;
     if (this.#socket.readyState < WebSocket.CLOSING) {
       if (isOurs) this.#socket.close(ending.code, ending.reason);

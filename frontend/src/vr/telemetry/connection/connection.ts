@@ -1,8 +1,10 @@
 /**
- * Keeps a headset connected: dials, greets, listens, and dials again, until it is closed or refused.
+ * Keep a headset connected: connect, send hello, listen, and reconnect, until it is closed or
+ * rejected.
  *
- * Breaks are no errors. Only what the server says when it refuses is final: an `error` message, or a
- * close code that another attempt would meet again.
+ * A broken connection is not an error. Only a rejection by the server is final: an `error` message,
+ * or
+ * a close code that another attempt would meet again.
  */
 import type { Failure } from "../failure";
 import { PROTOCOL_VERSION } from "../wire/basis";
@@ -18,11 +20,13 @@ import {
 import { type Address, Channel, type Ending, type MakeSocket } from "./channel";
 import { Conversation, type Parts } from "./conversation";
 
-/** What the server said of something that it stored: samples it flagged, a report that did not fit. */
+/**
+ * What the server reports about something it stored: flagged samples, or a report that did not fit.
+ */
 export type Notice = Flag | RefusedReport;
 
 export interface Hooks {
-  /** Before anything is sent; a failure ends it. */
+  /** Called before anything is sent; a returned failure ends the connection. */
   readonly onWelcome: (welcome: Welcome) => Promise<Failure | null>;
   readonly onState: (state: HeadsetState) => void;
   readonly onNotice: (notice: Notice) => void;
@@ -32,7 +36,7 @@ export interface Hooks {
 
 export interface ConnectionParts extends Omit<Parts, "onFailure"> {
   readonly address: Address;
-  /** What the client calls itself. */
+  /** The client's name. */
   readonly name: string;
   readonly makeSocket: MakeSocket;
   readonly hooks: Hooks;
@@ -40,7 +44,7 @@ export interface ConnectionParts extends Omit<Parts, "onFailure"> {
 
 export class Connection {
   failure: Failure | null = null;
-  /** The number the server gave to this run; null before the first welcome. */
+  /** The number that the server gave to this run; null before the first welcome. */
   epoch: number | null = null;
   readonly #parts: ConnectionParts;
   #channel: Channel | null = null;
@@ -56,19 +60,22 @@ export class Connection {
     return this.#conversation !== null;
   }
 
-  /** Until it is closed or has failed. */
+  /** Keep the connection up until it is closed or has failed. */
   async run(): Promise<void> {
     const { retryS } = this.#parts.limits;
     let attempt = 0;
     while (this.#goesOn) {
-      // A connection that got as far as the welcome begins the waiting anew.
+      // A connection that got as far as the welcome restarts the waiting times.
       attempt = (await this.#connectOnce()) ? 0 : attempt;
       if (this.#goesOn) await this.#pause(retryS[Math.min(attempt, retryS.length - 1)] ?? 1);
       attempt++;
     }
   }
 
-  /** Say how far this run has come, and hang up. What is not acknowledged stays in the journal. */
+  /**
+   * Announce how far this run has come, and disconnect. What is not acknowledged stays in the
+   * journal.
+   */
   close(): void {
     this.#isClosed = true;
     this.#conversation?.announcer.tell();
@@ -80,7 +87,7 @@ export class Connection {
     return !this.#isClosed && this.failure === null;
   }
 
-  /** One connection from beginning to end; whether it was welcomed. */
+  /** Open one connection and wait for its end; return whether it was welcomed. */
   async #connectOnce(): Promise<boolean> {
     const { address, limits, makeSocket } = this.#parts;
     let channel: Channel;
@@ -101,7 +108,7 @@ export class Connection {
     const conversation = this.#conversation;
     this.#conversation = null;
     this.failure ??= finalFailure(ending);
-    // At once: a running phase has to stop its clock.
+    // Immediately: a running phase has to stop its clock.
     this.#parts.hooks.onChange();
     await conversation?.stop();
     return conversation !== null;
@@ -113,7 +120,7 @@ export class Connection {
   }
 
   #take(channel: Channel, text: string): void {
-    // First of all: it is part of a reading.
+    // Read first, because it is part of a clock reading.
     const receivedS = this.#parts.clock();
     let message: ServerMessage | null;
     try {
@@ -169,7 +176,7 @@ export class Connection {
 
   #fail({ code, message, remedy }: Failure): void {
     this.failure ??= { code, message, remedy };
-    // The server closes after an `error`; whoever fails here hangs up first.
+    // The server closes after an `error`; if the failure is the client's, the client closes first.
     this.#channel?.close(4000, code);
     this.#parts.hooks.onChange();
   }

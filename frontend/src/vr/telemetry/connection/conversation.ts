@@ -35,8 +35,8 @@ export class Conversation {
   }
 
   /**
-   * The server expected an earlier seq: go back. Everything that is under way behind the hole is
-   * answered in the same way, and one answer is enough.
+   * The server expected an earlier seq: go back to it. Every message that is under way behind the
+   * gap gets the same answer, and only the first one is acted on.
    */
   resend(position: StreamPosition): void {
     const { clock, journal, limits, onFailure } = this.#parts;
@@ -52,7 +52,7 @@ export class Conversation {
     else journal.reader.rewind();
   }
 
-  /** Ends everything; the channel has ended before. */
+  /** Stop everything; call this after the channel has ended. */
   async stop(): Promise<void> {
     this.prober.stop();
     this.announcer.stop();
@@ -60,7 +60,7 @@ export class Conversation {
     await this.#sending;
   }
 
-  /** The only sender of journaled messages: so they go out in order, and none is left out. */
+  /** The only sender of journaled messages, so they go out in order and none is skipped. */
   async #sendJournal(): Promise<void> {
     while (this.#channel.isOpen) {
       try {

@@ -36,13 +36,13 @@ const answerTo = (client_sent_s: number) => ({
 const ofType = (type: string) => sent.filter((message) => message.type === type);
 
 describe("probing", () => {
-  it("asks at once and then every second, with the client's own time", () => {
+  it("sends a probe immediately and then every second, with the client's own time", () => {
     pass(1);
     pass(1);
     expect(ofType("probe").map((probe) => probe.client_sent_s)).toEqual([10, 11, 12]);
   });
 
-  it("tells the reading as it came", () => {
+  it("reports the reading as it arrived", () => {
     prober.take(answerTo(10), 10.004);
     expect(ofType("probed")).toEqual([
       {
@@ -55,7 +55,7 @@ describe("probing", () => {
     ]);
   });
 
-  it("tells null after two seconds, and ignores an answer that comes later", () => {
+  it("reports null after two seconds, and ignores an answer that comes later", () => {
     pass(2);
     prober.take(answerTo(10), 12.1);
     expect(ofType("probed")).toEqual([
@@ -69,14 +69,14 @@ describe("probing", () => {
     ]);
   });
 
-  it("takes an answer once, and none to what it did not ask", () => {
+  it("takes each answer once, and ignores answers to probes it did not send", () => {
     prober.take(answerTo(10), 10.1);
     prober.take(answerTo(10), 10.2);
     prober.take(answerTo(5), 10.3);
     expect(ofType("probed")).toHaveLength(1);
   });
 
-  it("says nothing after it was stopped", () => {
+  it("sends nothing after it was stopped", () => {
     prober.stop();
     const before = sent.length;
     pass(1);

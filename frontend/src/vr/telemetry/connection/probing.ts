@@ -1,8 +1,8 @@
 /**
- * Asking for the server's clock again and again, and telling the raw reading of each exchange.
+ * Probe the server's clock at regular intervals, and report the raw reading of each exchange.
  *
- * An answer that takes too long is told as null, never as a number; when it comes after all, it is
- * ignored. Questions that were open when the connection broke are forgotten with it.
+ * An answer that takes too long is reported as null, never as a number; if it arrives later, it is
+ * ignored. Probes that are unanswered when the connection breaks are dropped.
  */
 import type { Limits } from "../limits";
 import { probedText, textOf } from "../wire/fromClient";
@@ -13,7 +13,7 @@ export class Prober {
   readonly #clock: () => number;
   readonly #timeoutMs: number;
   readonly #asking: ReturnType<typeof setInterval>;
-  /** Client time of the question -> what gives up on it. */
+  /** Client time of each unanswered probe -> the timer that gives up on it. */
   readonly #asked = new Map<number, ReturnType<typeof setTimeout>>();
 
   constructor(send: (text: string) => void, clock: () => number, limits: Limits) {
@@ -24,7 +24,7 @@ export class Prober {
     this.#asking = setInterval(() => this.#ask(), limits.probeEveryS * 1000);
   }
 
-  /** `receivedS`: client time at which the answer came. */
+  /** Handle an answer; `receivedS` is the client time at which it arrived. */
   take(answer: ProbeAnswer, receivedS: number): void {
     const giveUp = this.#asked.get(answer.client_sent_s);
     if (giveUp === undefined) return;

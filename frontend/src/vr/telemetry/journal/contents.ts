@@ -1,5 +1,6 @@
 /**
- * What a journal holds: blocks on disk, of which only the description is in memory, then the tail.
+ * The contents of a journal: blocks on disk, of which only the description is in memory, then the
+ * tail.
  *
  *     front [ block | block | block ][ tail ] end        places count up from the front to the end
  *              on disk                 in memory
@@ -8,7 +9,7 @@ import { type Block, type End, type Entry, type Held, keyOf, Positions, sizeOf }
 
 export class Contents {
   readonly stored = new Positions();
-  /** The last end of every stream and run that was ever held. */
+  /** The last end of every stream and run that the journal has contained. */
   readonly #ends = new Map<string, End>();
   readonly #blocks: Block[];
   readonly #tail: Entry[] = [];
@@ -49,7 +50,7 @@ export class Contents {
     return this.#diskBytes + this.#tailBytes;
   }
 
-  /** When the oldest message was made, ms since 1970; null when there is none. */
+  /** When the oldest message was produced, ms since 1970; null if there is none. */
   get oldestMs(): number | null {
     return this.#blocks[0]?.madeAtMs ?? this.#tail[0]?.madeAtMs ?? null;
   }
@@ -65,12 +66,12 @@ export class Contents {
     );
   }
 
-  /** The message at a place of the tail. */
+  /** The message at a place in the tail. */
   inTail(place: number): Entry | undefined {
     return this.#tail[place - this.#tailPlace];
   }
 
-  /** So many blocks from the one that holds this place on. */
+  /** `count` blocks, starting with the one that contains this place. */
   blocksFrom(place: number, count: number): readonly Block[] {
     const at = this.#blocks.findIndex((block) => place < block.place + block.messages);
     return at < 0 ? [] : this.#blocks.slice(at, at + count);
@@ -83,7 +84,7 @@ export class Contents {
     this.#ends.set(keyOf(entry), { stream, epoch, seqEnd });
   }
 
-  /** The front of the tail has become these blocks. */
+  /** Replace the front of the tail by these blocks. */
   moveToDisk(blocks: readonly Block[]): void {
     for (const block of blocks) {
       this.#blocks.push(block);
@@ -93,8 +94,9 @@ export class Contents {
   }
 
   /**
-   * Forget what is stored, from the front on: an acknowledged message behind one that is not stays
-   * until that one leaves; sending it again would do no harm. `exceptTail`: it is being written.
+   * Remove what is stored, starting from the front: an acknowledged message behind one that is not
+   * stays until that one is removed; sending it again would do no harm. `exceptTail`: the tail is
+   * being written.
    */
   letGo(exceptTail: boolean): void {
     const kept = this.#blocks.findIndex((block) => !block.ends.every((end) => this.#covers(end)));

@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import { ack, entry, filled, MemoryBlocks, opened, toSend } from "../testing/journals";
 
 describe("the disk of a journal", () => {
-  it("takes many messages in one write, and those that were acknowledged before not at all", async () => {
+  it("takes many messages in one write, without those that were acknowledged before", async () => {
     const [journal, store] = await filled(...[6, 12, 18, 24].map((end) => entry("target", end)));
     journal.acknowledge([ack("target", 12)]);
     await journal.flush();
@@ -10,7 +10,7 @@ describe("the disk of a journal", () => {
     expect([...store.entries.values()].flat().map(({ seqEnd }) => seqEnd)).toEqual([18, 24]);
   });
 
-  it("takes what is acknowledged meanwhile, and what joins meanwhile is not lost", async () => {
+  it("deletes what was acknowledged during a write, and loses nothing that was added meanwhile", async () => {
     const [journal] = await filled(entry("target", 6), entry("target", 12), entry("target", 18));
     const writing = journal.tidy();
     journal.acknowledge([ack("target", 6)]);
@@ -41,7 +41,7 @@ describe("the disk of a journal", () => {
     expect([store.blocks.size, store.entries.size, journal.messages]).toEqual([0, 0, 0]);
   });
 
-  it("keeps a block until all of it is stored, and sends only what is not", async () => {
+  it("keeps a block until all of it is stored, and only the rest of it is sent", async () => {
     const [journal] = await filled(entry("target", 6), entry("actual", 6), entry("target", 12));
     await journal.flush();
     journal.acknowledge([ack("target", 12)]);
@@ -49,7 +49,7 @@ describe("the disk of a journal", () => {
     expect(await toSend(journal)).toEqual(["actual/1/6"]);
   });
 
-  it("is written to as soon as much has gathered, without waiting for the time", async () => {
+  it("is written to as soon as enough has accumulated, without waiting for the timer", async () => {
     const store = new MemoryBlocks();
     const journal = await opened(store, { flushBytes: 100 });
     for (let end = 1; end <= 10; end++) journal.add(entry("target", end));
@@ -57,7 +57,7 @@ describe("the disk of a journal", () => {
     expect(store.writes).toBe(1);
   });
 
-  it("fails: nothing is lost, the memory stays bounded, and it goes on when it works again", async () => {
+  it("may fail: nothing is lost, memory stays bounded, and writing resumes when it works again", async () => {
     const store = new MemoryBlocks();
     const journal = await opened(store, { memoryBytes: 25 });
     store.failure = new Error("the disk is broken");
@@ -73,7 +73,7 @@ describe("the disk of a journal", () => {
     expect(await toSend(journal)).toEqual(["target/1/1", "target/1/2", "target/1/3"]);
   });
 
-  it("is full: what is acknowledged is still deleted, which makes room", async () => {
+  it("may be full: what is acknowledged is still deleted, which makes room", async () => {
     const [journal, store] = await filled(entry("target", 1));
     await journal.flush();
     store.isFull = new DOMException("no space", "QuotaExceededError");
@@ -85,7 +85,7 @@ describe("the disk of a journal", () => {
     expect(await toSend(journal)).toEqual(["target/1/2"]);
   });
 
-  it("has lost a block: that is said, not passed over", async () => {
+  it("may lose a block: that is reported, not ignored", async () => {
     const [journal, store] = await filled(entry("target", 1), entry("target", 2));
     await journal.flush();
     store.entries.clear();

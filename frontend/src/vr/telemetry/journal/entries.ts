@@ -1,13 +1,16 @@
-/** What a journal holds, in memory and on disk. */
+/** The types of a journal's contents, in memory and on disk. */
 import type { StreamPosition } from "../wire/fromServer";
 
-/** A message with the seqs it carries: all below `seqEnd` of its stream and epoch that come with it. */
+/**
+ * A message with the seqs it carries: those of its stream and epoch below `seqEnd`, after the
+ * previous message.
+ */
 export interface Entry {
   readonly stream: string;
   readonly epoch: number;
   readonly seqEnd: number;
   readonly message: Uint8Array<ArrayBuffer> | string;
-  /** When it was made, ms since 1970: the only clock that survives a reload. */
+  /** When it was produced, ms since 1970: the only clock that survives a reload. */
   readonly madeAtMs: number;
 }
 
@@ -20,25 +23,25 @@ export interface End {
 
 /**
  * Messages that are written together, oldest first. The first has the place `place`, the others
- * follow without a gap; places count up through the whole journal and are never used twice.
+ * follow without a gap; places count up through the whole journal and are never reused.
  */
 export interface Block {
   readonly place: number;
   readonly messages: number;
   readonly bytes: number;
-  /** When its oldest message was made, ms since 1970. */
+  /** When its oldest message was produced, ms since 1970. */
   readonly madeAtMs: number;
-  /** All of it is stored once each of these ends is. */
+  /** The whole block is stored once each of these ends is. */
   readonly ends: readonly End[];
 }
 
-/** One run of the client (an epoch), and how far it had come: the next seq of each stream. */
+/** One run of the client (an epoch), and how much it has produced: the next seq of each stream. */
 export interface Run {
   readonly epoch: number;
   readonly produced: Readonly<Record<string, number>>;
 }
 
-/** What a journal finds when it is opened. */
+/** What a journal finds on disk when it is opened. */
 export interface Held {
   readonly sessionId: string | null;
   readonly blocks: readonly Block[];
@@ -50,22 +53,22 @@ export interface NewBlock {
   readonly entries: readonly Entry[];
 }
 
-/** One transaction: everything of it is on disk afterwards, or nothing. */
+/** One transaction: afterwards all of it is on disk, or none. */
 export interface Change {
   readonly sessionId: string;
-  /** Forget all blocks below this place. */
+  /** Delete all blocks below this place. */
   readonly forgetBelow: number;
   readonly added: readonly NewBlock[];
   readonly runs: readonly Run[];
 }
 
-/** Where blocks are kept. */
+/** The storage of blocks. */
 export interface BlockStore {
   load(): Promise<Held>;
   write(change: Change): Promise<void>;
-  /** The entries of the blocks at these places, null for one that is not there. */
+  /** The entries of the blocks at these places, null for a missing block. */
   read(places: readonly number[]): Promise<readonly (readonly Entry[] | null)[]>;
-  /** Forget everything, also the runs. */
+  /** Delete everything, including the runs. */
   clear(): Promise<void>;
   close(): void;
 }
@@ -113,11 +116,11 @@ function blockOf(entries: readonly Entry[], place: number): Block {
   };
 }
 
-/** How far each stream is stored on the server, as far as it has told. */
+/** How far each stream is stored on the server, according to its acknowledgements. */
 export class Positions {
   readonly #nextSeq = new Map<string, number>();
 
-  /** Positions never go back, whatever is told late. */
+  /** Advance the positions; they never go back, even if acknowledgements arrive late. */
   advance(positions: readonly StreamPosition[]): void {
     for (const position of positions) {
       const key = keyOf(position);

@@ -24,7 +24,7 @@ function blocks(count: number, firstPlace = 0): readonly NewBlock[] {
 }
 
 describe("blocks in IndexedDB", () => {
-  it("come back in another life of the page, byte by byte", async () => {
+  it("are restored after a reload of the page, byte by byte", async () => {
     const added = blocks(3);
     await store.write({ ...NONE, sessionId: "s", added, runs: [RUN] });
     store.close();
@@ -34,14 +34,14 @@ describe("blocks in IndexedDB", () => {
     expect(await again.read([1, 2])).toEqual(added.slice(1).map(({ entries }) => entries));
   });
 
-  it("leave below a place, and are missed there", async () => {
+  it("are deleted below a place, and then reported as missing", async () => {
     await store.write({ ...NONE, sessionId: "s", added: blocks(3) });
     await store.write({ ...NONE, sessionId: "s", forgetBelow: 2, added: blocks(1, 3) });
     expect((await store.load()).blocks.map(({ place }) => place)).toEqual([2, 3]);
     expect((await store.read([1, 2])).map((found) => found?.length ?? null)).toEqual([null, 1]);
   });
 
-  it("are gone after clearing, with the runs and the session", async () => {
+  it("are deleted by clearing, with the runs and the session", async () => {
     await store.write({ ...NONE, sessionId: "s", added: blocks(1), runs: [RUN] });
     await store.clear();
     expect(await store.load()).toEqual({ sessionId: null, runs: [], blocks: [] });

@@ -1,4 +1,4 @@
-/** Blocks in IndexedDB: one database a journal. Works in pages and in workers. */
+/** Blocks in IndexedDB: one database per journal. Works in pages and in workers. */
 import { type DBSchema, deleteDB, type IDBPDatabase, type IDBPTransaction, openDB } from "idb";
 import type { Block, BlockStore, Change, Entry, Held, Run } from "./entries";
 
@@ -13,8 +13,9 @@ const ALL = ["about", "runs", "blocks", "entries"] as const;
 const PREFIX = "reembody-telemetry/";
 
 /**
- * What a browser calls "relaxed" is in the hands of the operating system: it survives the end of the
- * page and of the browser; "strict" also survives the end of the battery, and waits for the disk.
+ * How safely IndexedDB commits. "relaxed" hands the data to the operating system: they survive the
+ * end of the page and of the browser; "strict" waits for the disk, so that they survive a power
+ * loss too.
  */
 export type Durability = "relaxed" | "strict";
 
@@ -46,8 +47,8 @@ export class IndexedDbBlocks implements BlockStore {
   }
 
   /**
-   * Everything is asked for and committed without waiting for anything in between: what a page does
-   * in its last moments must not need one more turn of its event loop.
+   * Every request is issued and committed without awaiting anything in between, so that a page's
+   * last write needs no further turn of its event loop.
    */
   async write(change: Change): Promise<void> {
     const transaction = this.#writing(this.#database ?? (await this.#open()));
@@ -56,7 +57,8 @@ export class IndexedDbBlocks implements BlockStore {
       transaction.commit();
       await transaction.done;
     } catch (error) {
-      // What a request refuses at once does not end the transaction: half of it must not stay.
+      // A request that throws immediately does not end the transaction: abort it, or half of it
+      // would stay.
       abort(transaction);
       throw error;
     }
@@ -89,7 +91,8 @@ export class IndexedDbBlocks implements BlockStore {
         fresh.createObjectStore("blocks", { keyPath: "place" });
         fresh.createObjectStore("entries");
       },
-      // The browser may close it on its own, as when its disk fails: the next use opens it again.
+      // The browser may close the database on its own, for instance when its disk fails: the next
+      // use opens it again.
       terminated: () => {
         this.#database = null;
       },
@@ -108,7 +111,7 @@ type Writing = IDBPTransaction<Tables, typeof ALL, "readwrite">;
 function ask(transaction: Writing, change: Change): void {
   const [blocks, entries] = [transaction.objectStore("blocks"), transaction.objectStore("entries")];
   const gone = IDBKeyRange.upperBound(change.forgetBelow, true);
-  // A request that fails ends the transaction, which tells.
+  // A request that fails aborts the transaction, which reports the error.
   const quietly = (request: Promise<unknown>) => void request.catch(() => undefined);
   quietly(transaction.objectStore("about").put(change.sessionId, "sessionId"));
   quietly(blocks.delete(gone));
@@ -125,11 +128,11 @@ function abort(transaction: Writing): void {
   try {
     transaction.abort();
   } catch {
-    // It has ended already.
+    // The transaction has already ended.
   }
 }
 
-/** Take a journal off this device; it must be closed. */
+/** Delete a journal from this device; it must be closed. */
 export const deleteJournal = (storageKey: string): Promise<void> => deleteDB(PREFIX + storageKey);
 
 /** A journal that a session left on this device. */
@@ -140,7 +143,9 @@ export interface LeftJournal {
   readonly bytes: number;
 }
 
-/** Journals with messages that no server has confirmed. Opening one and draining it delivers them. */
+/**
+ * Journals with messages that no server has confirmed. Opening one and draining it delivers them.
+ */
 export async function leftJournals(): Promise<readonly LeftJournal[]> {
   const names = (await indexedDB.databases()).map(({ name }) => name ?? "");
   const found: LeftJournal[] = [];

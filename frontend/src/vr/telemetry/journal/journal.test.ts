@@ -4,7 +4,7 @@ import { ack, entry, filled, MemoryBlocks, opened, SESSION, toSend } from "../te
 import type { Entry } from "./entries";
 
 describe("a journal", () => {
-  it("gives messages back in the order in which they came", async () => {
+  it("returns messages in the order in which they were added", async () => {
     const [journal] = await filled(entry("target", 6), entry("actual", 6), entry("reports", 1));
     const all = ["target/1/6", "actual/1/6", "reports/1/1"];
     expect(await toSend(journal)).toEqual(all);
@@ -13,20 +13,20 @@ describe("a journal", () => {
     expect([journal.messages, journal.bytes]).toEqual([3, 30]);
   });
 
-  it("lets go of what is stored, and of nothing else", async () => {
+  it("removes what is stored, and nothing else", async () => {
     const [journal] = await filled(entry("target", 10), entry("target", 20), entry("target", 30));
     journal.acknowledge([ack("target", 19), ack("actual", 99), ack("target", 99, 2)]);
     expect(await toSend(journal)).toEqual(["target/1/20", "target/1/30"]);
     expect(journal.bytes).toBe(20);
   });
 
-  it("is not taken back by an acknowledgement that comes late", async () => {
+  it("does not go back when an acknowledgement arrives late", async () => {
     const [journal] = await filled(entry("target", 10), entry("target", 20));
     for (const next of [10, 5, 10]) journal.acknowledge([ack("target", next)]);
     expect(await toSend(journal)).toEqual(["target/1/20"]);
   });
 
-  it("holds after any adding, acknowledging, writing and reloading what is not stored", async () => {
+  it("contains what is not stored after any sequence of adding, acknowledging, writing and reloading", async () => {
     const random = seeded(3);
     for (let round = 0; round < 40; round++) {
       const store = new MemoryBlocks();
@@ -60,7 +60,7 @@ describe("a journal", () => {
     }
   });
 
-  it("comes back after a reload with the session, the runs and what they had produced", async () => {
+  it("is restored after a reload with the session, the runs and what they had produced", async () => {
     const [journal, store] = await filled(entry("target", 6), entry("reports", 1));
     journal.note({ epoch: 1, produced: { target: 6, reports: 1 } });
     await journal.flush();
@@ -83,7 +83,7 @@ describe("a journal", () => {
 });
 
 describe("the limit of a journal", () => {
-  it("holds the producer until an acknowledgement makes room", async () => {
+  it("makes the producer wait until an acknowledgement makes room", async () => {
     const journal = await opened(new MemoryBlocks(), { journalBytes: 20 });
     journal.add(entry("target", 10));
     expect(journal.isFull).toBe(false);
@@ -93,7 +93,7 @@ describe("the limit of a journal", () => {
     expect(journal.hasRoom).toBe(true);
   });
 
-  it("is what the browser still gives, less a reserve, where that is less", async () => {
+  it("is the browser's remaining space minus a reserve, if that is less", async () => {
     const limits = { memoryBytes: 10, quotaReserve: 0.1 };
     let room = 100;
     const journal = await opened(new MemoryBlocks(), limits, async () => room);
@@ -102,7 +102,7 @@ describe("the limit of a journal", () => {
       room -= 10;
       await journal.flush();
     }
-    // 80 bytes are held, and 20 more fit: of those 18 may be used.
+    // 80 bytes are stored, and 20 more fit: of those 18 may be used.
     expect(journal.isFull).toBe(false);
     journal.add(entry("target", 9));
     journal.add(entry("target", 10));
@@ -112,12 +112,12 @@ describe("the limit of a journal", () => {
     expect(journal.isFull).toBe(false);
   });
 
-  it("leaves the memory where the browser gives nothing", async () => {
+  it("leaves the memory to use if the browser grants no space", async () => {
     const journal = await opened(new MemoryBlocks(), { memoryBytes: 20 }, async () => 0);
     expect(journal.hasRoom).toBe(true);
   });
 
-  it("keeps the memory small: what is not written yet is bounded, what is written has left", async () => {
+  it("keeps memory small: unwritten messages are bounded, written ones have left", async () => {
     const store = new MemoryBlocks();
     const journal = await opened(store, { memoryBytes: 50, flushBytes: 1000 });
     for (let end = 1; end <= 5; end++) journal.add(entry("target", end));
@@ -142,7 +142,7 @@ describe("reports", () => {
 });
 
 describe("the age of a journal", () => {
-  it("is that of its oldest message, over a reload too", async () => {
+  it("is that of its oldest message, also after a reload", async () => {
     const [journal, store] = await filled(
       entry("target", 1, { madeAtMs: 1000 }),
       entry("target", 2, { madeAtMs: 2000 }),

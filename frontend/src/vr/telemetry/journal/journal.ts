@@ -1,10 +1,11 @@
 /**
- * What was made and is not known to be on the server's disk.
+ * Messages that are not known to be on the server's disk.
  *
- * Messages join the tail in memory and are sent from there. Every quarter of a second those that are
- * still unacknowledged are written to the browser's disk in one transaction and leave the memory: so
- * neither a reload nor an hour without network costs any, and memory does not grow. Acknowledged
- * blocks are deleted by the next transaction. Nothing else ever leaves.
+ * Messages are appended to the tail in memory and sent from there. Every quarter of a second those
+ * that are still unacknowledged are written to the browser's disk in one transaction and removed
+ * from
+ * memory, so a reload or an hour without network loses none, and memory does not grow. Acknowledged
+ * blocks are deleted by the next transaction. Nothing else is ever removed.
  */
 import type { Limits } from "../limits";
 import type { StreamPosition } from "../wire/fromServer";
@@ -21,7 +22,7 @@ export interface JournalParts {
 
 export class Journal {
   readonly reader: Reader;
-  /** Called when something was acknowledged, was written or could not be. */
+  /** Called after an acknowledgement or a write, whether it succeeded or not. */
   onChange: () => void = () => undefined;
 
   readonly #parts: JournalParts;
@@ -29,7 +30,7 @@ export class Journal {
   readonly #runs: Map<number, Run>;
   #sessionId: string | null;
   #problem: string | null = null;
-  /** Everything below is deleted on disk. */
+  /** Everything below this place is deleted on disk. */
   #forgottenBelow: number;
   #limitBytes: number;
   #measuredBytes: number | null = null;
@@ -71,7 +72,7 @@ export class Journal {
     return this.#contents.oldestMs;
   }
 
-  /** Why the browser could not write the last time; null if it could. */
+  /** Why the browser's last write failed; null if it succeeded. */
   get problem(): string | null {
     return this.#problem;
   }
@@ -82,7 +83,7 @@ export class Journal {
     return stuck || this.bytes >= this.#limitBytes;
   }
 
-  /** Whether a message may join now; if not, soon, unless `isFull`. */
+  /** Whether a message may be added now; if not, it soon may, unless `isFull`. */
   get hasRoom(): boolean {
     return !this.isFull && this.#hasMemory;
   }
@@ -96,7 +97,7 @@ export class Journal {
     return this.#contents.isSettled(stream);
   }
 
-  /** Whether it may carry this session's messages: not while it holds another's. */
+  /** Claim the journal for a session; return false while it contains another session's messages. */
   async claim(sessionId: string): Promise<boolean> {
     if (this.#sessionId !== null && this.#sessionId !== sessionId) {
       if (this.messages > 0) return false;
@@ -107,7 +108,7 @@ export class Journal {
     return true;
   }
 
-  /** How far a run has come; it is kept beside the messages. */
+  /** Record how far a run has come; stored along with the messages. */
   note(run: Run): void {
     this.#runs.set(run.epoch, run);
   }
@@ -124,7 +125,7 @@ export class Journal {
     this.onChange();
   }
 
-  /** Write what is not on disk yet and delete what is acknowledged; `problem` says what went wrong. */
+  /** Write what is not on disk yet and delete what is acknowledged; `problem` reports a failure. */
   async tidy(): Promise<void> {
     this.#writing ??= this.#write().finally(() => {
       this.#writing = null;
@@ -134,7 +135,7 @@ export class Journal {
     await this.#writing;
   }
 
-  /** All that was added before is on disk afterwards, unless there is a `problem`. */
+  /** Resolves once everything added so far is on disk, or there is a `problem`. */
   async flush(): Promise<void> {
     if (this.#writing !== null) await this.#writing;
     await this.tidy();
@@ -166,20 +167,20 @@ export class Journal {
     await this.#measure();
   }
 
-  /** A disk that is full takes nothing more, but lets go of what is acknowledged. */
+  /** Only delete what is acknowledged: a full disk takes nothing new, but allows that. */
   async #forgetOnly(sessionId: string, forgetBelow: number): Promise<void> {
     if (forgetBelow === this.#forgottenBelow) return;
     try {
       await this.#parts.store.write({ sessionId, forgetBelow, added: [], runs: [] });
       this.#forgottenBelow = forgetBelow;
     } catch {
-      // `problem` tells already.
+      // `problem` already reports it.
     }
   }
 
   /**
-   * The limit is what was asked for, or what the browser still gives, asked every few megabytes. A
-   * browser that gives nothing still leaves the memory.
+   * Update the limit: the requested one, or the browser's remaining space, queried every few
+   * megabytes. If the browser grants nothing, memory can still be used.
    */
   async #measure(): Promise<void> {
     const { journalBytes, quotaReserve, memoryBytes } = this.#parts.limits;

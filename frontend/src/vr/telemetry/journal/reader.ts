@@ -1,19 +1,19 @@
-/** The sender's way through the journal: message by message, reading old ones back from disk. */
+/** The sender's position in the journal: message by message, reading old ones back from disk. */
 import type { Contents } from "./contents";
 import type { BlockStore, Entry } from "./entries";
 
-/** The browser has lost what it had stored: what was promised cannot be kept any more. */
+/** Thrown when the browser has lost stored messages, which therefore cannot be delivered. */
 export class JournalLost extends Error {
   override readonly name = "JournalLost";
 }
 
-/** One sender at a time may use it. */
+/** Reads the journal in order; only one sender at a time may use it. */
 export class Reader {
   readonly #contents: Contents;
   readonly #store: BlockStore;
   readonly #blocksAhead: number;
   #cursor = 0;
-  /** Entries that were read back, from the place of the first on. */
+  /** Entries that were read back from disk, starting at this place. */
   #window: { readonly place: number; readonly entries: readonly Entry[] } = NOTHING;
   #wake: () => void = () => undefined;
 
@@ -23,7 +23,7 @@ export class Reader {
     this.#blocksAhead = blocksAhead;
   }
 
-  /** Send everything again from the front. */
+  /** Start sending from the front again. */
   rewind(): void {
     this.#cursor = 0;
     this.wake();
@@ -34,7 +34,7 @@ export class Reader {
     this.#wake();
   }
 
-  /** Until there is more to send, or `wake`. */
+  /** Resolves when there is more to send, or on `wake`. */
   async news(): Promise<void> {
     if (this.#cursor < this.#contents.end) return;
     await new Promise<void>((resolve) => {
@@ -42,7 +42,10 @@ export class Reader {
     });
   }
 
-  /** The next message that is not acknowledged; null at the end. JournalLost if it is gone. */
+  /**
+   * The next message that is not acknowledged; null at the end. Throws JournalLost if it is
+   * missing.
+   */
   async next(): Promise<Entry | null> {
     for (;;) {
       this.#cursor = Math.max(this.#cursor, this.#contents.front);
@@ -68,7 +71,7 @@ export class Reader {
     for (const [at, block] of blocks.entries()) {
       const found = read[at];
       if (found) entries.push(...found);
-      // Acknowledged and deleted while it was read: fine, nobody needs it any more.
+      // Acknowledged and deleted while it was read, so nobody needs it any more.
       else if (block.place < this.#contents.front) entries.length = 0;
       else throw new JournalLost(`the browser has lost ${block.messages} messages of the journal`);
     }

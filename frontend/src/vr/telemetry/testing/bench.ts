@@ -2,8 +2,8 @@
  * The page of the browser tests (`tests/e2e/test_telemetry_client.py`), which bundle it themselves:
  * no page of the product refers to it.
  *
- * What it sends is a function of stream, epoch and seq, so that the test knows every bit of it, also
- * of a page that was killed: row `seq % rows` of a table from the test, with epoch, stream and seq in
+ * What it sends is a function of stream, epoch and seq, so the test can check every bit of it, even
+ * if the page was killed: row `seq % rows` of a table from the test, with epoch, stream and seq in
  * place of the root position.
  */
 import {
@@ -27,7 +27,7 @@ export class Bench {
   client: TelemetryClient | null = null;
   readonly produced = { frames: 0, reports: 0 };
   readonly levels: Level[] = [];
-  /** Transactions that write to IndexedDB in this thread. */
+  /** The number of write transactions on IndexedDB in this thread. */
   journalWrites = 0;
   notices = 0;
   connectedAtMs = 0;
@@ -43,7 +43,7 @@ export class Bench {
     };
   }
 
-  /** `table`: rows of 91 float32 in base64. */
+  /** Open a client; `table`: rows of 91 float32 in base64. */
   async open(options: TelemetryOptions, inWorker: boolean, table: string): Promise<number> {
     this.#table = new Float32Array(Uint8Array.from(atob(table), (c) => c.charCodeAt(0)).buffer);
     const open = inWorker ? openTelemetryInWorker : openTelemetry;
@@ -55,7 +55,10 @@ export class Bench {
     return this.client.epoch;
   }
 
-  /** Make batches of both streams, `speed` times as fast as life; null: as fast as they are taken. */
+  /**
+   * Produce batches of both streams, at `speed` times real time; null: as fast as they are
+   * accepted.
+   */
   async produce(batches: number, speed: number | null): Promise<void> {
     const client = this.#opened();
     const beganMs = performance.now() - (speed ? this.#dueMs(speed) : 0);
@@ -73,14 +76,14 @@ export class Bench {
     }
   }
 
-  /** Produce while the test does something else; `error` tells what went wrong. */
+  /** Produce in the background while the test does something else; `error` reports a failure. */
   begin(batches: number, speed: number | null): void {
     this.produce(batches, speed).catch((error) => {
       this.error = String(error);
     });
   }
 
-  /** Seconds from the newest connection until everything is stored. */
+  /** Wait until everything is stored; return the seconds since the newest connection. */
   async drained(): Promise<number> {
     await this.#opened().drained();
     return (performance.now() - this.connectedAtMs) / 1000;
@@ -102,7 +105,7 @@ export class Bench {
     const rowBytes = 4 * VALUES_PER_FRAME;
     for (let frame = 0; frame < FRAMES_PER_BATCH; frame++) {
       const row = (first + frame) % rows;
-      // As bytes: a NaN must keep its payload.
+      // Copied as bytes: a NaN must keep its payload.
       bytes.set(new Uint8Array(this.#table.buffer, row * rowBytes, rowBytes), frame * rowBytes);
       const place = [this.#opened().epoch, STREAM_NAMES.indexOf(stream) + 1, first + frame];
       values.set(place, frame * VALUES_PER_FRAME);

@@ -1,4 +1,4 @@
-/** A server of the protocol for tests: stores what fits, acknowledges, asks for what is missing. */
+/** A server of the protocol for tests: stores what fits, acknowledges, requests what is missing. */
 import { decodeBatch } from "../wire/batch";
 import type { Welcome } from "../wire/fromServer";
 
@@ -10,23 +10,23 @@ interface Said {
 }
 
 export class FakeServer {
-  /** Messages of clients other than batches, in the order of arrival. */
+  /** Messages received from clients, other than batches, in the order of arrival. */
   readonly heard: Said[] = [];
   /** Stored seqs as `stream/epoch/seq`, in the order of arrival. */
   readonly stored: string[] = [];
   readonly sockets: FakeSocket[] = [];
   readonly positions = new Map<string, number>();
   sessionId = "session";
-  /** Nobody gets through while it is false. */
+  /** No connection succeeds while it is false. */
   isUp = true;
   /** How often a seq was skipped. */
   resends = 0;
   acknowledges = true;
   answersProbes = true;
   lastEpoch = 0;
-  /** Fields of the next welcomes that are to differ. */
+  /** Fields to override in the next welcomes. */
   welcomeWith: Partial<Welcome> = {};
-  /** What the next hello is refused with. */
+  /** The rejection of the next hello. */
   refusal: { code: number; error: object } | null = null;
 
   readonly makeSocket = (_url: string, protocols: string[]): WebSocket => {
@@ -140,13 +140,16 @@ const welcome: Welcome = {
 
 export const stateOf = (version: number): Welcome["state"] => ({ ...welcome.state, version });
 
-/** What the client uses of a WebSocket. Everything arrives in a later turn, as from a network. */
+/**
+ * The part of a WebSocket that the client uses. Everything arrives in a later turn, as from a
+ * network.
+ */
 export class FakeSocket {
   readonly protocols: readonly string[];
   readyState: number = WebSocket.CONNECTING;
   binaryType = "blob";
   bufferedAmount = 0;
-  /** A network that takes nothing: what is sent stays in the browser. */
+  /** Whether the network takes nothing: what is sent stays in the browser. */
   isStuck = false;
   onopen: (() => void) | null = null;
   onmessage: ((event: { data: unknown }) => void) | null = null;

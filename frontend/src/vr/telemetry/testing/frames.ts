@@ -1,4 +1,4 @@
-/** Frames of a body in rest pose, and noise, for tests. */
+/** Frames of a body in rest pose, with noise, for tests. */
 import { type Frames, VALUES_PER_FRAME } from "../wire/batch";
 
 export function standing(count: number, firstS = 0, phaseId = 0): Frames {
@@ -13,7 +13,7 @@ export function standing(count: number, firstS = 0, phaseId = 0): Frames {
   return { phaseId, timesS, flags, values, activeS: 0, closedAtS: firstS + count / 90 };
 }
 
-/** A generator of whole numbers below 2^32 that is the same every time. */
+/** A reproducible generator of whole numbers below 2^32. */
 export function seeded(seed: number): () => number {
   let state = seed >>> 0;
   return () => {

@@ -43,18 +43,18 @@ export async function toSend(journal: Journal): Promise<readonly string[]> {
 
 export const ack = (stream: string, next_seq: number, epoch = 1) => ({ stream, epoch, next_seq });
 
-/** A journal's disk for tests: it counts, fails when told, and outlives the journal on it. */
+/** A journal's disk for tests: it counts writes, fails on request, and outlives its journal. */
 export class MemoryBlocks implements BlockStore {
   readonly blocks = new Map<number, Block>();
   readonly entries = new Map<number, readonly Entry[]>();
   readonly runs = new Map<number, Run>();
   sessionId: string | null = null;
   writes = 0;
-  /** Every write fails with it while it is set. */
+  /** While it is set, every write fails with it. */
   failure: Error | null = null;
-  /** Writes that add something fail with it. */
+  /** While it is set, every write that adds something fails with it. */
   isFull: Error | null = null;
-  /** Every read fails with it while it is set. */
+  /** While it is set, every read fails with it. */
   unreadable: Error | null = null;
   failedReads = 0;
 
@@ -68,7 +68,7 @@ export class MemoryBlocks implements BlockStore {
 
   async write(change: Change): Promise<void> {
     this.writes++;
-    // The state at the call is what is written, as a browser copies it.
+    // Write the state at the time of the call, as a browser copies it.
     const copy = structuredClone(change);
     await Promise.resolve();
     if (this.failure !== null) throw this.failure;

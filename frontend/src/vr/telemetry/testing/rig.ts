@@ -8,7 +8,7 @@ import { FakeServer } from "./fakeServer";
 import { standing } from "./frames";
 import { MemoryBlocks } from "./journals";
 
-/** Everything that is waited for in seconds, in milliseconds. */
+/** Limits with milliseconds in place of seconds. */
 const QUICK: Partial<Limits> = {
   flushEveryS: 0.005,
   retryS: [0.001, 0.002, 0.005],
@@ -50,7 +50,7 @@ export async function openedClient(
 
 export const MATERIALISED = { kind: "materialised", t_s: 1 } as const;
 
-/** So many batches of six frames of each stream, and a report after them. */
+/** Produce so many batches of six frames of each stream, followed by a report. */
 export async function produce(producer: TelemetryClient, batches: number): Promise<void> {
   for (let batch = 0; batch < batches; batch++) {
     await producer.sendFrames("target", standing(6));
@@ -59,11 +59,11 @@ export async function produce(producer: TelemetryClient, batches: number): Promi
   await producer.report(MATERIALISED);
 }
 
-/** So many seqs as the fake server notes them. */
+/** So many seqs in the fake server's notation. */
 export const seqs = (stream: string, epoch: number, count: number): readonly string[] =>
   Array.from({ length: count }, (_, seq) => `${stream}/${epoch}/${seq}`);
 
-/** Until it holds; a test that waits in vain runs into its own time limit. */
+/** Wait until a condition holds; a test that waits in vain runs into its own time limit. */
 export async function eventually(holds: () => boolean): Promise<void> {
   while (!holds()) await new Promise((resolve) => setTimeout(resolve, 1));
 }
@@ -74,7 +74,9 @@ interface Bed {
   opened(...more: [disk?: MemoryBlocks, limits?: Partial<Limits>]): Promise<DirectClient>;
 }
 
-/** A fake server and a client of it for each test of a file; the client is closed behind it. */
+/**
+ * A fake server and a client of it for each test of a file; the client is closed after the test.
+ */
 export function testBed(): Bed {
   const bed: Bed = {
     server: new FakeServer(),

@@ -1,9 +1,11 @@
-/** Numbers and names that both directions of the protocol share, with the limits the server sets. */
+/**
+ * Numbers and names that both directions of the protocol share, with the limits the server sets.
+ */
 import * as v from "valibot";
 
 export const PROTOCOL_VERSION = 1;
 export const SUBPROTOCOL = "reembody.v1";
-/** The stream of the reports, beside those of the frames. */
+/** The stream of the reports, in addition to those of the frames. */
 export const REPORT_STREAM = "reports";
 
 const whole = (least: number, most: number) =>
@@ -13,7 +15,7 @@ const name = (longest: number) =>
   v.pipe(
     v.string(),
     v.maxLength(longest),
-    // Not every database takes a NUL in a text.
+    // Not every database accepts a NUL in a text.
     v.check((text) => !text.includes("\0"), "a name must not hold the character NUL"),
   );
 
@@ -27,12 +29,14 @@ export const Name40 = name(40);
 export const Name120 = name(120);
 export const CompletionNumber = whole(1, 10_000);
 
-/** A value that one side sent and the other cannot use; says where and why. */
+/**
+ * Thrown for a value that one side sent and the other cannot use; the message says where and why.
+ */
 export class MalformedMessage extends Error {
   override readonly name = "MalformedMessage";
 }
 
-/** The value as the schema's type; MalformedMessage names the first thing that does not fit. */
+/** The value as the schema's type; MalformedMessage names the first field that does not fit. */
 export function narrowed<Schema extends v.GenericSchema>(
   schema: Schema,
   value: unknown,

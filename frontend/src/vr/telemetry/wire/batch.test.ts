@@ -11,7 +11,7 @@ const batchOf = (count: number, changed: Partial<Batch> = {}): Batch => ({
 });
 
 describe("a batch", () => {
-  it("comes out as it went in, whatever the bits", () => {
+  it("is decoded to what was encoded, whatever the bits", () => {
     const random = seeded(7);
     for (let round = 0; round < 50; round++) {
       const count = 1 + (random() % 20);
@@ -32,7 +32,7 @@ describe("a batch", () => {
     }
   });
 
-  it("is read in place, and also from the middle of something else", () => {
+  it("is read in place, also from the middle of a larger buffer", () => {
     const message = encodeBatch(batchOf(3));
     expect(decodeBatch(message).values.buffer).toBe(message.buffer);
     const shifted = new Uint8Array(message.length + 1);
@@ -40,7 +40,7 @@ describe("a batch", () => {
     expect(decodeBatch(shifted.subarray(1))).toEqual(decodeBatch(message));
   });
 
-  it("does not change when its maker fills the arrays again", () => {
+  it("does not change when the arrays it was made from are filled again", () => {
     const frames = batchOf(2);
     const message = encodeBatch(frames);
     frames.values.fill(9);
@@ -61,7 +61,7 @@ describe("a batch", () => {
     ["phase_id 1.5", { phaseId: 1.5 }],
     ["seq -1", { seqFirst: -1 }],
     ["seq 9007199254740992", { seqFirst: 2 ** 53 }],
-  ])("that the server could not use is not made: %s", (said, changed) => {
+  ])("that the server could not use is rejected: %s", (said, changed) => {
     expect(() => encodeBatch(batchOf(2, changed))).toThrow(said);
   });
 });
@@ -73,7 +73,7 @@ describe("the checksum", () => {
     expect(crc32(new Uint8Array(0))).toBe(0);
   });
 
-  it("notices every flipped bit", () => {
+  it("detects every flipped bit", () => {
     const message = encodeBatch(batchOf(1));
     for (let at = 64; at < message.length; at += 7) {
       const broken = message.slice();

@@ -2,16 +2,18 @@
  * The binary telemetry batch: a 64-byte header and little-endian arrays.
  *
  * `docs/protocol.md` has the layout, `tests/vectors/wire` the bytes that this and the server's
- * implementation agree on. All arrays lie at multiples of 8 bytes, so both sides read them in place.
- * Samples pass through as bits: a NaN keeps its payload. (Typed arrays have the order of the machine;
- * every machine that runs a browser is little-endian.)
+ * implementation agree on. All arrays start at multiples of 8 bytes, so both sides read them in
+ * place.
+ * Samples are passed through bit by bit: a NaN keeps its payload. (Typed arrays have the byte order
+ * of
+ * the machine; every machine that runs a browser is little-endian.)
  */
 
 const HEADER_BYTES = 64;
 const BODY_JOINTS = 22;
 export const VALUES_PER_FRAME = 3 + 4 * BODY_JOINTS;
 const MAX_FRAMES = 1024;
-/** Frame flag: the phase's clock ran when this frame was shown. */
+/** Frame flag: the phase's clock was running when this frame was shown. */
 export const ACTIVE = 1;
 
 const MAX_TIME_S = 1e9;
@@ -19,11 +21,11 @@ const MAX_U31 = 2 ** 31 - 1;
 const MAGIC = 0x31424d52; // "RMB1"
 const CODES = { target: 1, actual: 2 } as const;
 
-/** `target` is what the tracking asks for, `actual` what the remote avatar does. */
+/** `target` is the tracked pose, `actual` the remote avatar's. */
 export type StreamName = keyof typeof CODES;
 export const STREAM_NAMES: readonly StreamName[] = ["target", "actual"];
 
-/** Frames of one stream in one phase, as the headset hands them over. */
+/** Frames of one stream in one phase, as the headset passes them in. */
 export interface Frames {
   /** The phase they belong to; 0 outside phases. */
   readonly phaseId: number;
@@ -47,17 +49,19 @@ export interface Batch extends Frames {
   readonly seqFirst: number;
 }
 
-/** What was given or received is not a batch; the message names the field, its value, the rule. */
+/**
+ * Thrown for an invalid batch, given or received; the message names the field, its value, the rule.
+ */
 export class MalformedBatch extends Error {
   override readonly name = "MalformedBatch";
 }
 
-/** Bytes of the message that carries so many frames. */
+/** Size in bytes of the message for so many frames. */
 export function batchBytes(frames: number): number {
   return valuesAt(frames) + 4 * VALUES_PER_FRAME * frames;
 }
 
-/** The message for a batch; MalformedBatch if the server could not use it. */
+/** The message for a batch; throws MalformedBatch if the server could not use it. */
 export function encodeBatch(batch: Batch): Uint8Array<ArrayBuffer> {
   requireUsable(batch);
   const count = batch.timesS.length;
@@ -80,7 +84,10 @@ export function encodeBatch(batch: Batch): Uint8Array<ArrayBuffer> {
   return message;
 }
 
-/** What must hold before a batch is made: once journaled, a bad one would be refused for ever. */
+/**
+ * Throw MalformedBatch unless the server could use the batch: once journaled, an invalid one would
+ * be rejected forever.
+ */
 function requireUsable(batch: Batch): void {
   const { timesS, flags, values } = batch;
   const count = timesS.length;
@@ -96,7 +103,9 @@ function requireUsable(batch: Batch): void {
   requireTimes(batch.activeS, batch.closedAtS);
 }
 
-/** The batch in `message`, its arrays in place; MalformedBatch also when the checksum is wrong. */
+/**
+ * The batch in `message`, its arrays in place; throws MalformedBatch also if the checksum is wrong.
+ */
 export function decodeBatch(message: Uint8Array<ArrayBuffer>): Batch {
   // Float64Array reads in place only from multiples of 8.
   const bytes = message.byteOffset % 8 === 0 ? message : message.slice();
@@ -164,7 +173,9 @@ const valuesAt = (count: number): number => HEADER_BYTES + 8 * count + 8 * Math.
 const bytesOf = (array: Float64Array | Float32Array): Uint8Array =>
   new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
 
-/** CRC-32 as in zlib and PNG (polynomial 0xEDB88320, reflected): of `bytes`, as an unsigned number. */
+/**
+ * CRC-32 as in zlib and PNG (polynomial 0xEDB88320, reflected) of `bytes`, as an unsigned number.
+ */
 export function crc32(bytes: Uint8Array): number {
   let crc = 0xffffffff;
   for (const byte of bytes) crc = (TABLE[(crc ^ byte) & 0xff] ?? 0) ^ (crc >>> 8);

@@ -1,8 +1,8 @@
 /**
- * The JSON messages that a headset sends beside its binary batches.
+ * The JSON messages that a headset sends in addition to its binary batches.
  *
- * A message that the server refuses closes the connection, and from the journal it would come again
- * and again: so each is checked by these schemas before it goes anywhere.
+ * The server closes the connection on an invalid message, and from the journal it would be resent
+ * forever: so each message is checked by these schemas before it is sent or journaled.
  */
 import * as v from "valibot";
 import {
@@ -24,7 +24,7 @@ const Hello = v.strictObject({
   protocol: v.literal(PROTOCOL_VERSION),
   client: Name120,
   epoch: v.nullable(Epoch),
-  /** What the client can show; a delayed copy where it is not said. */
+  /** What the client can show; only a delayed copy by default. */
   avatars: v.optional(v.pipe(v.array(Name40), v.maxLength(10))),
 });
 
@@ -87,25 +87,28 @@ const Produced = v.strictObject({
   streams: v.record(v.picklist(["target", "actual", "reports"]), Seq),
 });
 
-/** How far the client itself has come in each stream: its next seqs. */
+/** How much the client has produced in each stream: its next seqs. */
 export type Counts = v.InferOutput<typeof Produced>["streams"];
 
 const Said = v.variant("type", [Hello, Report, Probe, Produced]);
 type Said = v.InferOutput<typeof Said>;
 
-/** The text of a message; MalformedMessage if the server would refuse it. */
+/** The text of a message; throws MalformedMessage if the server would reject it. */
 export function textOf(message: Said): string {
   return JSON.stringify(narrowed(Said, message));
 }
 
-/** What one exchange read: the server's clock as the digits that came, which outgrow a double. */
+/**
+ * The reading of one exchange: the server's clock as the received digits, which exceed a double's
+ * precision.
+ */
 export interface Reading {
   readonly serverReceivedNs: string;
   readonly serverSentNs: string;
   readonly clientReceivedS: number;
 }
 
-/** The text of a reading; `null` for one that did not come in time. */
+/** The text of a reading; `null` for one that did not arrive in time. */
 export function probedText(clientSentS: number, reading: Reading | null): string {
   const times = {
     server_received_ns: digits(reading?.serverReceivedNs),

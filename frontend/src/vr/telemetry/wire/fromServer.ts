@@ -1,8 +1,9 @@
 /**
- * The JSON messages of the server, narrowed from text.
+ * The JSON messages of the server, parsed from text.
  *
- * Fields that this client does not know are left out, and so are messages of a type that it does not
- * know: a newer server may say more. A message of a known type that lacks something is an error.
+ * Unknown fields are dropped, and so are messages of an unknown type: a newer server may send more.
+ * A
+ * message of a known type with a missing field is an error.
  */
 import * as v from "valibot";
 import { MalformedMessage, narrowed } from "./basis";
@@ -13,7 +14,7 @@ const whole = v.pipe(v.number(), v.integer());
 const StreamPosition = v.object({ stream: v.string(), epoch: whole, next_seq: whole });
 export type StreamPosition = v.InferOutput<typeof StreamPosition>;
 
-/** The phase to run; the headset converges to it. Latency is known here and nowhere else. */
+/** The phase to run; the headset converges to it. The latency is known here and nowhere else. */
 const PhaseOrder = v.object({
   phase_id: whole,
   kind: v.string(),
@@ -27,12 +28,12 @@ const PhaseOrder = v.object({
   completions: whole,
   pausing: v.boolean(),
   resuming: v.boolean(),
-  // A practice ends once so many tasks are completed; an older server does not say so.
+  // A practice ends once so many tasks are completed; an older server does not send it.
   until_completions: v.optional(v.nullable(whole), null),
 });
 export type PhaseOrder = v.InferOutput<typeof PhaseOrder>;
 
-/** Where the session stands, as the headset needs it. */
+/** The state of the session, as the headset needs it. */
 const HeadsetState = v.object({
   type: v.literal("state"),
   version: whole,
@@ -50,7 +51,9 @@ const HeadsetState = v.object({
 });
 export type HeadsetState = v.InferOutput<typeof HeadsetState>;
 
-/** Answers a hello: the client's epoch, where each stream stands, the study's tasks and texts. */
+/**
+ * Answers a hello: the client's epoch, the position of each stream, the study's tasks and texts.
+ */
 const Welcome = v.object({
   type: v.literal("welcome"),
   protocol: whole,
@@ -70,7 +73,7 @@ export type Welcome = v.InferOutput<typeof Welcome>;
 
 const Ack = v.object({ type: v.literal("ack"), positions: v.array(StreamPosition) });
 
-/** A seq was skipped: send again from `next_seq`. */
+/** A seq was skipped: resend from `next_seq`. */
 const Resend = v.object({ type: v.literal("resend"), ...StreamPosition.entries });
 
 /** Samples were stored as they came, and are flagged. */
@@ -103,7 +106,7 @@ const Failure = v.object({
   remedy: v.string(),
 });
 
-/** The server's clock around a probe; its nanoseconds as the digits that came. */
+/** The server's clock around a probe; its nanoseconds as the received digits. */
 const Nanoseconds = v.pipe(v.string(), v.regex(/^\d{1,19}$/));
 const ProbeAnswer = v.object({
   type: v.literal("probe"),
@@ -127,7 +130,10 @@ const SCHEMAS = {
 type Schemas = typeof SCHEMAS;
 export type ServerMessage = v.InferOutput<Schemas[keyof Schemas]>;
 
-/** The message in `text`; null if its type is unknown; MalformedMessage if it lacks something. */
+/**
+ * The message in `text`; null if its type is unknown; throws MalformedMessage if a field is
+ * missing.
+ */
 export function serverMessage(text: string): ServerMessage | null {
   const value = parsed(withDigitsKept(text));
   const type = narrowed(v.object({ type: v.string() }), value).type;
@@ -145,7 +151,10 @@ function parsed(text: string): unknown {
 
 const isKnown = (type: string): type is keyof Schemas => Object.hasOwn(SCHEMAS, type);
 
-/** Nanoseconds since a machine's start outgrow a double after 104 days: read as text. */
+/**
+ * Quote nanoseconds in the text: those since a machine's start exceed a double's precision after
+ * 104 days.
+ */
 function withDigitsKept(text: string): string {
   if (!text.includes('"server_received_ns"')) return text;
   return text.replace(/("server_(?:received|sent)_ns"\s*:\s*)(\d+)/g, '$1"$2"');

@@ -8,7 +8,7 @@ import { serverMessage } from "./fromServer";
 
 const FOLDER = resolve(import.meta.dirname, "../../../../../tests/vectors/wire");
 
-/** The file is ours and made by a script: its format is what its README says. */
+/** The file is made by our own script; its README describes the format. */
 const vectorFile = (name: string) =>
   JSON.parse(readFileSync(resolve(FOLDER, `${name}.json`), "utf8"));
 
@@ -85,7 +85,7 @@ describe("a message of the vectors", () => {
   const probed = fromClient.filter(({ message }) => message.type === "probed");
   const others = fromClient.filter(({ message }) => message.type !== "probed");
 
-  it.each(others)("$name is said by this client too", ({ message }) => {
+  it.each(others)("$name is written identically by this client", ({ message }) => {
     expect(JSON.parse(textOf(message as Parameters<typeof textOf>[0]))).toEqual(message);
   });
 
@@ -93,7 +93,7 @@ describe("a message of the vectors", () => {
     expect(probed.map(({ name }) => name)).toEqual(["probed", "probed_in_vain"]);
   });
 
-  it.each(probed)("$name is said with every digit", ({ text, message }) => {
+  it.each(probed)("$name is written with every digit", ({ text, message }) => {
     const answered = Object.fromEntries([...text.matchAll(NANOSECONDS)].map((hit) => hit.slice(1)));
     const reading = {
       serverReceivedNs: answered.server_received_ns,
@@ -117,7 +117,7 @@ describe("a message of the vectors", () => {
   );
 });
 
-describe("what the protocol refuses", () => {
+describe("what the protocol rejects", () => {
   const refused = vectorFile("refused_messages");
 
   it.each<MessageVector>(refused.from_client.filter(notProbed))("$name is not sent", (vector) => {
@@ -130,7 +130,7 @@ describe("what the protocol refuses", () => {
   });
 });
 
-/** Half a reading cannot even be expressed here. */
+/** Whether a message is an incomplete reading, which cannot be expressed here at all. */
 function notProbed({ message }: MessageVector): boolean {
   return message.type !== "probed";
 }
